@@ -36,16 +36,16 @@ class RoboticAMWorkbench(Gui.Workbench):
     def Activated(self):
         """Called when the workbench is chosen: its menu shows the tooltips, which say why a tool is greyed, and its toolbar
         all tools."""
-        from freecad_am.gui.tools import toolbar
+        from freecad_am.gui.tools import tool
 
-        toolbar.show_tooltips(self.MenuText)
-        toolbar.keep_whole(self.MenuText)
+        tool.show_tooltips(self.MenuText)
+        tool.keep_whole(self.MenuText)
 
     def ContextMenu(self, recipient):
         """Called for a right click in the tree or the 3D view."""
-        from freecad_am.gui.tools import toolbar
+        from freecad_am.gui.tools import tool
 
-        names = toolbar.for_selection()
+        names = tool.for_selection()
         if names:
             self.appendContextMenu("", names)
 
@@ -57,7 +57,7 @@ class RoboticAMWorkbench(Gui.Workbench):
 def robotic_am_preferences():
     """Add the page of preferences, which are there before the workbench is opened."""
     from freecad_am.gui import icons
-    from freecad_am.gui.preferences.page import RoboticAMPreferences
+    from freecad_am.gui.preferences_page import RoboticAMPreferences
 
     Gui.addIconPath(icons.FOLDER)
     Gui.addPreferencePage(RoboticAMPreferences, "Robotic AM")

@@ -40,7 +40,7 @@ def cancelled(job) -> dict[str, float]:
     from PySide import QtCore, QtGui
 
     from freecad_am import api
-    from freecad_am.gui.background import busy
+    from freecad_am.gui import busy
     from freecad_am.objects.work.progress import Cancelled
 
     pressed: list[float] = []

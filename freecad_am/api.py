@@ -90,7 +90,7 @@ from .objects.job_group import grouped
 from .objects.joint_path import JointPath
 from .objects.program import Program
 from .objects.results.findings import issues_of
-from .objects.revival import revive
+from .objects.stage import revive
 from .objects.toolpath import Toolpath, own_process
 from .objects.work.progress import told_to
 

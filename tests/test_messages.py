@@ -17,7 +17,7 @@ import pytest
 from freecad_am import api
 from freecad_am.batch import run
 from freecad_am.batch.job import job as jobs
-from freecad_am.batch.rows.row import Order, row_result, start_row
+from freecad_am.batch.row import Order, row_result, start_row
 from freecad_am.brep.files import read
 from freecad_am.core.issues import AmError, InputError, Issue, Text, Word
 from freecad_am.core.kinematics.machines import machine

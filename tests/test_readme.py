@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from freecad_am.batch.arguments import COMMANDS, command_parsers
+from freecad_am.batch.cli import COMMANDS, command_parsers
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.posts import catalogue
 

@@ -37,9 +37,9 @@ from ..read_back.selected import Finding, into_platform, selection_findings
 from ..report import figures
 from ..sections import cell as job_cell
 from ..sections import tree
-from . import paths
+from . import output_folder as outputs
+from .host import require_freecad
 from .job import job
-from .outputs import folder as outputs
 
 # of the promises about joints and rapids, in their order, where one is not kept
 CODES = ("LIMIT", "UNREACHABLE", "SPEED", "SINGULAR", "RAPID_COLLISION")
@@ -78,7 +78,7 @@ def check(
     Outputs go into `folder`, by default out/<name>-check next to the program. Raises InputError;
     then nothing is written.
     """
-    paths.require_freecad()
+    require_freecad()
     from freecad_am.objects import user_machines
 
     files = _files(programs)

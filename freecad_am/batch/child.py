@@ -94,7 +94,7 @@ class Child(_CONTEXT.Process):  # type: ignore[misc]
 
     def _clean_up(self) -> None:
         """Finish or remove the unfinished outputs of a crashed child."""
-        from .outputs import staging
+        from . import staging
 
         for folder, made_folders in [] if self.is_done else self._outputs:
             with contextlib.suppress(OSError):

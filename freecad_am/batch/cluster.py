@@ -17,11 +17,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..core.issues import InputError, Text, Word
-from . import versions
+from . import output_folder as outputs
+from . import staging, versions
 from .console import Session
-from .outputs import folder as outputs
-from .outputs import staging
-from .rows.table import Journal, Row
+from .row_table import Journal, Row
 
 WHERE, CODE = "--scheduler", "SCHEDULER"
 WORKER = "freecad_am_row_worker"

@@ -17,9 +17,8 @@ import sys
 import threading
 from typing import Any
 
+from freecad_am.batch import row, versions
 from freecad_am.batch import run as planning
-from freecad_am.batch import versions
-from freecad_am.batch.rows import row
 
 
 def main() -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Finds FreeCAD's modules for a Python that is not FreeCAD's own."""
+"""Finds FreeCAD's modules for a Python that is not FreeCAD's own, or says that it is missing."""
 
 from __future__ import annotations
 
@@ -101,3 +101,18 @@ def missing_modules() -> list[str]:
     return missing + [
         name for name in ("numpy", "scipy", "yaml") if importlib.util.find_spec(name) is None
     ]
+
+
+# ---- Makes FreeCAD importable, or raises an error that says it is missing
+
+
+def require_freecad() -> None:
+    """Make FreeCAD importable. Raises InputError NO_FREECAD where this Python has none."""
+    if not find_freecad():
+        from ..core.issues import InputError
+
+        raise InputError(
+            "NO_FREECAD",
+            "Python",
+            "FreeCAD cannot be imported; set FREECAD_AM_PYTHON to a Python that can",
+        )

@@ -10,12 +10,12 @@ from ..core.geometry import frames
 from ..core.issues import InputError
 from ..core.kinematics.machines import machine
 from ..sections import fields
-from . import paths
+from .host import require_freecad
 
 
 def listing() -> str:
     """One line per machine, built in or the user's: its id for the job file and its title."""
-    paths.require_freecad()
+    require_freecad()
     from freecad_am.objects import user_machines
 
     return _lines(machine.known(user_machines.folders()))
@@ -26,7 +26,7 @@ def chosen(maker: str | None, reach: str | None, payload: str | None, post: str 
     reach, payload and posts of its file. `reach` is a length and `payload` a mass as users write
     them; raises InputError for others.
     """
-    paths.require_freecad()
+    require_freecad()
     from freecad_am.core.kinematics.machines import catalogue as machine_catalogue
     from freecad_am.core.parameters import field
     from freecad_am.objects import user_machines
@@ -75,7 +75,7 @@ def export_text(name: str, form: str) -> str:
     in mm and degrees, one line per row, between the base pose and the tool pose (x y z and roll
     pitch yaw as in URDF).
     """
-    paths.require_freecad()
+    require_freecad()
     from freecad_am.objects import user_machines
 
     machine_loaded = machine.load(name, user_machines.folders())

@@ -11,8 +11,8 @@ from typing import Any
 
 from ..core.issues import InfeasibleError, InputError, Issue, Text, Word
 from ..report import inspection_page
-from . import paths
-from .outputs import folder as outputs
+from . import output_folder as outputs
+from .host import require_freecad
 
 _PROGRAMS, _PATHS = ("program",), ("joint path", "toolpath", "program")
 
@@ -34,7 +34,7 @@ def export(
         raise InputError(
             "UNSUPPORTED_FILE", label, "programs are in FreeCAD documents; give a .FCStd file"
         )
-    paths.require_freecad()
+    require_freecad()
     import FreeCAD
 
     from ..objects.shapes import linked_files
@@ -184,7 +184,7 @@ def inspect(
     and InfeasibleError; then nothing is written.
     """
     values = _values(settings)
-    paths.require_freecad()
+    require_freecad()
     import FreeCAD
 
     stem = os.path.splitext(os.path.basename(source))[0]

@@ -15,10 +15,10 @@ from ..core.issues import ERROR, NOTE, InputError, Issue, Text, Word, has_errors
 from ..core.one_thread import one_thread
 from ..core.placement.place import Placed, outer, ranked
 from ..report.template import fill_page
-from . import paths
+from . import output_folder as outputs
+from .host import require_freecad
 from .job.features import in_words_of_job
 from .job.job import SECTIONS, Job
-from .outputs import folder as outputs
 
 # ---- place.html: poses as maps, height by height, and the best ones as a table; one file without
 # scripts or links
@@ -173,7 +173,7 @@ def place(job: Job, folder: str | None, session: Any) -> Result:
         raise InputError(
             "NO_CELL", "cell", "the job has no cell to place the part in; add the section `cell`"
         )
-    paths.require_freecad()
+    require_freecad()
     import FreeCAD
 
     from . import run

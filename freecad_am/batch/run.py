@@ -13,11 +13,11 @@ from typing import Any
 
 from ..core.issues import ERROR, NOTE, InfeasibleError, InputError, Issue, Text, has_errors
 from ..core.one_thread import one_thread
-from . import paths
+from . import output_folder as outputs
+from .host import require_freecad
 from .job import document as job_document
 from .job.features import UPRIGHT, JobFeature, in_words_of_job, leans
 from .job.job import SECTIONS, Job
-from .outputs import folder as outputs
 
 Plan = Callable[
     [Job, str], Any
@@ -165,7 +165,7 @@ def default_folder(job: Job) -> str:
 
 def import_all() -> None:
     """Import what a run needs, for a process that starts others."""
-    paths.require_freecad()
+    require_freecad()
     from freecad_am import api  # noqa: F401
     from freecad_am.report import made  # noqa: F401
 
@@ -177,7 +177,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
     Raises InputError; then nothing is written. An infeasible job has a result, but no programs.
     """
     started = time.perf_counter()
-    paths.require_freecad()
+    require_freecad()
     import FreeCAD
 
     with named_by_keys(job):

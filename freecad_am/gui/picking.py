@@ -11,7 +11,7 @@ import FreeCADGui as Gui
 
 from ..brep.walls.patch_wall import stand
 from ..objects.job_group import is_group
-from ..objects.shapes import meshes, nested
+from ..objects.shapes import bodies, nested
 from ..objects.shapes.bodies import global_shape
 from ..objects.shapes.containers import links_to_nothing
 from ..objects.stage import stage_of
@@ -73,7 +73,7 @@ def usable(obj: Any) -> bool:
 
 def is_mesh(obj: Any) -> bool:
     """Whether an object is a mesh, which has no faces to deposit."""
-    return meshes.is_mesh(obj)
+    return bodies.is_mesh(obj)
 
 
 def pick_of_faces(pick: Pick) -> Pick:

@@ -14,7 +14,7 @@ from .. import api
 from ..objects.results.findings import reason_of
 from ..objects.shapes.places import ArrayElement
 from ..objects.staleness import FAILED, INFEASIBLE
-from .background.busy import busy
+from .busy import busy
 from .in_language import tr, translated
 
 IMPORT = "import freecad_am.api as am"

@@ -96,7 +96,7 @@ def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
     --------
     >>> am.export_wires(doc.JointPath, "path.step", rapids=True)
     """
-    from ..interop import export as interop
+    from .. import interop
 
     path = checked_target(path, "path")
     checked_stage(obj)
@@ -127,7 +127,7 @@ def export_cell(cell: Any, path: str) -> str:
     --------
     >>> am.export_cell(doc.Cell, "my-cell.yaml")
     """
-    from ..interop import export as interop
+    from .. import interop
 
     path = checked_target(path, "path")
     checked_stage(cell)
@@ -158,7 +158,7 @@ def export_waypoints(obj: Any, path: str) -> str:
     --------
     >>> am.export_waypoints(doc.JointPath, "waypoints.csv")
     """
-    from ..interop import export as interop
+    from .. import interop
 
     path = checked_target(path, "path")
     checked_stage(obj)
@@ -190,7 +190,7 @@ def export_report(obj: Any, path: str) -> str:
     --------
     >>> am.export_report(doc.Program, "report.html")
     """
-    from ..interop import export as interop
+    from .. import interop
     from ..report.of_document import reported
 
     path = checked_target(path, "path")
@@ -221,7 +221,7 @@ def make_cam_path(obj: Any) -> Any:
     --------
     >>> am.make_cam_path(doc.JointPath)
     """
-    from ..interop import export as interop
+    from .. import interop
 
     checked_stage(obj)
     with one_step(obj.Document, "CAM path"):
@@ -255,7 +255,7 @@ def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> A
     --------
     >>> am.make_trajectory(doc.JointPath, tolerance=0.5)
     """
-    from ..interop import export as interop
+    from .. import interop
 
     checked_stage(obj)
     tolerance, turn = checked_number(tolerance, "tolerance"), checked_number(turn, "turn")

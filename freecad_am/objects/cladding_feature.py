@@ -14,7 +14,7 @@ from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters
 from ..core.strategies import size
-from .checks.on_substrate import gap_issues
+from .checks.deposit import gap_issues
 from .results.fingerprints import fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, snapshot_of
 from .shapes.chosen import FeatureStage, source_of

@@ -10,7 +10,7 @@ from ..core.geometry.curves.bead_curves import Curves
 from ..core.issues import InputError, Issue
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import CurvesParameters
-from .checks.on_substrate import gap_issues
+from .checks.deposit import gap_issues
 from .results.fingerprints import fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, snapshot_of
 from .shapes.chosen import FeatureStage, names_of

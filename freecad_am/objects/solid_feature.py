@@ -15,11 +15,10 @@ from ..core.layers.stacking import prepare_stack
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import SolidParameters
 from ..core.strategies import size
-from .checks.on_substrate import gap_issues
+from .checks.deposit import gap_issues
 from .results.fingerprints import fingerprint, shape_fingerprint
-from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, snapshot_of
+from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, is_mesh, snapshot_of
 from .shapes.chosen import FeatureStage, names_of, source_of
-from .shapes.meshes import is_mesh
 from .stage_parts import Link, Outcome, Section, Work
 
 

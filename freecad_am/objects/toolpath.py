@@ -19,12 +19,11 @@ from ..core.process import wire
 from ..core.process.deposit import balance as deposit_balance
 from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ..core.toolpath import Toolpath as CoreToolpath
-from .checks.on_its_part import check_on_part
+from .checks.deposit import check_on_part
 from .families.given import Given
 from .fields import rows
 from .planned.in_sequence import member, planned_in_sequence
-from .planned.toolpaths import planned, seen_of
-from .planned.upright import in_planes, try_remedy
+from .planned.toolpaths import in_planes, planned, seen_of, try_remedy
 from .results import fingerprints
 from .shapes.bodies import snapshot_of
 from .stage import Stage, stage_of

@@ -14,8 +14,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.ticker import MaxNLocator, ScalarFormatter
 
 from ..core.types import Array, Index
-from .chart import DOTS, MARKED, OUTLINE, STEP, Chart, Curve
-from .look import BAR, Look
+from .chart import BAR, DOTS, MARKED, OUTLINE, STEP, Chart, Curve, Look
 
 POINTS_KEPT = 4  # points to a column that are drawn as they are
 

@@ -16,8 +16,7 @@ from matplotlib.colors import ListedColormap, Normalize
 from matplotlib.figure import Figure
 
 from ..core.types import Array, Integers, Mask, NDArray
-from .chart import DOTS, Picture
-from .look import VARIABLES
+from .chart import DOTS, VARIABLES, Picture
 
 INCH = 100.0  # pixels
 MIN_SIZE = 700, 450  # px, room for the texts around the map
@@ -121,7 +120,7 @@ def image(figure: Figure, kind: str) -> bytes:
 
 
 def inline(figure: Figure, title: str) -> str:
-    """An SVG element to stand in a page that has the variables of `look.VARIABLES`; drawn in the look PAGE."""
+    """An SVG element to stand in a page that has the variables of `VARIABLES`; drawn in the look PAGE."""
     text = image(figure, "svg").decode()
     text = text[text.index("<svg") :]
     text = re.sub(

@@ -15,8 +15,7 @@ from ..core.layers.guide_field import between
 from ..core.process.bead_model import MINUTE
 from ..core.toolpath import Layer, Toolpath
 from ..core.types import Array
-from ..plots.chart import OUTLINE, Chart, Curve, Quantity
-from ..plots.look import shade
+from ..plots.chart import OUTLINE, Chart, Curve, Quantity, shade
 from .pictures import TALLEST
 
 FRAME_WIDTH, MARGINS = 380.0, 61.0  # px: width of the frame, and of the margins above and below

@@ -11,10 +11,9 @@ from types import ModuleType
 
 import numpy as np
 
-from ..plots import deviation, joints
-from ..plots.chart import Chart, convert_chart, fit, together
-from ..plots.joints import Rows, rows
-from ..plots.look import PAGE
+from ..plots import deviation, pictures
+from ..plots.chart import PAGE, Chart, convert_chart, fit, together
+from ..plots.pictures import Rows, rows
 from ..plots.source import Source
 from . import units
 from .of_feature import OfFeature
@@ -87,19 +86,19 @@ class Pictures:
 
     def angles(self) -> list[str]:
         """Each axis against its limits."""
-        return self._half(joints.angles(self.source, self.rows), travel=False)
+        return self._half(pictures.angles(self.source, self.rows), travel=False)
 
     def rates(self) -> list[str]:
         """Joint speeds as shares of the limits; accelerations and jerks, all axes in one; the condition."""
         accelerations = together(
-            "Joint accelerations while depositing", joints.accelerations(self.source, self.rows)
+            "Joint accelerations while depositing", pictures.accelerations(self.source, self.rows)
         )
-        jerks = together("Joint jerks while depositing", joints.jerks(self.source, self.rows))
+        jerks = together("Joint jerks while depositing", pictures.jerks(self.source, self.rows))
         charts = (
-            *joints.shares(self.source, self.rows),
+            *pictures.shares(self.source, self.rows),
             accelerations,
             jerks,
-            *joints.condition(self.source, self.rows),
+            *pictures.condition(self.source, self.rows),
         )
         return draw_charts(charts, FULL_WIDTH)
 
@@ -107,7 +106,7 @@ class Pictures:
         """Distances between the layers of each feature, void and double deposit, speed along the path, deposit rate and mass."""
         source = self.source
         distances = [
-            joints.distances(
+            pictures.distances(
                 np.concatenate(feature.spacing),
                 feature.toolpath.layer_height,
                 feature.band,
@@ -119,16 +118,19 @@ class Pictures:
         return self._half(
             (
                 *distances,
-                *joints.infill(source, self.layers),
-                *joints.travel(source, self.rows),
-                *joints.deposit(source, self.rows),
+                *pictures.infill(source, self.layers),
+                *pictures.travel(source, self.rows),
+                *pictures.deposit(source, self.rows),
             )
         )
 
     def beads(self) -> list[str]:
         """What a bead model predicts, and its fit."""
         source = self.source
-        charts = (*joints.distributions(source, self.layers), *joints.heights(source, self.layers))
+        charts = (
+            *pictures.distributions(source, self.layers),
+            *pictures.heights(source, self.layers),
+        )
         if charts and source.model is not None:
             charts = (*charts, fit(*source.model, source.process.bead_width))
         return self._half(charts)

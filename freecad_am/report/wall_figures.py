@@ -12,8 +12,7 @@ from ..core.issues import Text
 from ..core.strategies.walls.comparison import METHODS, NORMAL, Compared
 from ..core.toolpath import Toolpath
 from ..core.types import Array
-from ..plots.chart import OUTLINE, Chart, Curve, Quantity
-from ..plots.look import shade
+from ..plots.chart import OUTLINE, Chart, Curve, Quantity, shade
 
 TITLES = {
     "iso-parameter": "Iso-parameter",

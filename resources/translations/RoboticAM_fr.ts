@@ -1402,7 +1402,7 @@
         <translation>(vide : aucune)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/on_bends.py"/>
+        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
         <source>(others are on the bend of {0}: as the substrate it shapes their layers)</source>
         <translation>(d&apos;autres sont sur la courbure de {0} : comme substrat il donne sa forme à leurs couches)</translation>
     </message>
@@ -1457,7 +1457,7 @@
         <translation>0, ou 1 si l&apos;articulation glisse selon z : une machine à cinq axes a trois articulations de ce type</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>1 face</source>
         <translation>1 face</translation>
     </message>
@@ -1477,12 +1477,12 @@
         <translation>1 rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>1 solid on {1} ({2})</source>
         <translation>1 solide sur {1} ({2})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>1 solid, {:.4g} mm high</source>
         <translation>1 solide, {:.4g} mm de haut</translation>
     </message>
@@ -1632,7 +1632,7 @@
         <translation>AO[] entre deux mouvements d&apos;un FANUC est réglé à la lecture de sa ligne, avant le mouvement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/revolution.py"/>
+        <location filename="../../freecad_am/gui/panels/revolution.py"/>
         <source>About {} turns along {:.4g} mm of wall</source>
         <translation>Environ {} tours le long de {:.4g} mm de paroi</translation>
     </message>
@@ -1652,7 +1652,7 @@
         <translation>Ajoutez une couche, ou prenez une surépaisseur plus petite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Additional folder of machine files, such as a shared one; your own are in {} as well</source>
         <translation>Un autre dossier de fichiers machine, comme un dossier partagé ; les vôtres sont aussi dans {}</translation>
     </message>
@@ -1782,7 +1782,7 @@
         <translation>Pas angulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>Another part that the nozzle must clear.</source>
         <translation>Une pièce supplémentaire que la buse évite.</translation>
     </message>
@@ -1992,12 +1992,12 @@
         <translation>Par défaut : {}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>CAM (Path)</source>
         <translation>CAM (Path)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>CAM path</source>
         <translation>trajectoire CAM</translation>
     </message>
@@ -2022,12 +2022,12 @@
         <translation>Appel</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/background/busy.py"/>
+        <location filename="../../freecad_am/gui/busy.py"/>
         <source>Cancel</source>
         <translation>Annuler</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/background/worker.py"/>
+        <location filename="../../freecad_am/gui/worker.py"/>
         <source>Cancelled.</source>
         <translation>Annulé.</translation>
     </message>
@@ -2157,7 +2157,7 @@
         <translation>Défaut de circularité à {0} mm, moindres carrés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>Cladding</source>
         <translation>Rechargement</translation>
     </message>
@@ -2197,7 +2197,7 @@
         <translation>Un clic montre le point d&apos;une ligne dans la trajectoire ; un clic sur la trajectoire marque sa ligne</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>Click edges of one object.</source>
         <translation>Cliquez sur des arêtes d&apos;un seul objet.</translation>
     </message>
@@ -2237,7 +2237,7 @@
         <translation>Ferme cette fenêtre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Colour of machines</source>
         <translation>Couleur des machines</translation>
     </message>
@@ -2247,7 +2247,7 @@
         <translation>Couleurs</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Colours of paths</source>
         <translation>Couleurs des trajectoires</translation>
     </message>
@@ -2382,7 +2382,7 @@
         <translation>Courbe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>Curves</source>
         <translation>Courbes</translation>
     </message>
@@ -2417,12 +2417,12 @@
         <translation>Polylignes en DXF</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Default folder for programs; empty for the last folder, or next to the document</source>
         <translation>Là où les programmes sont d&apos;abord écrits ; vide pour le dossier de la dernière fois, ou à côté du document</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Defaults and appearance of the window for new objects. Existing documents, jobs and macros do not depend on them.</source>
         <translation>Valeurs par défaut et apparence de la fenêtre pour les nouveaux objets. Les documents, travaux et macros existants n&apos;en dépendent pas.</translation>
     </message>
@@ -2507,7 +2507,7 @@
         <translation>Masse déposée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/joints.py"/>
+        <location filename="../../freecad_am/plots/pictures.py"/>
         <source>Deposited of the part: {0} %</source>
         <translation>Déposé de la pièce : {0} %</translation>
     </message>
@@ -2637,7 +2637,7 @@
         <translation>Distance entre couches voisines.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/joints.py"/>
+        <location filename="../../freecad_am/plots/pictures.py"/>
         <source>Distance to the layer before (asked: {0} mm)</source>
         <translation>Distance à la couche précédente (demandée : {0} mm)</translation>
     </message>
@@ -2702,12 +2702,12 @@
         <translation>Arêtes de la paroi où commencent les couches, au lieu de là où elle quitte le substrat.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Edges, wire or sketch as a guide; layers are normal to it; none: the centre line of the solid.</source>
         <translation>Arêtes, fil ou esquisse comme guide ; les couches lui sont normales ; aucun : la ligne médiane du solide.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>Edges, wire, sketch or table of points to deposit as beads.</source>
         <translation>Arêtes, fil, esquisse ou tableau de points à déposer en cordons.</translation>
     </message>
@@ -2812,12 +2812,12 @@
         <translation>Lequel des axes externes de la commande est e1 ; les autres suivent : eax_a, E1 sont 1.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>Faces</source>
         <translation>Faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>Faces of the same object under the curves, whose normals set the tool directions; none: the directions in the table, or the direction below.</source>
         <translation>Faces du même objet sous les courbes, dont les normales donnent les directions de l&apos;outil ; aucune : les directions du tableau, ou la direction ci-dessous.</translation>
     </message>
@@ -2837,12 +2837,12 @@
         <translation>Faces qui sont recouvertes.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Faces that overhang by more than this angle are red in the 3D view</source>
         <translation>Les faces qui surplombent le vide de plus que cet angle sont rouges dans la vue 3D</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>Faces to cover; if none is selected and the object is not a solid, all its faces.</source>
         <translation>Faces à couvrir ; si aucune n&apos;est choisie et que l&apos;objet n&apos;est pas un solide, toutes ses faces.</translation>
     </message>
@@ -2862,7 +2862,7 @@
         <translation>Vitesse d&apos;avance la plus rapide pour le matériau ; les cordons plus rapides sont signalés.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/revolution.py"/>
+        <location filename="../../freecad_am/gui/panels/revolution.py"/>
         <source>Feature</source>
         <translation>Élément</translation>
     </message>
@@ -2957,7 +2957,7 @@
         <translation>Première couche à déposer.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>First layer: {}</source>
         <translation>Première couche : {}</translation>
     </message>
@@ -3012,7 +3012,7 @@
         <translation>Machines à cinq axes seulement : l&apos;axe rotatif à bloquer, compté depuis la torche (quatre axes).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>Fixtures</source>
         <translation>Montages</translation>
     </message>
@@ -3022,12 +3022,12 @@
         <translation>Bride</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Folders</source>
         <translation>Dossiers</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>For paths, from the smallest to the largest value</source>
         <translation>Pour les trajectoires, de la plus petite à la plus grande valeur</translation>
     </message>
@@ -3037,12 +3037,12 @@
         <translation>Pour les angles en série : chaque axe par rapport au corps précédent. Axes rotatifs en deg, deg/s, deg/s² et deg/s³, axes linéaires en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe continu ; laissez vides les vitesses, accélérations et jerks inconnus.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>For speeds in fields and read-outs; typed values may use any unit</source>
         <translation>Pour les vitesses dans les champs et affichages ; les valeurs tapées peuvent avoir une autre unité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>For walls only: solids on a hub grow along the normals of its surface</source>
         <translation>Des parois seulement : les solides sur moyeu croissent le long des normales de sa surface</translation>
     </message>
@@ -3097,7 +3097,7 @@
         <translation>FreeCAD l&apos;a omis du recalcul ; dégelez-le s&apos;il est gelé (Basculer le gel dans l&apos;arborescence), puis recalculez</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>FreeCAD wrote no STEP file; see the report view, or use DXF instead</source>
         <translation>FreeCAD n&apos;a pas écrit de fichier STEP ; voyez la vue rapport, ou écrivez DXF</translation>
     </message>
@@ -3142,7 +3142,7 @@
         <translation>Autres méthodes planifiées pour la comparaison du rapport.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>Further part</source>
         <translation>Pièce supplémentaire</translation>
     </message>
@@ -3202,7 +3202,7 @@
         <translation>Gaz</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>General</source>
         <translation>Général</translation>
     </message>
@@ -3247,7 +3247,7 @@
         <translation>Croît sur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Guide</source>
         <translation>Guide</translation>
     </message>
@@ -3317,7 +3317,7 @@
         <translation>Largeur pour laquelle comptent au remplissage les cordons de solides sur moyeu : la distance des cordons, ou la largeur de cordon ; auto : la largeur de cordon si elle est donnée, tenue par un modèle de cordon, ou si un recouvrement compte avec elle.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Hub</source>
         <translation>Moyeu</translation>
     </message>
@@ -3687,7 +3687,7 @@
         <translation>Couches, trajectoires articulaires et programmes vérifiés pour les robots qui déposent de la matière</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/revolution.py"/>
+        <location filename="../../freecad_am/gui/panels/revolution.py"/>
         <source>Layers: {}, along {:.4g} mm of wall</source>
         <translation>Couches : {}, le long de {:.4g} mm de paroi</translation>
     </message>
@@ -3912,7 +3912,7 @@
         <translation>Aspect</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Looks</source>
         <translation>Aspect</translation>
     </message>
@@ -3952,7 +3952,7 @@
         <translation>Machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Machine files</source>
         <translation>Fichiers machine</translation>
     </message>
@@ -4262,7 +4262,7 @@
         <translation>Nouveau travail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>New jobs and cells</source>
         <translation>Nouveaux travaux et cellules</translation>
     </message>
@@ -4572,12 +4572,12 @@
         <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Overhang &gt; {}°</source>
         <translation>Surplomb &gt; {}°</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Overhang &gt; {}°: {:.4g} cm² ({:.0f} %)</source>
         <translation>Surplomb &gt; {}° : {:.4g} cm² ({:.0f} %)</translation>
     </message>
@@ -4627,12 +4627,12 @@
         <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>Part below the curves; not needed on a platform.</source>
         <translation>Pièce sous les courbes ; inutile sur un plateau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Part below the solids; not needed on a platform.</source>
         <translation>Pièce sous les solides ; inutile sur un plateau.</translation>
     </message>
@@ -4857,7 +4857,7 @@
         <translation>Le positionneur et la voie restent à l’écart de la buse, de la torche, du robot et des obstacles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Post</source>
         <translation>Post-processeur</translation>
     </message>
@@ -4927,7 +4927,7 @@
         <translation>Procédé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Process of new toolpaths</source>
         <translation>Procédé des nouvelles trajectoires d&apos;outil</translation>
     </message>
@@ -4937,7 +4937,7 @@
         <translation>Programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Programs</source>
         <translation>Programmes</translation>
     </message>
@@ -5182,12 +5182,12 @@
         <translation>Trajectoire Robot ici</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/background/busy.py"/>
+        <location filename="../../freecad_am/gui/busy.py"/>
         <source>Robotic AM</source>
         <translation>Robotic AM</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Robotic AM, preferences: {}</source>
         <translation>Robotic AM, préférences : {}</translation>
     </message>
@@ -5352,7 +5352,7 @@
         <translation>Cherche des positions de la pièce, de son positionneur ou du point de dépôt, et montre l&apos;espace de travail du robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/joints.py"/>
+        <location filename="../../freecad_am/plots/pictures.py"/>
         <source>Section of layer {0}</source>
         <translation>Section de la couche {0}</translation>
     </message>
@@ -5547,7 +5547,7 @@
         <translation>Simuler…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/tool.py"/>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>Simulation</source>
         <translation>Simulation</translation>
     </message>
@@ -5602,7 +5602,7 @@
         <translation>Couches pleines</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Solids</source>
         <translation>Solides</translation>
     </message>
@@ -5622,12 +5622,12 @@
         <translation>Solides sur un moyeu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Solids on hub</source>
         <translation>Solides sur moyeu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Solids or closed meshes to deposit, one after the other; click one again to remove it.</source>
         <translation>Les solides ou maillages fermés à déposer, l&apos;un après l&apos;autre ; un nouveau clic sur l&apos;un le retire.</translation>
     </message>
@@ -5782,7 +5782,7 @@
         <translation>Faces de départ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Start faces of geodesic and offset layers; none: the base of the solid.</source>
         <translation>Faces de départ des couches geodesic et offset ; aucune : la base du solide.</translation>
     </message>
@@ -5807,7 +5807,7 @@
         <translation>Débuts et fins des cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Starts on</source>
         <translation>Commence sur</translation>
     </message>
@@ -5842,12 +5842,12 @@
         <translation>Entre deux valeurs de x, y ou z.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/background/busy.py"/>
+        <location filename="../../freecad_am/gui/busy.py"/>
         <source>Stops the computation; the document stays unchanged</source>
         <translation>Arrête le calcul ; le document reste tel qu&apos;il était avant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>Substrate</source>
         <translation>Substrat</translation>
     </message>
@@ -5937,7 +5937,7 @@
         <translation>Le repère monde de la commande est la base du robot, et les vitesses articulaires sont les nominales</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>The cylinder or cone of the hub, or the whole hub: then the surface under each solid is detected.</source>
         <translation>Le cylindre ou le cône du moyeu sur lequel croître, ou le moyeu entier : alors sa surface est trouvée sous chaque solide.</translation>
     </message>
@@ -6342,7 +6342,7 @@
         <translation>{} est pris en entier. Pour des faces seules, cliquez-en plusieurs avec Ctrl ; pour une seule, utilisez le panneau d’Élément ou de Paroi sur pièce.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>The whole of {} is used; Pick selects single faces, click by click.</source>
         <translation>{} est pris en entier ; Choisir prend des faces seules, clic par clic.</translation>
     </message>
@@ -6372,17 +6372,17 @@
         <translation>Il n&apos;y a pas de vue 3D où montrer des endroits ; ouvrez-en une.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/tool.py"/>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>There is no 3D view to simulate in; open one.</source>
         <translation>Il n&apos;y a pas de vue 3D où simuler ; ouvrez-en une.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/tool.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
         <source>There is no joint path to map; make one first.</source>
         <translation>Il n&apos;y a pas de trajectoire articulaire à cartographier ; faites-en d&apos;abord une.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/tool.py"/>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>There is no joint path to simulate; make one first.</source>
         <translation>Il n&apos;y a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une.</translation>
     </message>
@@ -6692,7 +6692,7 @@
         <translation>Unité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>Unit of speeds</source>
         <translation>Unité des vitesses</translation>
     </message>
@@ -6777,12 +6777,12 @@
         <translation>Axe vertical</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/catalogue.py"/>
+        <location filename="../../freecad_am/plots/pictures.py"/>
         <source>Void and double deposit</source>
         <translation>Vides et double dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/joints.py"/>
+        <location filename="../../freecad_am/plots/pictures.py"/>
         <source>Void and double deposit by layer</source>
         <translation>Vides et double dépôt par couche</translation>
     </message>
@@ -6832,7 +6832,7 @@
         <translation>Attentes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>Wall</source>
         <translation>Paroi</translation>
     </message>
@@ -6847,7 +6847,7 @@
         <translation>Paroi sur une pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>Wall on part</source>
         <translation>Paroi sur pièce</translation>
     </message>
@@ -7502,7 +7502,7 @@
         <translation>une rotation par longueur comme 10 deg/mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>a value is not a plain number</source>
         <translation>une valeur n&apos;est pas un nombre simple</translation>
     </message>
@@ -7822,7 +7822,7 @@
         <translation>autour de l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>as FreeCAD shows speeds</source>
         <translation>comme FreeCAD affiche les vitesses</translation>
     </message>
@@ -8177,7 +8177,7 @@
         <translation>des blocs qui disent un temps sont comprimés en un seul, qui prendrait le temps du dernier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>blue to yellow</source>
         <translation>bleu à jaune</translation>
     </message>
@@ -8272,7 +8272,7 @@
         <translation>cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>cells are written as .yaml; use the extension .yaml</source>
         <translation>les cellules sont écrites en .yaml ; terminez le nom ainsi</translation>
     </message>
@@ -8287,7 +8287,7 @@
         <translation>contrôle du programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/checks/on_its_part.py"/>
+        <location filename="../../freecad_am/objects/checks/deposit.py"/>
         <source>checking whether the deposit is on the part</source>
         <translation>vérification que le dépôt est sur la pièce</translation>
     </message>
@@ -8362,7 +8362,7 @@
         <translation>fermé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>closed, {:.1f} mm</source>
         <translation>fermée, {:.1f} mm</translation>
     </message>
@@ -8412,7 +8412,7 @@
         <translation>condition {:.4f}, minimum {:.4f}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>cone, R {:.4g} mm, half angle {:.4g}°</source>
         <translation>cône, R {:.4g} mm, demi-angle {:.4g}°</translation>
     </message>
@@ -8512,7 +8512,7 @@
         <translation>découpe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>cylinder, R {:.4g} mm</source>
         <translation>cylindre, R {:.4g} mm</translation>
     </message>
@@ -8622,7 +8622,7 @@
         <translation>distance de {0} endroits des cordons à la forme elle-même, moins ce dont un scan a déplacé leurs couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/joints.py"/>
+        <location filename="../../freecad_am/plots/pictures.py"/>
         <source>double deposit</source>
         <translation>double dépôt</translation>
     </message>
@@ -8802,17 +8802,17 @@
         <translation>première couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>first layer: 1 contour</source>
         <translation>première couche : 1 contour</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>first layer: {} contours</source>
         <translation>première couche : {} contours</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>first layer: {} contours, {:.1f} mm</source>
         <translation>première couche : {} contours, {:.1f} mm</translation>
     </message>
@@ -8877,7 +8877,7 @@
         <translation>à partir de la couche {0}, max_tilt tient les directions à {1} deg au plus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>from the controller of the machine</source>
         <translation>ce que lit la commande de la machine</translation>
     </message>
@@ -8977,7 +8977,7 @@
         <translation>passage de point en point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>grey</source>
         <translation>gris</translation>
     </message>
@@ -9227,7 +9227,7 @@
         <translation>il ne construit aucun triangle{0} ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/meshes.py"/>
+        <location filename="../../freecad_am/objects/shapes/bodies.py"/>
         <source>it contains shapes and meshes, which cannot be used together; choose its objects one by one</source>
         <translation>il contient des formes et des maillages, et une seule sorte est utilisable à la fois ; choisissez ses objets un par un</translation>
     </message>
@@ -9237,12 +9237,12 @@
         <translation>il croise l&apos;axe de {0} mm ; gardez-le d&apos;un seul côté</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>it declares a document type, which no controller writes</source>
         <translation>il déclare un type de document, ce qu&apos;aucune commande n&apos;écrit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>it does not contain the code of a program {0}</source>
         <translation>il ne contient pas le code d&apos;un programme {0}</translation>
     </message>
@@ -9422,7 +9422,7 @@
         <translation>il n&apos;a pas de faces ; choisissez une pièce avec les faces de la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>it has no path; choose a toolpath, joint path or program</source>
         <translation>il n&apos;a pas de trajectoire ; choisissez une trajectoire d&apos;outil, une trajectoire articulaire ou un programme</translation>
     </message>
@@ -9712,7 +9712,7 @@
         <translation>ce n&apos;est pas un programme qui finit par M2</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>it is not a project in millimetres</source>
         <translation>ce n&apos;est pas un projet en millimètres</translation>
     </message>
@@ -9787,7 +9787,7 @@
         <translation>il n&apos;est pas dit de quels axes l&apos;avance est la vitesse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>it is not text in UTF-8</source>
         <translation>ce n&apos;est pas un texte en UTF-8</translation>
     </message>
@@ -9797,7 +9797,7 @@
         <translation>ce n&apos;est pas du texte ; donnez un tableau de points en CSV</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>it is not well-formed XML ({0})</source>
         <translation>ce n&apos;est pas du XML bien formé ({0})</translation>
     </message>
@@ -10022,7 +10022,7 @@
         <translation>sa forme explicite s&apos;écarte de {0} mm et {1} (termes de la rotation)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>its code does not run from begin to end</source>
         <translation>son code ne va pas de begin à end</translation>
     </message>
@@ -10107,7 +10107,7 @@
         <translation>son job s&apos;appelle {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>its joint path was deleted; choose a joint path</source>
         <translation>sa trajectoire articulaire a disparu ; choisissez-en une</translation>
     </message>
@@ -10452,7 +10452,7 @@
         <translation>parcourus aussi vite que les axes peuvent suivre, les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/look.py"/>
+        <location filename="../../freecad_am/plots/chart.py"/>
         <source>limits up to {0} {1}</source>
         <translation>limite {0} {1}</translation>
     </message>
@@ -10462,7 +10462,7 @@
         <translation>limite {} {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/look.py"/>
+        <location filename="../../freecad_am/plots/chart.py"/>
         <source>limits {0} to {1} {2}</source>
         <translation>limites {0} à {1} {2}</translation>
     </message>
@@ -10647,12 +10647,12 @@
         <translation>il n&apos;y a pas de fichier machine {0} ; vérifiez le chemin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>make a CAM path</source>
         <translation>faites une trajectoire CAM</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>making the report</source>
         <translation>établissement du rapport</translation>
     </message>
@@ -11257,7 +11257,7 @@
         <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/catalogue.py"/>
+        <location filename="../../freecad_am/plots/pictures.py"/>
         <source>only solids in planar layers are measured for void and double deposit</source>
         <translation>les vides et le double dépôt ne se mesurent que sur des solides en couches planes</translation>
     </message>
@@ -11297,7 +11297,7 @@
         <translation>ouvert</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>open, {:.1f} mm</source>
         <translation>ouverte, {:.1f} mm</translation>
     </message>
@@ -11672,7 +11672,7 @@
         <translation>réparez le maillage (Mesh, Analyser)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>reports are written as .html; use the extension .html</source>
         <translation>les rapports sont écrits en .html ; terminez le nom ainsi</translation>
     </message>
@@ -11737,7 +11737,7 @@
         <translation>couture déplacée pour un axe limité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/upright.py"/>
+        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
         <source>searching for a change that clears the nozzle: {0}</source>
         <translation>recherche d&apos;un changement qui dégage la buse : {0}</translation>
     </message>
@@ -11877,7 +11877,7 @@
         <translation>part des points</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/joints.py"/>
+        <location filename="../../freecad_am/plots/pictures.py"/>
         <source>share of the section</source>
         <translation>part de la section</translation>
     </message>
@@ -12547,7 +12547,7 @@
         <translation>le fichier dépasse {0} Mo, le maximum qui est lu ; vérifiez que c&apos;est le bon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>the file is missing</source>
         <translation>le fichier manque</translation>
     </message>
@@ -12612,12 +12612,12 @@
         <translation>l&apos;origine de la bride n&apos;est pas sur l&apos;axe 6</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>the folder {0} does not exist; create it, or choose another</source>
         <translation>il n&apos;y a pas de dossier {0} ; créez-le, ou choisissez-en un autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>the folder {} does not exist</source>
         <translation>il n&apos;y a pas de dossier {}</translation>
     </message>
@@ -13002,7 +13002,7 @@
         <translation>la buse dépose à {0} points sous le plateau, ici de {1} mm ; corrigez leurs hauteurs, ou le plateau de la cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/upright.py"/>
+        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
         <source>the nozzle is not clear with {0} either (tested)</source>
         <translation>la buse n&apos;est pas dégagée avec {0} non plus, ce qui a été essayé</translation>
     </message>
@@ -13732,7 +13732,7 @@
         <translation>la valeur de {0} n&apos;est pas comprise</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>the values of {0} do not run from 0 to its size, each once</source>
         <translation>les valeurs de {0} ne sont pas celles de 0 à sa taille, chacune une fois</translation>
     </message>
@@ -13902,7 +13902,7 @@
         <translation>le poignet n&apos;est pas sphérique : l&apos;axe {0} passe à {1} mm du point où les axes 5 et 6 se rencontrent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/files.py"/>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>there are files that belong to no project, or to two</source>
         <translation>il y a des fichiers qui n&apos;appartiennent à aucun projet, ou à deux</translation>
     </message>
@@ -13977,12 +13977,12 @@
         <translation>theta, d, a et alpha doivent être des nombres ; donnez les quatre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>this FreeCAD has no {0} workbench; install it or {1} instead</source>
         <translation>ce FreeCAD n&apos;a pas d&apos;atelier {0} ; installez-le, ou {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/lines.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>this FreeCAD lacks the module Import; use DXF instead</source>
         <translation>ce FreeCAD n&apos;a pas de module Import ; écrivez DXF</translation>
     </message>
@@ -14317,7 +14317,7 @@
         <translation>v en mm/min ; R² {:.4f}, RMSE {:.3f} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/preferences/page.py"/>
+        <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>violet to orange</source>
         <translation>violet à orange</translation>
     </message>
@@ -14392,7 +14392,7 @@
         <translation>parcours</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>waypoints are written as .csv; use this extension</source>
         <translation>les points sont écrits en .csv ; terminez le nom ainsi</translation>
     </message>
@@ -14442,7 +14442,7 @@
         <translation>le dévidage {0} m/min n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>wires are written as .step or .dxf; use one of these extensions</source>
         <translation>les fils sont écrits en .step ou .dxf ; terminez le nom par l&apos;un d&apos;eux</translation>
     </message>
@@ -14487,7 +14487,7 @@
         <translation>avec {0} la buse est dégagée, ce qui a été essayé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/upright.py"/>
+        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
         <source>with {0} the nozzle is clear; the toolpath was planned with it, the joint path was not</source>
         <translation>avec {0} la buse est dégagée ; la trajectoire d&apos;outil a été planifiée ainsi, les articulations non</translation>
     </message>
@@ -14517,7 +14517,7 @@
         <translation>le décalage d&apos;origine {0} n&apos;est pas disponible pour la pièce ; utilisez 1 à {1} (G54 à G59.2 ; le neuvième, {2}, est mis à zéro pour les mouvements des axes)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>write STEP or DXF</source>
         <translation>écrivez STEP ou DXF</translation>
     </message>
@@ -14887,7 +14887,7 @@
         <translation>{0} n&apos;a pas de mot {1} ; donnez {2} ou corrigez la ligne</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/checks/on_substrate.py"/>
+        <location filename="../../freecad_am/objects/checks/deposit.py"/>
         <source>{0} does not touch its substrate {1}: the smallest gap is {2} mm, at ({3}, {4}, {5}); move it onto the substrate, or remove the substrate</source>
         <translation>{0} ne touche pas son substrat {1} : il en est à {2} mm en ({3}, {4}, {5}), au plus près ; posez-le sur le substrat ou retirez le substrat</translation>
     </message>
@@ -15857,7 +15857,7 @@
         <translation>{0} n&apos;est pas la position {1} de {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>{0} is not positive; give a larger value</source>
         <translation>{0} n&apos;est pas supérieur à 0 ; donnez plus</translation>
     </message>
@@ -16552,7 +16552,7 @@
         <translation>{0} solide(s) se trouvent entre les coupes de deux couches, distantes de {1} mm, et ne reçoivent aucun cordon, {2} cm3 en tout : {3}{4} ; réglez strategy.layer_height à leur hauteur au plus, ou fusionnez-les avec le solide voisin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>{0} solids on {1} ({2})</source>
         <translation>{0} solides sur {1} ({2})</translation>
     </message>
@@ -16807,7 +16807,7 @@
         <translation>{0} : controller.matrix</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/joints.py"/>
+        <location filename="../../freecad_am/plots/pictures.py"/>
         <source>{0}: distance to the layer before (asked: {1} mm)</source>
         <translation>{0} : distance à la couche précédente (demandée : {1} mm)</translation>
     </message>
@@ -17007,7 +17007,7 @@
         <translation>{0} : {1} ; prenez une autre manière, ou un autre contrôleur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/interop/export.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>{0}; choose a writable file</source>
         <translation>{0} ; choisissez un fichier que vous pouvez écrire</translation>
     </message>
@@ -17102,12 +17102,12 @@
         <translation>long de {:.1f} mm en {:.1f} s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>{:.4g} cm² in 1 layer</source>
         <translation>{:.4g} cm² en 1 couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>{:.4g} cm² in each of {} layers</source>
         <translation>{:.4g} cm² par couche, en {} couches</translation>
     </message>
@@ -17242,7 +17242,7 @@
         <translation>{} appartient à un travail ; sélectionnez la pièce elle-même.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>{} cannot be used here.</source>
         <translation>{} ne convient pas ici.</translation>
     </message>
@@ -17252,7 +17252,7 @@
         <translation>{} ne peut pas être écrit : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/curves.py"/>
+        <location filename="../../freecad_am/gui/panels/curves.py"/>
         <source>{} curves, {:.4g} mm in all</source>
         <translation>{} courbes, {:.4g} mm en tout</translation>
     </message>
@@ -17267,12 +17267,12 @@
         <translation>{0} dépassent une limite seulement parce qu&apos;un axe n&apos;a plus de tours le long de son cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>{} faces in 1 sheet</source>
         <translation>{} faces en 1 nappe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/cladding.py"/>
+        <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>{} faces in {} sheets</source>
         <translation>{} faces en {} nappes</translation>
     </message>
@@ -17292,12 +17292,12 @@
         <translation>{} a changé ; calculez de nouveau.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/tool.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
         <source>{} has no joint path to map; make one first, or select another job.</source>
         <translation>{} n&apos;a pas de trajectoire articulaire pour une carte ; faites-en d&apos;abord une, ou sélectionnez un autre travail.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/tool.py"/>
+        <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>{} has no joint path to simulate; make one first, or select another job.</source>
         <translation>{} n&apos;a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une, ou sélectionnez un autre travail.</translation>
     </message>
@@ -17327,17 +17327,17 @@
         <translation>{} est un maillage, qui n&apos;a pas de faces exactes ; sélectionnez une pièce, par exemple d&apos;un fichier STEP.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/hub.py"/>
+        <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>{} is another object; the hub faces must belong to one object. Clear it first to start again.</source>
         <translation>{} est un autre objet ; les faces d&apos;un moyeu sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/wall.py"/>
+        <location filename="../../freecad_am/gui/panels/wall.py"/>
         <source>{} is another object; the wall faces must belong to one object. Clear it first to start again.</source>
         <translation>{} est un autre objet ; les faces d&apos;une paroi sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/background/busy.py"/>
+        <location filename="../../freecad_am/gui/busy.py"/>
         <source>{} is being computed</source>
         <translation>{} est en cours de calcul</translation>
     </message>
@@ -17452,7 +17452,7 @@
         <translation>{} solides sont sélectionnés, qui sont remplis</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/features/solid.py"/>
+        <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>{} solids, {:.4g} mm high</source>
         <translation>{} solides, {:.4g} mm de haut</translation>
     </message>
@@ -17512,7 +17512,7 @@
         <translation>{} : signe inversé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/background/busy.py"/>
+        <location filename="../../freecad_am/gui/busy.py"/>
         <source>{}: {}</source>
         <translation>{} : {}</translation>
     </message>
@@ -17537,7 +17537,7 @@
         <translation>µm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/joints.py"/>
+        <location filename="../../freecad_am/plots/pictures.py"/>
         <source>σmin / σmax</source>
         <translation>σmin / σmax</translation>
     </message>

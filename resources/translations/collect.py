@@ -55,7 +55,7 @@ SPEAKING = (
     "objects",
     "brep",
     "posts",
-    "interop",
+    "interop.py",
     "plots",
     "report/of_document.py",
     "gui",

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import FreeCAD
 import pytest
 
-from freecad_am.batch.rows import rows
+from freecad_am.batch import rows
 
 SPHERE = "part.set.Ball.Radius"
 

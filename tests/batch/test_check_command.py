@@ -10,8 +10,8 @@ import re
 import numpy as np
 import pytest
 
+from freecad_am import interop
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.interop import export
 from freecad_am.read_back.selected import into_platform
 from tests.posts.planned_jobs import SETUPS, WAYS, written
 
@@ -27,7 +27,7 @@ def sound(workshop):
     for name, data in files.items():
         (folder / name).write_bytes(data)
     (workshop.folder / "cell.yaml").write_text(
-        export.cell_text(SETUPS[WAY[3]].cell, str(workshop.folder)), encoding="utf-8"
+        interop.cell_text(SETUPS[WAY[3]].cell, str(workshop.folder)), encoding="utf-8"
     )
     return folder, motion
 
@@ -161,7 +161,7 @@ def test_a_nozzle_that_deposits_below_the_platform_is_told(workshop, sound, dept
     thicker = float(motion.position[rows, 2].min()) + depth
     other = dataclasses.replace(cell, platform=cell.platform + thicker)
     (workshop.folder / "cell.yaml").write_text(
-        export.cell_text(other, str(workshop.folder)), encoding="utf-8"
+        interop.cell_text(other, str(workshop.folder)), encoding="utf-8"
     )
     done = run(workshop)
     assert done.err.count("error[INTO_PLATFORM]") == told, done.err

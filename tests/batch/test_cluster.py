@@ -22,8 +22,7 @@ import Mesh
 import Part
 import pytest
 
-from freecad_am.batch import freecad_am_row_worker, versions
-from freecad_am.batch.rows import rows, table
+from freecad_am.batch import freecad_am_row_worker, row_table, rows, versions
 from freecad_am.core.issues import InputError
 
 dask = pytest.mark.skipif(
@@ -245,7 +244,10 @@ def test_a_cluster_without_workers_or_with_one_that_cannot_plan(workshop, cluste
     from freecad_am.batch import cluster as module
 
     write_rows(workshop)
-    (_, found), session = table.read(str(workshop.folder / "rows.csv"), str(workshop.job)), Told()
+    (_, found), session = (
+        row_table.read(str(workshop.folder / "rows.csv"), str(workshop.job)),
+        Told(),
+    )
     assert len(found) == len(HEIGHTS)
     monkeypatch.setattr(module.Cluster, "_workers", lambda self: {})
     with pytest.raises(InputError, match="has no workers; start some with: dask worker tcp://"):
@@ -352,7 +354,7 @@ def test_files_travel_with_a_job(workshop, tmp_path):
     write_rows(workshop, (20,))
     assert workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "out").status == 0
     before = workshop.files("out/row-001")
-    _, (row,) = table.read(str(workshop.folder / "rows.csv"), str(workshop.job))
+    _, (row,) = row_table.read(str(workshop.folder / "rows.csv"), str(workshop.job))
     named = {
         str(Path(name).relative_to(workshop.folder)) for name in row.files if os.path.isfile(name)
     }
@@ -386,7 +388,7 @@ def test_what_a_lost_worker_leaves_removes_itself(workshop, tmp_path_factory):
     """The process of a row ends as its stdin does, with the folder of the batch."""
     folder = tmp_path_factory.mktemp("worker")
     write_rows(workshop, (20,))
-    _, (row,) = table.read(str(workshop.folder / "rows.csv"), str(workshop.job))
+    _, (row,) = row_table.read(str(workshop.folder / "rows.csv"), str(workshop.job))
     worker = freecad_am_row_worker.Batch(str(folder))
     worker.unpack(versions.package(), [], [])
     assert worker.run(NOWHERE, None)["versions"]["FreeCAD"]

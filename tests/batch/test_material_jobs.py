@@ -8,8 +8,8 @@ from pathlib import Path
 import Part
 import pytest
 
+from freecad_am.batch.job import feature_sections
 from freecad_am.batch.job import job as jobs
-from freecad_am.batch.job import material
 from freecad_am.core.issues import InputError
 
 JOB = "part: {file: bar.step}\nstrategy: {kind: solid, layer_height: 2 mm}\n"
@@ -31,7 +31,7 @@ beads: own.csv
 @pytest.fixture
 def folder(tmp_path):
     (tmp_path / "bar.step").write_text("only looked for")
-    table = Path(material.FOLDER).parent / "beads" / "dai-2020.csv"
+    table = Path(feature_sections.FOLDER).parent / "beads" / "dai-2020.csv"
     (tmp_path / "sub").mkdir()
     (tmp_path / "sub" / "own.csv").write_bytes(table.read_bytes())
     return tmp_path
@@ -100,7 +100,7 @@ def test_materials_that_come_with_the_program(folder, name):
     assert process.bead_model == ("csw" if name == "stainless" else "li-2025")
     assert process.density == (7.9 if name == "stainless" else 2.84)
     assert "(20" in process.material.source and process.material.slowest < process.material.fastest
-    assert material.built_in() == ["er2319", "stainless"]
+    assert feature_sections.built_in() == ["er2319", "stainless"]
 
 
 def test_a_material_may_be_told_in_the_job(folder):

@@ -9,8 +9,7 @@ import Mesh
 import Part
 import pytest
 
-from freecad_am import api
-from freecad_am.interop import export
+from freecad_am import api, interop
 from freecad_am.sections import cell as job_cell
 
 CELL = """\
@@ -115,4 +114,4 @@ def test_a_document_notices_and_a_saved_cell_keeps_it(shop, doc):
     assert path == str(shop.folder / "hall.yaml") and 'shape: "torch.step"' in written
     read = job_cell.read("hall.yaml", str(shop.folder))
     assert read.nozzle.shape.file == str(shop.folder / "torch.step")
-    assert export.cell_text(read, str(shop.folder)) == written
+    assert interop.cell_text(read, str(shop.folder)) == written

@@ -8,9 +8,9 @@ import json
 import numpy as np
 import pytest
 
+from freecad_am import interop
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.machines import machine
-from freecad_am.interop import export
 from freecad_am.sections import cell as job_cell
 from tests.kdl_links import KdlLinks
 
@@ -106,5 +106,5 @@ def test_a_saved_cell_keeps_them(shop, tmp_path):
     )
     section = json.loads(made.job.read_text().split("cell: ")[1].split("\n")[0])
     cell = job_cell.read(section, str(made.job.parent))
-    (tmp_path / "hall.yaml").write_text(export.cell_text(cell, str(tmp_path)), encoding="utf-8")
+    (tmp_path / "hall.yaml").write_text(interop.cell_text(cell, str(tmp_path)), encoding="utf-8")
     assert job_cell.read("hall.yaml", str(tmp_path)) == cell and len(cell.touched) == 4

@@ -9,9 +9,9 @@ import pytest
 from freecad_am import api
 from freecad_am.gui.path import dock as paths
 from freecad_am.gui.plots import dock as plots
+from freecad_am.gui.redundancy_map import dock as map_tool
 from freecad_am.gui.redundancy_map import dock as maps
 from freecad_am.gui.redundancy_map import draft
-from freecad_am.gui.redundancy_map import tool as map_tool
 from freecad_am.gui.simulation import dock as simulations
 from freecad_am.gui.simulation import fields
 from freecad_am.gui.tools.commands import GROUPS

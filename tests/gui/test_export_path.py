@@ -12,7 +12,7 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.gui.background import busy
+from freecad_am.gui import busy
 from freecad_am.objects.work import progress
 from freecad_am.report import made
 

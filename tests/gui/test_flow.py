@@ -425,11 +425,11 @@ def test_context_menus_do_what_they_say(person, hemisphere, coarse):
     found["Shown"].trigger()
     assert doc.JointPath.ViewObject.Visibility and not doc.Toolpath.ViewObject.Visibility
     person.select(hemisphere)
-    from freecad_am.gui.tools import toolbar
+    from freecad_am.gui.tools import tool
 
-    assert toolbar.for_selection() == ["RoboticAM_NewJob"]
+    assert tool.for_selection() == ["RoboticAM_NewJob"]
     person.select(doc.Cell)
-    assert toolbar.for_selection() == []
+    assert tool.for_selection() == []
 
 
 def test_a_shape_the_kernel_fails_on_is_told(person, hemisphere, monkeypatch):

@@ -13,8 +13,8 @@ from freecad_am import api
 from freecad_am.core.toolpath import Bead
 from freecad_am.gui.path import dock as paths
 from freecad_am.gui.path.pieces import PathNodes, Rows
+from freecad_am.gui.simulation import dock
 from freecad_am.gui.simulation import dock as simulations
-from freecad_am.gui.simulation import tool
 
 FRAMES = 12
 
@@ -94,7 +94,7 @@ class Turns:
 
 def test_a_frame_of_a_simulation_is_one_turn_of_the_window_and_moves_no_field(person, joint_path):
     person.look()
-    tool.show(joint_path)
+    dock.simulate_object(joint_path)
     simulation = simulations._open[0]
     person.idle(0.5)
     total = simulation.run.times.total
@@ -128,7 +128,7 @@ def test_all_that_a_simulation_tells_has_room_from_the_start(person, joint_path)
     rows = np.flatnonzero(motion.deposit)
     motion.joints[rows[100:200], 5] += np.linspace(0.0, 30.0, 100)  # much faster than it can be
     motion.joints.flags.writeable = False
-    tool.show(joint_path)
+    dock.simulate_object(joint_path)
     simulation = simulations._open[0]
     person.idle(0.3)
     labels, run = simulation.fields.labels, simulation.run
@@ -257,7 +257,7 @@ def test_tubes_that_grow_give_coin_only_what_has_grown(person):
 
 def test_what_is_to_come_is_drawn_from_where_the_deposit_ends(person, joint_path):
     person.look()
-    tool.show(joint_path)
+    dock.simulate_object(joint_path)
     simulation = simulations._open[0]
     scene, motion = simulation.scene, simulation.run.motion
     starts = set(scene.deposit.rows.starts.tolist())

@@ -3,7 +3,7 @@
 
 import pytest
 
-from freecad_am.gui.background.worker import Background, Later
+from freecad_am.gui.worker import Background, Later
 
 
 @pytest.fixture

@@ -12,8 +12,8 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
-from freecad_am.gui.background import busy
-from freecad_am.gui.background.worker import Worker
+from freecad_am.gui import busy
+from freecad_am.gui.worker import Worker
 from freecad_am.objects.feature import RevolutionFeature
 from freecad_am.objects.shapes import part_file
 from freecad_am.objects.toolpath import Toolpath

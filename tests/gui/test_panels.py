@@ -9,7 +9,7 @@ import FreeCAD as App
 import pytest
 
 from freecad_am import api
-from freecad_am.gui.panels import of_stages
+from freecad_am.gui.views import attach
 from freecad_am.objects.surface_feature import SurfaceFeature
 
 PANEL = "RoboticAM_RevolutionFeature"
@@ -104,14 +104,14 @@ def test_undo_shows_every_kind_of_field_and_input_as_a_panel_that_is_opened_then
         (program, {"name": "other", "dry_run": True, "max_points": 1000}),
     ):
         name = f"RoboticAM_{type(obj.Proxy).__name__}"
-        of_stages.edit(obj)
+        attach.edit(obj)
         person.idle()
         panel = person.panel(name)
         before = held(person, panel)
         api.change(obj, **values)
         person.press("Cancel")
         person.panel_closed()
-        of_stages.edit(obj)
+        attach.edit(obj)
         person.idle()
         panel = person.panel(name)
         after = held(person, panel)
@@ -138,7 +138,7 @@ def test_undo_shows_what_solids_claddings_and_curves_are_made_of(person):
         (api.make_curves_feature, (boxes[0], ["Edge1"]), [boxes[1]]),
     ):
         obj = make(document, *first, **({} if make is api.make_curves_feature else coarse))
-        of_stages.edit(obj)
+        attach.edit(obj)
         person.idle()
         panel = person.panel(f"RoboticAM_{type(obj.Proxy).__name__}")
         before = person.field(panel, "Fixtures").text()

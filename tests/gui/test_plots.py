@@ -11,8 +11,8 @@ import pytest
 from freecad_am import api
 from freecad_am.gui.plots import canvas as canvases
 from freecad_am.gui.plots import dock as docks
-from freecad_am.plots import catalogue
-from freecad_am.plots.joints import rows
+from freecad_am.plots import pictures
+from freecad_am.plots.pictures import rows
 
 
 @pytest.fixture
@@ -81,7 +81,7 @@ def colours(person, widget, least=80):
 def test_every_picture_is_seen(person, planned, panel):
     dock = docks.only.dock
     assert person.field(panel, "plotted").currentText() == planned.Label
-    for name, entry in catalogue.PICTURES.items():
+    for name, entry in pictures.PICTURES.items():
         take(person, panel, name)
         if name in ("angles", "deposit", "spacing", "fit"):
             person.screenshot(f"plots_{name}")

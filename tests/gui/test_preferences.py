@@ -23,7 +23,7 @@ def clean():
 
 @pytest.fixture
 def page(person, clean):
-    from freecad_am.gui.preferences.page import PreferencesPage
+    from freecad_am.gui.preferences_page import PreferencesPage
 
     shown = PreferencesPage()
     shown.loadSettings()
@@ -169,7 +169,7 @@ def test_what_is_drawn_and_told_follows_at_once(person, page, hemisphere):
     from freecad_am.gui.colours import ramp
     from freecad_am.gui.path import dock as path_dock
     from freecad_am.gui.plots import dock as plots
-    from freecad_am.gui.redundancy_map import tool as maps
+    from freecad_am.gui.redundancy_map import dock as maps
     from freecad_am.gui.simulation import dock as simulations
 
     doc = hemisphere.Document

@@ -15,7 +15,7 @@ from freecad_am.core.planning import redundancy_map
 from freecad_am.core.planning import redundancy_map as spin_map
 from freecad_am.core.simulation.achievable_feed import speed_ratios
 from freecad_am.gui.path.colouring import BELOW_COLOUR, NONE
-from freecad_am.gui.redundancy_map import tool as docks
+from freecad_am.gui.redundancy_map import dock as docks
 from freecad_am.gui.redundancy_map.dock import FINE_STRIDE, NAME
 from freecad_am.gui.redundancy_map.painting import TURN
 from freecad_am.objects.staleness import UP_TO_DATE

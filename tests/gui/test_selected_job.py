@@ -7,8 +7,8 @@ import pytest
 from freecad_am import api
 from freecad_am.gui.path import dock as paths
 from freecad_am.gui.plots import dock as plots
-from freecad_am.gui.redundancy_map import tool as spin_map
-from freecad_am.gui.simulation import tool as simulation
+from freecad_am.gui.redundancy_map import dock as spin_map
+from freecad_am.gui.simulation import dock as simulation
 from freecad_am.objects.job_group import grouped
 
 KINDS = ("cell", "feature", "toolpath", "joint path")

@@ -17,7 +17,8 @@ from freecad_am.core.simulation.achievable_feed import achievable_feed
 from freecad_am.core.simulation.watch import ISSUE, LIMIT, SINGULAR, SLOWED, TOUCHES
 from freecad_am.gui.in_language import link_touches
 from freecad_am.gui.simulation import dock as docks
-from freecad_am.gui.simulation import fields, tool
+from freecad_am.gui.simulation import dock as tool
+from freecad_am.gui.simulation import fields
 from freecad_am.gui.simulation.dock import SLOW_COLOUR, WRONG_COLOUR
 from freecad_am.gui.simulation.player import run_of
 from freecad_am.kdl import KdlArm
@@ -465,12 +466,12 @@ def test_it_ends_by_itself_when_what_it_plays_goes_or_changes(person, hemisphere
 def test_two_simulations_replace_one_another_and_without_a_path_it_says_so(person, hemisphere):
     path = job(hemisphere)
     _, first = opened(person, path)
-    tool.show(path)
+    tool.simulate_object(path)
     person.idle(0.2)
     assert len(docks._open) == 1 and docks._open[0] is not first and first.scene is None
     assert docks._open[0].dock.findChildren(person.widgets.QLabel, "stale") == []
     path.Degree = 2  # not recomputed: what is played is the plan before, and that is said
-    tool.show(path)
+    tool.simulate_object(path)
     person.idle(0.2)
     assert "earlier plan" in person.field(docks._open[0].dock, "stale").text()
     docks._open[0].close()

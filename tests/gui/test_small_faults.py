@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.gui import registry
-from freecad_am.gui.redundancy_map import tool as map_tool
+from freecad_am.gui.redundancy_map import dock as map_tool
 from freecad_am.gui.simulation import wording
 from freecad_am.gui.tools import commands, whats_this
 from freecad_am.gui.widgets import choices, suggestions

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from freecad_am import api
-from freecad_am.gui.background import worker
+from freecad_am.gui import worker
 from freecad_am.gui.views import preview
 
 ORANGE = (245, 120, 0)  # of first layers

@@ -15,7 +15,7 @@ from freecad_am import api
 from freecad_am.core.geometry.frames import rotation_about
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
-from freecad_am.interop.lines import Line, attitudes, lines_of_motion, lines_of_toolpath, thinned
+from freecad_am.interop import Line, attitudes, lines_of_motion, lines_of_toolpath, thinned
 from freecad_am.sections import cell as job_cell
 from tests.core.kinematics.test_calibration import FILE as calibrated_robot
 

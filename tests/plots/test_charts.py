@@ -13,10 +13,9 @@ from freecad_am.core.process import bead_model, model_notes, wire
 from freecad_am.core.process.deposit import spacing
 from freecad_am.core.simulation import timeline
 from freecad_am.core.simulation.timeline import totals
-from freecad_am.plots import catalogue, draw, joints
-from freecad_am.plots.chart import together
-from freecad_am.plots.joints import PATH, TIME, rows
-from freecad_am.plots.look import LIGHT
+from freecad_am.plots import draw, pictures
+from freecad_am.plots.chart import LIGHT, together
+from freecad_am.plots.pictures import PATH, TIME, rows
 from freecad_am.plots.source import Source
 from tests.core.strategies.test_solids_in_planes import box, planned
 
@@ -28,7 +27,7 @@ def curve(charts, number=0, of=0):
 def test_angles_are_those_of_the_motion_at_their_times(dome):
     source, _ = dome
     along = rows(source)
-    charts, motion, times = joints.angles(source, along), source.motion, source.times
+    charts, motion, times = pictures.angles(source, along), source.motion, source.times
     assert len(charts) == 6 and charts[0].x == ("time", "min" if times.total > 180.0 else "s")
     unit = 60.0 if charts[0].x.unit == "min" else 1.0
     moving = ~along.standing
@@ -53,9 +52,9 @@ def test_rates_reach_what_the_report_tells(dome):
     source, told = dome
     along = rows(source)
     for build, key in (
-        (joints.speeds, "speed_max_deg_s"),
-        (joints.accelerations, "acceleration_max_deg_s2"),
-        (joints.jerks, "jerk_max_deg_s3"),
+        (pictures.speeds, "speed_max_deg_s"),
+        (pictures.accelerations, "acceleration_max_deg_s2"),
+        (pictures.jerks, "jerk_max_deg_s3"),
     ):
         charts = build(source, along)
         found = [np.nanmax(np.abs(chart.curves[0].y)) for chart in charts]
@@ -64,26 +63,26 @@ def test_rates_reach_what_the_report_tells(dome):
         assert [each.name for each in one.curves] == list(
             source.cell.machine.axes
         ) and one.wrong_count == 0
-    shares = joints.shares(source, along)[0]
+    shares = pictures.shares(source, along)[0]
     most = [np.nanmax(each.y) / 100.0 for each in shares.curves]
     np.testing.assert_allclose(most, told["speed_ratio_max"], rtol=1e-6, atol=1e-7)
-    (condition,) = joints.condition(source, along)
+    (condition,) = pictures.condition(source, along)
     assert np.nanmin(condition.curves[1].y) == pytest.approx(told["condition_min"], rel=1e-9)
 
 
 def test_limits_that_no_machine_file_tells_are_said_to_be_unknown(dome):
     source, _ = dome
-    known = catalogue.picture("speeds", source).charts
+    known = pictures.picture("speeds", source).charts
     assert all(np.isfinite(chart.limits).all() and not chart.unlimited for chart in known)
     for name, word in (("accelerations", "max_acceleration"), ("jerks", "max_jerk")):
-        charts = catalogue.picture(name, source).charts
+        charts = pictures.picture(name, source).charts
         assert all(np.isinf(chart.limits).all() and word in chart.unlimited for chart in charts)
     # as soon as a user's file tells some of them these are drawn, and of the others it is said
     most = np.array([np.inf, 500.0, np.inf, np.inf, np.inf, 900.0])
     for name, key in (("accelerations", "max_acceleration"), ("jerks", "max_jerk")):
         machine = dataclasses.replace(source.cell.machine, **{key: np.radians(most)})
         told = dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=machine))
-        charts = catalogue.picture(name, told).charts
+        charts = pictures.picture(name, told).charts
         assert [bool(chart.unlimited) for chart in charts] == np.isinf(most).tolist()
         np.testing.assert_allclose([chart.limits[1] for chart in charts], most)
         np.testing.assert_allclose([chart.limits[0] for chart in charts], -most)
@@ -93,7 +92,7 @@ def test_what_breaks_a_limit_is_counted(dome):
     source, _ = dome
     machine = source.cell.machine
     slow = dataclasses.replace(machine, max_speed=np.full(6, np.radians(1.0)))
-    charts = joints.speeds(
+    charts = pictures.speeds(
         dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=slow)),
         rows(source),
     )
@@ -125,7 +124,7 @@ def test_layers_are_chosen(dome):
 def test_deposit_rate_over_its_time_is_the_mass_of_the_job(dome):
     source, _ = dome
     along = rows(source)
-    rate, mass = joints.deposit(source, along)
+    rate, mass = pictures.deposit(source, along)
     sums = totals(source.motion, source.times, source.process, source.toolpath)
     assert mass.curves[0].y[-1] == pytest.approx(sums.mass, rel=1e-12)
     unit = {"min": 60.0, "s": 1.0}[rate.x.unit]
@@ -138,7 +137,7 @@ def test_deposit_rate_over_its_time_is_the_mass_of_the_job(dome):
 
 def test_travel_speed_is_told_apart_and_where_it_is_not_kept(dome):
     source, _ = dome
-    (chart,) = joints.travel(source, rows(source))
+    (chart,) = pictures.travel(source, rows(source))
     by_name = {one.name: one.y for one in chart.curves}
     assert np.nanmin(by_name["deposit"]) == np.nanmax(by_name["deposit"]) == 8.0
     assert (
@@ -146,7 +145,7 @@ def test_travel_speed_is_told_apart_and_where_it_is_not_kept(dome):
     ).sum() == 0 and "as the axes can" not in by_name
     machine = dataclasses.replace(source.cell.machine, max_speed=np.full(6, np.radians(2.0)))
     slow = dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=machine))
-    (chart,) = joints.travel(slow, rows(slow))
+    (chart,) = pictures.travel(slow, rows(slow))
     kept = {one.name: one.y for one in chart.curves}["as the axes can"]
     assert 0.0 < np.nanmin(kept) < np.nanmax(kept) < 8.0
 
@@ -154,15 +153,15 @@ def test_travel_speed_is_told_apart_and_where_it_is_not_kept(dome):
 def test_spacing_is_that_of_the_layers(dome):
     source, _ = dome
     values = np.concatenate(spacing.between_layers(source.toolpath))
-    (chart,) = joints.spacing(source, (0, len(source.toolpath.layers) - 1))
+    (chart,) = pictures.spacing(source, (0, len(source.toolpath.layers) - 1))
     bars = chart.bars
     np.testing.assert_allclose(
         bars.heights, 100.0 * np.histogram(values, bars.edges)[0] / len(values), rtol=1e-9
     )
     assert bars.heights.sum() == pytest.approx(100.0) and bars.edges[0] < 9.0 < bars.edges[-1]
     assert chart.band == pytest.approx((8.1, 9.9)) and chart.upright[0][0] == 9.0
-    assert joints.spacing(source, (0, 0)) == ()
-    (some,) = joints.spacing(source, (1, 1))
+    assert pictures.spacing(source, (0, 0)) == ()
+    (some,) = pictures.spacing(source, (1, 1))
     one = spacing.between_layers(source.toolpath)[0]
     np.testing.assert_allclose(
         some.bars.heights, 100.0 * np.histogram(one, some.bars.edges)[0] / len(one), rtol=1e-9
@@ -171,14 +170,14 @@ def test_spacing_is_that_of_the_layers(dome):
 
 def test_what_a_bead_model_predicts(modelled):
     told = model_notes.beads(modelled.toolpath)
-    height, drift = joints.heights(modelled, (1, 3))
+    height, drift = pictures.heights(modelled, (1, 3))
     for number, kind in enumerate(("min", "mean", "max")):
         assert curve([height], 0, number).y.tolist() == [
             row["height_mm"][kind] for row in told["layers"][1:]
         ]
     assert drift.curves[0].y.tolist() == [row["drift_mm"] for row in told["layers"][1:]]
     assert height.curves[0].x.tolist() == [1.0, 2.0, 3.0] and height.marks[0][0] == 2.0
-    speed, width, _ = joints.distributions(modelled, (0, 3))
+    speed, width, _ = pictures.distributions(modelled, (0, 3))
     assert (
         speed.bars.heights.sum() == pytest.approx(100.0)
         and width.across()[0] < 4.8
@@ -186,7 +185,7 @@ def test_what_a_bead_model_predicts(modelled):
     )
     measured = wire.read_table("csw")
     model = bead_model.fit(*measured)
-    (fit,) = catalogue.picture("fit", modelled).charts
+    (fit,) = pictures.picture("fit", modelled).charts
     for radius, line, dots in zip(np.unique(measured.radius), fit.curves[::2], fit.curves[1::2]):
         expected = model.width.m * line.x ** (-1.0 / 3.0) + model.width.p / radius + model.width.t
         np.testing.assert_allclose(line.y, expected, rtol=1e-12)
@@ -195,8 +194,8 @@ def test_what_a_bead_model_predicts(modelled):
 
 def test_every_picture_is_there_or_says_why(dome, modelled):
     source, _ = dome
-    for name, entry in catalogue.PICTURES.items():
-        of_dome, of_path = catalogue.picture(name, source), catalogue.picture(name, modelled)
+    for name, entry in pictures.PICTURES.items():
+        of_dome, of_path = pictures.picture(name, source), pictures.picture(name, modelled)
         assert bool(of_dome.charts) != bool(of_dome.lacking) and bool(of_path.charts) != bool(
             of_path.lacking
         )
@@ -212,7 +211,7 @@ def test_volumes_and_sections_of_plane_layers(modelled):
     solids = prepare_stack([part], SolidParameters(), "block")
     toolpath = planned(part, fill="lines", contour=True)
     source = Source(toolpath, timeline.deposit_motion(toolpath), ProcessParameters(), solids=solids)
-    volume, share = catalogue.picture("volumes", source).charts
+    volume, share = pictures.picture("volumes", source).charts
     of_part, laid = (one.y for one in volume.curves)
     np.testing.assert_allclose(
         of_part, [4.8, 4.8, 4.8, 1.2], rtol=1e-9
@@ -220,9 +219,9 @@ def test_volumes_and_sections_of_plane_layers(modelled):
     assert laid[3] == 0.0 and laid.sum() == pytest.approx(source.volumes.sum() / 1000.0, rel=1e-12)
     np.testing.assert_allclose(share.curves[0].y, 100.0 * laid / of_part)
     assert f"{100 * laid.sum() / 15.6:.4g} %" in share.title
-    (some, _) = catalogue.picture("volumes", source, layers=(1, 1)).charts
+    (some, _) = pictures.picture("volumes", source, layers=(1, 1)).charts
     assert some.curves[1].y.tolist() == laid[1:2].tolist() and some.curves[1].x.tolist() == [1.0]
-    (flat,) = catalogue.picture("section", source, layers=(0, 1)).charts
+    (flat,) = pictures.picture("section", source, layers=(0, 1)).charts
     outline = next(one for one in flat.curves if one.name == "part")
     assert {tuple(np.round(np.abs(place), 9)) for place in zip(outline.x, outline.y)} <= {
         (20.0, 15.0)
@@ -239,4 +238,4 @@ def test_volumes_and_sections_of_plane_layers(modelled):
     line = next(one for one in figure.axes[0].get_lines() if one.get_linewidth() > 5)
     assert line.get_linewidth() / 72.0 * draw.DPI * across == pytest.approx(beads[0].width)
     for name in ("volumes", "section"):
-        assert "planar layers" in catalogue.picture(name, modelled).lacking
+        assert "planar layers" in pictures.picture(name, modelled).lacking

@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-from freecad_am.plots import catalogue, draw, files
-from freecad_am.plots.chart import Chart, Curve, Picture, Quantity
+from freecad_am.plots import draw, files, pictures
+from freecad_am.plots.chart import DARK, LIGHT, PAGE, VARIABLES, Chart, Curve, Picture, Quantity
 from freecad_am.plots.draw import envelope
-from freecad_am.plots.joints import PATH
-from freecad_am.plots.look import DARK, LIGHT, PAGE, VARIABLES
+from freecad_am.plots.pictures import PATH
 
 TIME, ANGLE = Quantity("time", "s"), Quantity("angle", "deg")
 
@@ -27,7 +26,7 @@ def lines(axes):
 def test_lines_are_the_values(dome):
     source, _ = dome
     for name in ("angles", "speeds", "deposit", "condition"):
-        charts = catalogue.picture(name, source).charts
+        charts = pictures.picture(name, source).charts
         figure, places = draw.figure(charts, LIGHT, 4000, 900)  # so wide that nothing is left out
         assert len(figure.axes) == len(places) == len(charts)
         for axes, chart, place in zip(figure.axes, charts, places, strict=True):
@@ -85,7 +84,7 @@ def test_limits_are_bands_and_what_breaks_them_is_marked():
 
 def test_a_window_shows_a_part(dome):
     source, _ = dome
-    charts = catalogue.picture("angles", source).charts
+    charts = pictures.picture("angles", source).charts
     low, high = charts[0].across()
     part = (low + 0.2 * (high - low), low + 0.4 * (high - low))
     figure, places = draw.figure(charts, LIGHT, 500, 600, draw.Window({0: part}, {2: (-1.0, 1.0)}))
@@ -103,11 +102,11 @@ def test_a_window_shows_a_part(dome):
 @pytest.mark.parametrize("kind", files.KINDS)
 def test_the_same_values_are_the_same_bytes(dome, kind):
     source, _ = dome
-    charts = catalogue.picture("deposit", source).charts
+    charts = pictures.picture("deposit", source).charts
     made = [files.image(draw.figure(charts, LIGHT, 500, 300)[0], kind) for _ in range(2)]
     assert made[0] == made[1] and len(made[0]) > 2000
     other = files.image(
-        draw.figure(catalogue.picture("deposit", source, PATH).charts, LIGHT, 500, 300)[0], kind
+        draw.figure(pictures.picture("deposit", source, PATH).charts, LIGHT, 500, 300)[0], kind
     )
     assert other != made[0]
     assert not re.search(rb"20\d\d-\d\d-\d\d|Matplotlib v|D:20", made[0])
@@ -115,7 +114,7 @@ def test_the_same_values_are_the_same_bytes(dome, kind):
 
 def test_pictures_in_a_page_take_its_colours(dome):
     source, _ = dome
-    chart = catalogue.picture("angles", source).charts[0]
+    chart = pictures.picture("angles", source).charts[0]
     text = files.inline(draw.figure((chart,), PAGE, 460, 230)[0], 'a "name" & more')
     tree = ElementTree.fromstring(text)
     assert tree.get("aria-label") == 'a "name" & more' and tree.get("viewBox") == "0 0 331.2 165.6"
@@ -143,7 +142,7 @@ def test_scales_in_a_page_keep_their_decimals():
 @pytest.mark.parametrize("name", ["angles", "jerks", "deposit", "condition"])
 def test_tables_give_the_values_back(dome, name):
     source, _ = dome
-    picture = catalogue.picture(name, source)
+    picture = pictures.picture(name, source)
     table = list(csv.reader(io.StringIO("".join(files.values(picture)))))
     curves = [curve for chart in picture.charts for curve in chart.curves]
     assert len(table[0]) == 2 + len(curves) and len(set(table[0])) == len(table[0])
@@ -162,7 +161,7 @@ def test_tables_give_the_values_back(dome, name):
 
 @pytest.mark.parametrize("name", ["spread", "fit", "heights"])
 def test_tables_of_what_is_no_course(modelled, name):
-    picture = catalogue.picture(name, modelled)
+    picture = pictures.picture(name, modelled)
     table = list(csv.reader(io.StringIO("".join(files.values(picture)))))
     if name == "heights":
         assert table[0][:2] == ["layer", "lowest_mm"]

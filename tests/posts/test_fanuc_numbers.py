@@ -3,7 +3,7 @@
 
 import pytest
 
-from freecad_am.posts.fanuc.listing import right_aligned
+from freecad_am.posts.fanuc.post import right_aligned
 
 
 @pytest.mark.parametrize(

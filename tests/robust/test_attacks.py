@@ -12,9 +12,8 @@ import subprocess
 
 import pytest
 
-from freecad_am.batch import console
-from freecad_am.batch.outputs import folder as outputs
-from freecad_am.batch.outputs import staging
+from freecad_am.batch import console, staging
+from freecad_am.batch import output_folder as outputs
 from freecad_am.core.issues import InputError
 from freecad_am.posts import earlier
 

@@ -11,7 +11,7 @@ import time
 import pytest
 
 from freecad_am.batch import child
-from freecad_am.batch.outputs import folder as outputs
+from freecad_am.batch import output_folder as outputs
 from tests.robust.test_kills import OLD, files, publish
 
 SCRIPT = """

@@ -19,10 +19,8 @@ import FreeCAD
 import pytest
 
 from freecad_am import api
-from freecad_am.batch import console
-from freecad_am.batch.outputs import folder as outputs
-from freecad_am.batch.outputs import staging
-from freecad_am.batch.rows import table
+from freecad_am.batch import console, row_table, staging
+from freecad_am.batch import output_folder as outputs
 from freecad_am.core.issues import InputError
 from tests.batch.conftest import COMMANDS, ended, used_by
 
@@ -341,7 +339,7 @@ class Bench:
             assert {f"program/{name.decode()}.LS" for name in called} == parts
 
     def assert_no_litter(self):
-        kept = (".cache", table.NAME)  # what `batch --resume` goes by is an output
+        kept = (".cache", row_table.NAME)  # what `batch --resume` goes by is an output
         assert not [path for path in self.shop.folder.rglob(".*") if path.name not in kept]
 
 

@@ -27,8 +27,16 @@ from .feature_sections import (
     strategy_of,
     substrate_of,
 )
-from .part_source import PartSource, faces_of, fixtures_of, guide_of, part_of
-from .scan_source import ScanSource, scan_of, split
+from .part_source import (
+    PartSource,
+    ScanSource,
+    faces_of,
+    fixtures_of,
+    guide_of,
+    part_of,
+    scan_of,
+    split,
+)
 
 WORD = "auto"
 HEIGHT, SPACING = "layer_height", "bead_spacing"

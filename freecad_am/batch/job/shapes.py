@@ -25,8 +25,7 @@ from ...objects.shapes.bodies import snapshot_of
 from ...objects.shapes.part_file import add_part, changed_part
 from .features import UPRIGHT, about_feature, chosen, leans, planes_of
 from .job import Job
-from .part_source import PartSource
-from .scan_source import ScanSource
+from .part_source import PartSource, ScanSource
 
 PATIENCE = 100.0  # times as long as reading a document may take; building a part of other values may be long work
 CELL_ADDRESS = re.compile("[A-Z]{1,2}[1-9][0-9]*")  # of a spreadsheet

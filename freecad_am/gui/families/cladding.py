@@ -34,7 +34,7 @@ class CladdingWindow(FeatureWindow):
         }
 
     def panel(self) -> type[Any]:
-        from ..panels.features.cladding import CladdingPanel
+        from ..panels.cladding import CladdingPanel
 
         return CladdingPanel
 

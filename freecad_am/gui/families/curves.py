@@ -32,7 +32,7 @@ class CurvesWindow(FeatureWindow):
         }
 
     def panel(self) -> type[Any]:
-        from ..panels.features.curves import CurvesPanel
+        from ..panels.curves import CurvesPanel
 
         return CurvesPanel
 

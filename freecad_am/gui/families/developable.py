@@ -41,7 +41,7 @@ class DevelopableWindow(FeatureWindow):
         }
 
     def panel(self) -> type[Any]:
-        from ..panels.features.hub import HubPanel
+        from ..panels.hub import HubPanel
 
         return HubPanel
 

@@ -37,7 +37,7 @@ class RevolutionWindow(FeatureWindow):
         }
 
     def panel(self) -> type[Any]:
-        from ..panels.features.revolution import FeaturePanel
+        from ..panels.revolution import FeaturePanel
 
         return FeaturePanel
 

@@ -33,7 +33,7 @@ class SolidWindow(FeatureWindow):
         }
 
     def panel(self) -> type[Any]:
-        from ..panels.features.solid import SolidPanel
+        from ..panels.solid import SolidPanel
 
         return SolidPanel
 

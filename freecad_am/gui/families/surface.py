@@ -37,7 +37,7 @@ class SurfaceWindow(FeatureWindow):
         }
 
     def panel(self) -> type[Any]:
-        from ..panels.features.wall import WallPanel
+        from ..panels.wall import WallPanel
 
         return WallPanel
 

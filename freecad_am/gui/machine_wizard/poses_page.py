@@ -22,9 +22,9 @@ from ...core.kinematics.machines.draft import (
 )
 from ...core.kinematics.machines.pendant import Deviation, Suspect
 from ...core.types import Array
-from ..background.worker import Later
 from ..colours import GOOD, INVALID, PLAIN, set_role
 from ..in_language import tr
+from ..worker import Later
 from .figure_table import FigureTable, Page, axis_names, choice, error_text, format_figure, heading
 
 MIN_POSES, INITIAL_ROWS = 3, 5  # poses that a machine needs, rows that are there at first

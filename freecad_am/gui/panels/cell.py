@@ -28,14 +28,14 @@ from ...objects.planned import suited_cell
 from ...objects.stage import stage_of
 from ...objects.stage_parts import Outcome
 from ...objects.work.progress import Cancelled
-from ..background.busy import carry_out
-from ..background.worker import Background, Later, Worker
+from ..busy import carry_out
 from ..in_language import tr, translated
 from ..nodes.cell import CellNodes, Rest, Scenery, at_the_end, machine_scenery
 from ..views.cell import toolpath_of
 from ..views.preview import Aside, Draft
 from ..widgets import suggestions
 from ..widgets.shape_inputs import job_selection
+from ..worker import Background, Later, Worker
 from .preview import PreviewPanel
 
 # ---- Proposals of the cell panel: values that suit the chosen machine, then a cell in which the

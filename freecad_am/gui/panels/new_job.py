@@ -23,8 +23,7 @@ from ...objects.fields import preferences, saved_cells
 from ...objects.shapes.bodies import snapshot_of
 from ...objects.work.progress import Cancelled
 from .. import icons, picking, recorded
-from ..background.busy import carry_out
-from ..background.worker import Background, Worker
+from ..busy import carry_out
 from ..colours import INVALID, PLAIN, set_role
 from ..families.registry import feature_windows, window_of
 from ..families.window import JobProposal
@@ -34,6 +33,7 @@ from ..signals import connect
 from ..widgets import choices, suggestions
 from ..widgets.fold import Fold
 from ..widgets.upright import scrolls, upright
+from ..worker import Background, Worker
 from . import proposed_job
 from .proposed_job import HowItStands, JobName, Sizes, label, machines, pick_line
 from .stage import CLOSED

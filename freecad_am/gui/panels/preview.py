@@ -19,13 +19,13 @@ from ...objects.stage_parts import Outcome
 from ...objects.staleness import STALE
 from ...objects.work import hooks
 from .. import picking
-from ..background.worker import Background, Worker
 from ..colours import INVALID, PLAIN, set_role
 from ..in_language import tr, translated, translated_error
 from ..nodes.wall import WallNodes
 from ..views.preview import Draft, Preview
 from ..widgets.pick_field import Input, PickField
 from ..widgets.shape_inputs import StageChoice
+from ..worker import Background, Worker
 from .stage import CLOSED, StagePanel
 
 LOOK_EVERY = 200  # ms; an entry that stays this long is previewed

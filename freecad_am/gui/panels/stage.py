@@ -25,7 +25,6 @@ from ...objects.stage import Stage
 from ...objects.staleness import FAILED, INFEASIBLE
 from ...objects.work.progress import Cancelled
 from .. import icons, recorded
-from ..background.worker import Later
 from ..colours import INVALID, PLAIN
 from ..in_language import escape_mnemonic, marked, tr, translated
 from ..signals import connect
@@ -34,6 +33,7 @@ from ..widgets.fields import Field
 from ..widgets.fold import Fold, Messages
 from ..widgets.pick_field import Input
 from ..widgets.upright import scrolls, upright
+from ..worker import Later
 from .noted import Noted, lines_of
 
 _DELETED_ERRORS = (RuntimeError, ReferenceError, NameError)

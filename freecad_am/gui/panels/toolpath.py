@@ -21,7 +21,6 @@ from ...objects.stage_parts import Link
 from ...objects.toolpath import Toolpath
 from ...plots.chart import Picture, fit
 from .. import recorded
-from ..background.worker import Later
 from ..in_language import marked, tr, translated, translated_error
 from ..plots.canvas import Canvas, in_words
 from ..plots.dock import in_units
@@ -30,6 +29,7 @@ from ..widgets import shape_inputs
 from ..widgets.pick_field import Input
 from ..widgets.shape_inputs import StageChoice, selected
 from ..widgets.upright import scroll_areas_of
+from ..worker import Later
 from .stage import StagePanel
 
 # ---- The fit of a bead model: drawn, and in words

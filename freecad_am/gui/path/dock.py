@@ -14,11 +14,9 @@ from PySide import QtCore, QtGui
 
 from ...core.toolpath import Bead
 from ...objects.fields.preferences import in_user_units, quantity_text
-from .. import dock_area
-from ..background import redraw
-from ..dock_area import Follower, OnlyDock
+from .. import dock_area, preferences_watch
+from ..dock_area import Follower, OnlyDock, views_with_fields
 from ..in_language import tr, translated
-from ..preferences import watch
 from ..widgets.shape_inputs import job_selection
 from ..widgets.steady import Scrolled, SteadyText, hold
 from . import path_view
@@ -256,7 +254,7 @@ class PathDock(Follower):
         self.dock.seen, self.dock.closed = self.fill, self._closed
         path_view.listen(lambda view: self.fill())
         path_view.listen_to_clicks(self.dock.isVisible, self._follow_click)
-        watch.listen_to_language(self._speak)
+        preferences_watch.listen_to_language(self._speak)
         App.addDocumentObserver(self)
         Gui.Selection.addObserver(self)
 
@@ -399,7 +397,7 @@ class PathDock(Follower):
         """Show a stretch of a path and its range in the fields."""
         view.show(stretch)
         self.fill()
-        redraw.views_with_fields(view.obj.Document.Name)
+        views_with_fields(view.obj.Document.Name)
 
     def _show_all(self, *_: Any) -> None:
         view = self.view()

@@ -21,17 +21,16 @@ from ...core.types import Array, Index, Mask
 from ...objects.fields.preferences import in_user_units
 from ...objects.stage import stage_of
 from ...objects.toolpath import features_of, strategy_of
-from ...plots.joints import DOUBLE_COLOUR, VOID_COLOUR
-from .. import dock_area
-from ..background.worker import Background, Worker
+from ...plots.pictures import DOUBLE_COLOUR, VOID_COLOUR
+from .. import dock_area, preferences_watch
 from ..colours import INVALID, PLAIN, set_role
 from ..dock_area import Follower, OnlyDock
 from ..in_language import tr
 from ..nodes.lines import Faces
 from ..nodes.wall import unpickable
-from ..preferences import watch
 from ..widgets.shape_inputs import job_selection
 from ..widgets.steady import Scrolled, SteadyText
+from ..worker import Background, Worker
 from .dock import Row, make_combo, offer
 
 NAME = "RoboticAM_Infill"
@@ -187,8 +186,8 @@ class InfillDock(Follower):
         self._build()
         self.drawing = Background(self.dock)
         self.dock.seen, self.dock.closed = self.fill, self._closed
-        watch.listen(self.fill)
-        watch.listen_to_language(self._speak)
+        preferences_watch.listen(self.fill)
+        preferences_watch.listen_to_language(self._speak)
         App.addDocumentObserver(self)
 
     def _build(self) -> None:

@@ -19,11 +19,10 @@ from pivy import coin
 from PySide import QtCore, QtGui
 
 from ...objects.fields import preferences
-from .. import colours
+from .. import colours, preferences_watch
 from ..colours import ramp
 from ..in_language import tr, translated
 from ..nodes.lines import unshaded
-from ..preferences import watch
 from .colouring import ABOVE_COLOUR, BELOW_COLOUR, DISTANCE, Scale
 
 _FINE = 0.01  # mm; smaller differences of distances show 1e-5 mm
@@ -239,7 +238,7 @@ class _Renewal:
         if self.observer is None:
             self.observer = _Observer()
             App.addDocumentObserver(self.observer)
-            watch.listen_to_language(self.ask)
+            preferences_watch.listen_to_language(self.ask)
             colours.listen(self.ask)
         if not self.is_due:
             self.is_due = True

@@ -22,15 +22,14 @@ from ...objects.fields.rows import flat, rows
 from ...objects.stage import stage_of
 from ...objects.work import progress
 from ...objects.work.progress import Cancelled
-from .. import dock_area, recorded
-from ..background.worker import Work
+from .. import dock_area, preferences_watch, recorded
 from ..colours import INVALID, PLAIN, set_role
 from ..dock_area import Lookout
 from ..in_language import error_line, tr, translated_error
-from ..preferences import watch
 from ..widgets import fields
 from ..widgets.fold import Fold
 from ..widgets.shape_inputs import job_named, job_selection
+from ..worker import Work
 from . import figures
 from .scene import Scene
 
@@ -192,8 +191,8 @@ class PlacementDock:
             FIT, self._fit
         )  # once the dock has its place and the view the rest
         self.lookout = Lookout(lambda: _Shown(self.placing), self._changed_object, self.end)
-        watch.listen(self._paint)
-        watch.listen_to_language(self._speak)
+        preferences_watch.listen(self._paint)
+        preferences_watch.listen_to_language(self._speak)
 
     # ---- the fields
 
@@ -365,7 +364,7 @@ class PlacementDock:
         self.gone = True
         self.lookout.stop()
         for listener in (self._paint, self._speak):
-            watch.forget(listener)
+            preferences_watch.forget(listener)
         self.work.cancel()
         self.reaching.cancel()
         scene, self.scene = self.scene, None

@@ -12,17 +12,16 @@ from PySide import QtCore, QtGui
 from ...core.issues import AmError
 from ...objects.fields.preferences import scale_of
 from ...objects.staleness import STALE
-from ...plots import catalogue, chart
+from ...plots import chart, pictures
 from ...plots.chart import Picture
-from ...plots.joints import OVER, PATH, TIME
+from ...plots.pictures import OVER, PATH, TIME
 from ...plots.source import Source
-from .. import dock_area
-from ..background.worker import Background, Later, Worker
+from .. import dock_area, preferences_watch
 from ..dock_area import Follower, OnlyDock
 from ..in_language import tr, translated_error
-from ..preferences import watch
 from ..widgets.shape_inputs import job_selection
 from ..widgets.steady import Scrolled
+from ..worker import Background, Later, Worker
 from . import canvas, saving
 from .canvas import Canvas
 from .saving import JOINT_PATH, PROGRAM, TOOLPATH, key_of, kind_of, made_from, maker_of, plottable
@@ -72,8 +71,8 @@ class PlotsDock(Follower):
         self.building = Background(self.dock)
         self.soon, self.changed = Later(self.dock, self.fill), Later(self.dock, self.fill)
         self.dock.seen = self.fill
-        watch.listen(self.fill)
-        watch.listen_to_language(self._speak)
+        preferences_watch.listen(self.fill)
+        preferences_watch.listen_to_language(self._speak)
         App.addDocumentObserver(self)
         Gui.Selection.addObserver(self)
 
@@ -107,7 +106,7 @@ class PlotsDock(Follower):
         self.note.setObjectName("note")
         self.reading.setObjectName("reading")
         self._fill(form)
-        for name, entry in catalogue.PICTURES.items():
+        for name, entry in pictures.PICTURES.items():
             self.which.addItem(canvas.translated(entry.title), name)
         for over in OVER:
             self.over.addItem({TIME: tr("time"), PATH: tr("path")}[over], over)
@@ -221,7 +220,7 @@ class PlotsDock(Follower):
             self.choice.clear()
             self.choice.addItems(labels)
         self.choice.setCurrentIndex(candidates.index(obj) if obj in candidates else -1)
-        entry = catalogue.PICTURES[self.which.currentData()]
+        entry = pictures.PICTURES[self.which.currentData()]
         self.over.setEnabled(entry.along is not None)
         self.note.setText("")
         if obj is None:
@@ -247,7 +246,7 @@ class PlotsDock(Follower):
 
         def work() -> tuple[Source, Picture]:
             source = cached or make()
-            return source, catalogue.picture(name, source, over, layers)
+            return source, pictures.picture(name, source, over, layers)
 
         identity = (
             *_identity(obj),

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...plots.chart import DOTS, OUTLINE, STEP, Chart, Curve
-from ...plots.look import DARK, LIGHT, Look, Words
+from ...plots.chart import DARK, DOTS, LIGHT, OUTLINE, STEP, Chart, Curve, Look, Words
 from .. import colours
 from ..in_language import tr
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ask for the file of a picture and write it in the background."""
+"""Ask for the file of a picture, an image or CSV, and write it in the background."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
-from dataclasses import fields
+from collections.abc import Callable, Mapping
+from dataclasses import fields, replace
 from typing import Any
 
 import FreeCAD as App
@@ -24,12 +24,15 @@ from ...objects import user_machines
 from ...objects.current import is_stale
 from ...objects.families.registry import stage_family
 from ...objects.stage import stage_of
-from ...plots.chart import Picture
+from ...plots.chart import LIGHT, Picture
+from ...plots.draw import Range, Window, figure
+from ...plots.files import KINDS, image, values
 from ...plots.source import Source
-from ..background.worker import Background, Worker
 from ..in_language import tr
 from ..views.toolpath import band_of
+from ..worker import Background, Worker
 from .canvas import Canvas
+from .reading import frame_words
 
 TOOLPATH, JOINT_PATH, PROGRAM = "toolpath", "joint path", "program"
 
@@ -128,10 +131,10 @@ def save(picture: Picture, metric: Picture, obj: Any, canvas: Canvas) -> None:
     size, (across, up) = (canvas.width(), canvas.height()), canvas.ranges()
 
     def content(ending: str) -> bytes:
-        from . import export  # with matplotlib, whose import takes some time
+        # with matplotlib, whose import takes some time
 
-        exported = metric if ending == export.CSV else picture
-        return export.content(exported, ending, size, across, up)
+        exported = metric if ending == CSV else picture
+        return content(exported, ending, size, across, up)
 
     ask(tr("Save the plot"), obj, picture.name, content)
 
@@ -155,13 +158,11 @@ def ask(title: str, obj: Any, name: str, content: Callable[[str], bytes]) -> Non
 
 def _write(content: Callable[[str], bytes], path: str, kind: str) -> None:
     def write() -> str:
-        from . import export  # with matplotlib, whose import takes some time
+        # with matplotlib, whose import takes some time
 
-        ending = next(
-            (ending for ending in export.ENDINGS if f"*.{ending}" in kind), export.ENDINGS[0]
-        )
-        target = path if path.rpartition(".")[2].lower() in export.ENDINGS else f"{path}.{ending}"
-        export.write(content(target.rpartition(".")[2].lower()), target)
+        ending = next((ending for ending in ENDINGS if f"*.{ending}" in kind), ENDINGS[0])
+        target = path if path.rpartition(".")[2].lower() in ENDINGS else f"{path}.{ending}"
+        write(content(target.rpartition(".")[2].lower()), target)
         return target
 
     def show_result(worker: Worker) -> None:
@@ -182,3 +183,35 @@ def _write(content: Callable[[str], bytes], path: str, kind: str) -> None:
 def _say(text: str, console: Any) -> None:
     console(text + "\n")
     Gui.getMainWindow().statusBar().showMessage(text, 8000)
+
+
+# ---- Pictures saved as images and as comma separated values
+
+Ranges = Mapping[int, Range]
+CSV = "csv"
+ENDINGS = (*KINDS, CSV)
+
+
+def content(
+    picture: Picture, ending: str, size: tuple[int, int], across: Ranges, up: Ranges
+) -> bytes:
+    """The file for an ending, one of ENDINGS: an image on white of the visible range
+    (`draw.Window`), or all values of the picture."""
+    if ending == CSV:
+        return "".join(values(picture)).encode()
+    return image(
+        figure(picture.charts, replace(LIGHT, words=frame_words()), *size, Window(across, up))[0],
+        ending,
+    )
+
+
+def write(content: bytes, path: str) -> None:
+    """Write a file, which appears whole or not at all. OSError where it cannot be written."""
+    unfinished = f"{path}.unfinished"
+    try:
+        with open(unfinished, "wb") as stream:
+            stream.write(content)
+        os.replace(unfinished, path)
+    finally:
+        if os.path.exists(unfinished):
+            os.remove(unfinished)

@@ -15,10 +15,10 @@ from ...core.kinematics.machines.machine import Machine
 from ...core.planning import redundancy_curve as rotation_curve
 from ...core.planning.redundancy_curve import Followed, Sums
 from ...core.types import Array
-from ..background.worker import Background, Worker
 from ..colours import INVALID, PLAIN, of, set_role
 from ..in_language import link_touches, tr
 from ..widgets.steady import Scrolled
+from ..worker import Background, Worker
 from .board import COLOURS, OWN_CURVE, PLANNED_CURVE, Cell
 from .draft import Draft
 

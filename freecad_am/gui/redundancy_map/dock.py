@@ -8,6 +8,7 @@ import contextlib
 from collections.abc import Callable
 from typing import Any
 
+import FreeCAD as App
 import FreeCADGui as Gui
 import numpy as np
 from PySide import QtGui
@@ -17,18 +18,19 @@ from ...core.planning import redundancy_curve as rotation_curve
 from ...core.planning.redundancy_curve import Compared
 from ...core.planning.task import Task
 from ...core.types import Array
+from ...objects.stage import stage_of
 from ...objects.work import progress
 from ...objects.work.progress import Cancelled
-from .. import dock_area, recorded
-from ..background.worker import Background, Later, Work, Worker
+from .. import dock_area, preferences_watch, recorded
 from ..dock_area import Lookout
-from ..in_language import tr, translated, translated_error
+from ..in_language import error_line, tr, translated, translated_error
 from ..path import dock as path_dock
 from ..path.path_view import PathView
 from ..plots.map_file import save
-from ..preferences import watch
 from ..simulation import dock as simulation_dock
+from ..widgets.shape_inputs import job_named, job_selection
 from ..widgets.steady import Scrolled
+from ..worker import Background, Later, Work, Worker
 from .board import COLOURS, Board, Dragged, build_curves
 from .consequences import Consequences, Figures, Form, readout
 from .controls import AXES, CURVES, Controls
@@ -183,8 +185,8 @@ class RedundancyMapDock:
         self.lookout = Lookout(
             lambda: self.source, self._changed_object, lambda why, _: self.end(why)
         )
-        watch.listen(self._renew_cells)
-        watch.listen_to_language(self._speak)
+        preferences_watch.listen(self._renew_cells)
+        preferences_watch.listen_to_language(self._speak)
 
     # ---- the fields
 
@@ -435,7 +437,7 @@ class RedundancyMapDock:
         self.gone = True
         self.lookout.stop()
         for listener in (self._renew_cells, self._speak):
-            watch.forget(listener)
+            preferences_watch.forget(listener)
         for background in (self.cells, self.consequences, self.comparison):
             background.cancel()
         self.renewing.timer.stop()
@@ -453,3 +455,52 @@ class RedundancyMapDock:
     def _changed_object(self, obj: Any, name: str) -> None:
         if name in ("Key", "Label"):
             self.renewing.ask()
+
+
+# ---- The tool that opens the map of the free rotation
+
+_open: list[RedundancyMapDock] = []  # Python must keep it as long as it is open; there is one
+
+
+def show(obj: Any) -> RedundancyMapDock:
+    """Open the map of a joint path and close the open one. Raises InputError if the path has no
+    map."""
+    source_of(obj)
+    while _open:
+        _open[0].close()
+    _open.append(RedundancyMapDock(obj, _open.remove))
+    return _open[0]
+
+
+def redundancy_map() -> None:
+    """Open the map of the selected joint path, program or job; without such a selection, of the
+    last joint path with a result."""
+    selected = [path for path in map(_joint_path, job_selection()) if path is not None]
+    if not selected and job_named():
+        _say(
+            tr("{} has no joint path to map; make one first, or select another job.").format(
+                job_named()
+            )
+        )
+        return
+    candidates = [obj for obj in App.ActiveDocument.Objects if _joint_path(obj) is obj and obj.Key]
+    if not selected and not candidates:
+        _say(tr("There is no joint path to map; make one first."))
+        return
+    try:
+        show(selected[0] if selected else candidates[-1])
+    except AmError as error:
+        App.Console.PrintWarning(error_line(error))
+        Gui.getMainWindow().statusBar().showMessage(translated_error(error), 8000)
+
+
+def _joint_path(obj: Any) -> Any:
+    stage = stage_of(obj)
+    if stage is not None and stage.kind == "program":
+        return obj.JointPath
+    return obj if stage is not None and stage.kind == "joint path" else None
+
+
+def _say(text: str) -> None:
+    App.Console.PrintWarning(text + "\n")
+    Gui.getMainWindow().statusBar().showMessage(text, 8000)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The dock of a simulation: it plays a run and ends when an object of the run changes or is
-deleted."""
+"""The tool and the dock of a simulation: it plays a run and ends when an object of the run
+changes or is deleted."""
 
 from __future__ import annotations
 
@@ -16,15 +16,17 @@ from pivy import coin
 from PySide import QtCore, QtGui
 
 from ...core.geometry import frames
+from ...core.issues import AmError
 from ...core.kinematics.links.own import NONE
 from ...core.simulation.table_links import Placing, at_rest, heights, placing
 from ...core.toolpath import Bead
 from ...core.types import Array, Mask
 from ...objects.stage import stage_of
-from .. import colours, dock_area
-from ..background import redraw
-from ..dock_area import Lookout
-from ..in_language import tr
+from ...objects.work import hooks
+from ...objects.work.progress import Cancelled
+from .. import colours, dock_area, preferences_watch
+from ..dock_area import Lookout, schedule_redraw
+from ..in_language import error_line, tr, translated_error
 from ..nodes.cell import (
     NOZZLE,
     PLATFORM,
@@ -40,9 +42,9 @@ from ..nodes.cell import (
 )
 from ..nodes.lines import Lines, fill
 from ..path.pieces import PathNodes, Rows
-from ..preferences import watch
+from ..widgets.shape_inputs import job_named, job_selection
 from .fields import Fields
-from .player import Player, Run
+from .player import Player, Run, prepared
 
 # ---- The pictures of a simulation: the whole document moves with the part, surrounded by machine
 # and nozzle
@@ -256,8 +258,8 @@ class Simulation:
         self.dock.closed = self.close
         self.dock.come()
         self.lookout = Lookout(lambda: self.run, self._changed_object, self.end, self.timer.stop)
-        watch.listen(self._preferences_changed)
-        watch.listen_to_language(self._speak)
+        preferences_watch.listen(self._preferences_changed)
+        preferences_watch.listen_to_language(self._speak)
         colours.listen(self._follow_theme)
         self.show()
         QtCore.QTimer.singleShot(
@@ -363,7 +365,7 @@ class Simulation:
             self.scene.show(
                 moment.row, state.joints, state.position, not bool(state.standing), moment.links
             )
-            redraw.schedule_redraw(self.scene.view)
+            schedule_redraw(self.scene.view)
         except (RuntimeError, ReferenceError):  # the view was closed
             self.end(tr("its view was closed"))
             return
@@ -390,7 +392,7 @@ class Simulation:
         self.timer.stop()
         self.lookout.stop()
         for listener in (self._preferences_changed, self._speak):
-            watch.forget(listener)
+            preferences_watch.forget(listener)
         colours.forget(self._follow_theme)
         scene.remove(document_goes)
         self.dock.empty()
@@ -422,3 +424,64 @@ def show(run: Run, view: Any) -> Simulation:
     simulation = Simulation(run, view)
     _open.append(simulation)
     return simulation
+
+
+# ---- The tool that opens a simulation
+
+SIMULATED_KINDS = ("program", "joint path")
+
+
+def simulate() -> None:
+    """Simulate the selected joint path, program or job; without such a selection, the document's
+    last joint path with a result."""
+    selected = [obj for obj in job_selection() if _kind(obj) in SIMULATED_KINDS]
+    if not selected and job_named():
+        _say(
+            tr("{} has no joint path to simulate; make one first, or select another job.").format(
+                job_named()
+            )
+        )
+        return
+    candidates = [
+        obj for obj in App.ActiveDocument.Objects if _kind(obj) == "joint path" and obj.Key
+    ]
+    if selected or candidates:
+        simulate_object(selected[0] if selected else candidates[-1])
+    else:
+        _say(tr("There is no joint path to simulate; make one first."))
+
+
+def simulate_object(obj: Any) -> None:
+    """Simulate a joint path or a program in a 3D view of its document; errors go to the status bar.
+
+    A long run is prepared in the background and can be cancelled.
+    """
+    name = obj.Document.Name
+    document = Gui.getDocument(obj.Document.Name)
+    views = document.mdiViewsOfType("Gui::View3DInventor")
+    active = document.activeView()
+    view = active if hasattr(active, "getSceneGraph") else views[0] if views else None
+    if view is None:
+        _say(tr("There is no 3D view to simulate in; open one."))
+        return
+    try:
+        run = hooks.carry_out(prepared(obj), tr("Simulation"))
+    except AmError as error:
+        App.Console.PrintError(error_line(error))
+        Gui.getMainWindow().statusBar().showMessage(translated_error(error), 8000)
+        return
+    except Cancelled:
+        return
+    # events were handled meanwhile
+    if name in App.listDocuments() and all(map(App.getDocument(name).getObject, run.objects)):
+        show(run, view)
+
+
+def _kind(obj: Any) -> str:
+    stage = stage_of(obj)
+    return "" if stage is None else stage.kind
+
+
+def _say(text: str) -> None:
+    App.Console.PrintWarning(text + "\n")
+    Gui.getMainWindow().statusBar().showMessage(text, 8000)

@@ -196,9 +196,9 @@ def _show_path(path: Any) -> None:
 
 
 def _simulate(obj: Any) -> None:
-    from ..simulation import tool
+    from ..simulation.dock import simulate_object
 
-    tool.show(obj)
+    simulate_object(obj)
 
 
 def _export(obj: Any) -> None:

@@ -107,9 +107,9 @@ def joint_path() -> None:
 
 def redundancy_map() -> None:
     """The map of a joint path."""
-    from ..redundancy_map import tool
+    from ..redundancy_map import dock
 
-    tool.redundancy_map()
+    dock.redundancy_map()
 
 
 def placement() -> None:
@@ -135,9 +135,9 @@ def infill() -> None:
 
 def simulate() -> None:
     """The dock of a simulation."""
-    from ..simulation import tool
+    from ..simulation import dock
 
-    tool.simulate()
+    dock.simulate()
 
 
 def program() -> None:

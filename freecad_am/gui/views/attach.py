@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Gives objects of ours their view providers; named to `objects.hooks` by InitGui."""
+"""Gives objects of ours their view providers, and opens their panels; named to `objects.hooks` by
+InitGui."""
 
 from __future__ import annotations
 
@@ -12,11 +13,16 @@ from PySide import QtCore
 from ...objects.families.registry import stage_family
 from ...objects.job_group import is_group
 from ...objects.stage import Stage
-from .. import registry
-from ..background.busy import carry_out
+from .. import preferences_watch, registry
+from ..busy import carry_out
 from ..families.registry import window_of
+from ..inspection.panel import InspectionPanel
 from ..inspection.view import InspectionView
-from ..preferences import watch
+from ..panels.cell import CellPanel
+from ..panels.joint_path import JointPathPanel
+from ..panels.program import ProgramPanel
+from ..panels.stage import show
+from ..panels.toolpath import ToolpathPanel
 from . import job
 from .base import MODE, StageView
 from .cell import CellView
@@ -41,7 +47,6 @@ _to_be_seen: set[str] = set()
 
 
 def _edit(obj: Any) -> None:
-    from ..panels.of_stages import edit
 
     edit(obj)
 
@@ -75,7 +80,7 @@ def _preferences_changed() -> None:
                 view.preferences_changed()
 
 
-watch.listen(_preferences_changed)
+preferences_watch.listen(_preferences_changed)
 
 
 def view_of(stage: Stage) -> type[StageView]:
@@ -112,3 +117,24 @@ def _show_all(name: str) -> None:
     for view in [] if document is None else document.mdiViewsOfType("Gui::View3DInventor"):
         view.viewIsometric()
         view.fitAll()
+
+
+# ---- The panel of every kind of stage; families have those of their features
+
+PANELS: dict[type, Any] = {
+    panel.stage: panel
+    for panel in (
+        CellPanel,
+        ToolpathPanel,
+        JointPathPanel,
+        ProgramPanel,
+        InspectionPanel,
+    )
+}
+
+
+def edit(obj: Any) -> None:
+    """Open the panel of an existing stage."""
+    family = stage_family(obj.Proxy)
+    panel = PANELS[type(obj.Proxy)] if family is None else window_of(family).panel()
+    show(panel(obj))

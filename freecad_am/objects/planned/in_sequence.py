@@ -22,7 +22,7 @@ from ...core.parameters.cell import CellParameters
 from ...core.process.deposit import balance as deposit_balance
 from ...core.strategies import sequence, support
 from ...core.toolpath import Toolpath as CoreToolpath
-from ..checks.on_its_part import check_on_part
+from ..checks.deposit import check_on_part
 from ..families.given import Given
 from ..families.planner import CHECKED, CLEARING, STRATEGY
 from ..shapes.bodies import Taken, bodies, snapshot_of

@@ -5,15 +5,17 @@ proposed by New Job.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from FreeCAD import Vector
 
 from ...brep import hub as hubs
 from ...brep.kernel import limits as kernel
+from ...brep.lies_on import carrier, lies_on_bend
 from ...brep.revolution.wall import find_wall
 from ...brep.shapes import part_depths
 from ...brep.walls.patch_wall import stand
@@ -33,7 +35,6 @@ from ...core.process.deposit.balance import MM3, NEGLIGIBLE, wall_balance
 from ...core.types import Array, Mask
 from ..developable_feature import found_in
 from ..shapes.bodies import Taken
-from .on_bends import bend_hint, rests_on_bend
 
 COARSE = 0.3  # mm; chord error that suffices for a first look at solids
 TOUCHING = 0.05  # mm from the surface of a hub
@@ -504,3 +505,30 @@ def _reaches_into(substrate: Taken, corners: Array, heights: Array) -> bool:
         substrate.shape.isInside(Vector(*corner), TOUCHING, True) for corner in corners[sample]
     ]
     return sum(inside) >= MIN_CORNERS
+
+
+# ---- Whether a deposit rests on a curved surface, for the choice of a family
+
+
+def rests_on_bend(deposit: Taken, ground: Taken) -> bool:
+    """Whether a part rests on a curved face of the ground; False for meshes, and if the kernel
+    fails.
+    """
+    with contextlib.suppress(*kernel.FAULTS):
+        return (
+            deposit.shape is not None
+            and ground.shape is not None
+            and lies_on_bend(deposit.shape, ground.shape)
+        )
+    return False
+
+
+def bend_hint(shape: Any) -> str:
+    """A hint for several solids if most rest on a curved face of another one; else ''."""
+    with contextlib.suppress(*kernel.FAULTS):
+        if name := carrier(shape.Solids):
+            return Text(
+                " (others are on the bend of {}: as the substrate it shapes their layers)",
+                name,
+            )
+    return ""

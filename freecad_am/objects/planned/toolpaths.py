@@ -1,30 +1,36 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a feature becomes a toolpath: layers and beads, the nozzle kept clear, what carries them."""
+"""How a feature becomes a toolpath: layers and beads, the nozzle kept clear, what carries them,
+and remedies where no tilt clears it."""
 
 from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...core.families.registry import family_of
 from ...core.geometry.obstacles import Body
-from ...core.issues import InputError, Issue
+from ...core.issues import ERROR, NOTE, AmError, InputError, Issue, Text, has_errors
 from ...core.kinematics.cell import mounted
 from ...core.parameters.cell import CellParameters
+from ...core.parameters.filled import PLANES
 from ...core.process import classes, model_notes
 from ...core.process.bead_model import check_speeds
 from ...core.process.deposit.pieces import deposited_twice
 from ...core.process.order import enforce_layer_time
 from ...core.process.wire import set_wire_feed
 from ...core.strategies import support
-from ...core.toolpath import MotionRules
+from ...core.strategies.clearance.look import CLEARANCE
+from ...core.toolpath import MotionRules, Toolpath
 from ...core.toolpath import Toolpath as CoreToolpath
 from ..families.given import Given, platform_frame
 from ..families.planner import CHECKED, CLEARING, STRATEGY
 from ..families.registry import planner_for, planner_of
 from ..shapes.cell_obstacles import platforms
 from ..work import progress
+
+if TYPE_CHECKING:
+    from ...core.planning.other_cells import Fixed
 
 
 def seen_of(cell: CellParameters) -> CellParameters:
@@ -153,3 +159,54 @@ def measure_infill(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
 def bases_of(inputs: Given) -> list[Any]:
     """The bases of solids; empty for walls and faces."""
     return [group.base for group in getattr(inputs.wall, "groups", ())]
+
+
+# ---- Remedies for a nozzle that no tilt clears: one build direction for a whole leaning wall,
+# plane layers for a solid in curved ones
+
+
+def in_planes(inputs: Given, fit: Callable[[Toolpath], Toolpath] | None) -> Fixed | None:
+    """A solid in curved layers that start at its base, planned in plane ones; None for others."""
+    if not inputs.strategy.has_curved_layers or any(
+        group.start is not None for group in inputs.wall.groups
+    ):
+        return None
+    from ...core.planning.other_cells import Fixed
+
+    flat = dataclasses.replace(inputs, strategy=dataclasses.replace(inputs.strategy, layers=PLANES))
+    return Fixed(
+        "`strategy.layers: planes`", lambda: planned(flat) if fit is None else planned(flat, fit)
+    )
+
+
+def try_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
+    """A toolpath on which the nozzle touches something, and nothing else is wrong, with a note on whether it does with fixed
+    build directions, or plane layers, planned so; others as they are."""
+    errors = {issue.code for issue in toolpath.issues if issue.level == ERROR}
+    if fixed is None or errors != {CLEARANCE}:
+        return toolpath
+    from ...core.planning.remedies import NO_REMEDY, REMEDY
+
+    progress.report(1.0, Text("searching for a change that clears the nozzle: {}", fixed.remedy))
+    try:
+        clear = not has_errors(list(fixed.make().issues))
+    except AmError:  # what cannot be asked for is not a remedy
+        clear = False
+    note = (
+        Issue(
+            NOTE,
+            REMEDY,
+            Text(
+                "with {} the nozzle is clear; the toolpath was planned with it, the joint path "
+                "was not",
+                fixed.remedy,
+            ),
+        )
+        if (clear)
+        else Issue(
+            NOTE,
+            NO_REMEDY,
+            Text("the nozzle is not clear with {} either (tested)", fixed.remedy),
+        )
+    )
+    return dataclasses.replace(toolpath, issues=(note, *toolpath.issues))

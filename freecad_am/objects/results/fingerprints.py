@@ -20,8 +20,7 @@ from typing import Any
 import numpy as np
 
 from ..fields import properties
-from ..shapes.bodies import body_of, global_shape, shape_of
-from ..shapes.meshes import is_mesh, mesh_of
+from ..shapes.bodies import body_of, global_shape, is_mesh, mesh_of, shape_of
 from ..shapes.places import outer_matrix
 
 MOST_KEPT = 64  # shapes, and meshes

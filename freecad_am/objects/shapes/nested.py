@@ -12,8 +12,7 @@ import numpy as np
 import Part
 
 from ...core.issues import InputError
-from .bodies import global_shape, renumbers
-from .meshes import is_mesh
+from .bodies import global_shape, is_mesh, renumbers
 from .places import GROUPS, ArrayElement, containers_of, elements_of, is_hidden_array, object_of
 
 FACE, EDGE = "Face", "Edge"  # prefixes of their names

@@ -20,9 +20,8 @@ from ...core.issues import NOTE, InputError, Issue, Text
 from ..results.findings import parts_of, text_of
 from ..work import hooks
 from . import linked_files
-from .bodies import global_shape, renumbers
+from .bodies import global_shape, is_mesh, mesh_of, refuse_mixed, renumbers
 from .file_links import missing_files
-from .meshes import is_mesh, mesh_of, refuse_mixed
 from .places import GROUPS, ArrayElement, Dependencies, dependencies_of, element_count, elements_of
 
 PROPERTY = "FileIssues"

@@ -18,7 +18,7 @@ from ...core.motion import Motion
 from ...core.simulation.achievable_feed import from_next, speed_ratios
 from ...core.toolpath import Toolpath
 from ...core.types import Array, Integers, Mask, NDArray
-from ...plots.look import shade
+from ...plots.chart import shade
 from .. import units
 from ..template import read_part
 

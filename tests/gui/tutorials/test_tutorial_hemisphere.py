@@ -2,7 +2,7 @@
 """Tutorial 1, step by step: a part of revolution from a STEP file to a program, with the rotation about the tool by hand."""
 
 from freecad_am import api
-from freecad_am.gui.redundancy_map import tool as docks
+from freecad_am.gui.redundancy_map import dock as docks
 
 PAGE = "hemisphere"
 

@@ -11,7 +11,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.kinematics import external
-from freecad_am.gui.redundancy_map import tool as docks
+from freecad_am.gui.redundancy_map import dock as docks
 
 PAGE = "positioner"
 ROBOT, TABLE, AWAY, FACE = "kuka-kr8-r2100-2-arc-hw", "motoman-motopos-d500", 1400.0, 20.0

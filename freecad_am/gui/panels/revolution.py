@@ -6,18 +6,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ....core.issues import AmError, Issue
-from ....core.parameters.strategy import RevolutionParameters
-from ....core.strategies.revolution.plan import Slices, sliced
-from ....objects.checks import deposit
-from ....objects.feature import RevolutionFeature
-from ....objects.fields.preferences import in_user_units
-from ....objects.stage_parts import Outcome
-from ...in_language import sentence, tr, translated
-from ...nodes.lines import MeridianNodes
-from ...views.preview import Draft
-from ...widgets import shape_inputs
-from ..preview import PreviewPanel
+from ...core.issues import AmError, Issue
+from ...core.parameters.strategy import RevolutionParameters
+from ...core.strategies.revolution.plan import Slices, sliced
+from ...objects.checks import deposit
+from ...objects.feature import RevolutionFeature
+from ...objects.fields.preferences import in_user_units
+from ...objects.stage_parts import Outcome
+from ..in_language import sentence, tr, translated
+from ..nodes.lines import MeridianNodes
+from ..views.preview import Draft
+from ..widgets import shape_inputs
+from .preview import PreviewPanel
 
 Drawing = tuple[RevolutionParameters, Slices, list[Issue]]
 

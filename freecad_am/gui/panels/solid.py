@@ -10,25 +10,25 @@ from typing import Any
 import numpy as np
 from PySide import QtCore, QtGui
 
-from ....core.issues import AmError
-from ....core.layers import centre_line
-from ....core.layers import guide_field as along
-from ....core.layers.stacking import CONTACT_HEIGHTS, Leaning, find_leaning, prepare_stack
-from ....core.parameters.filled import SolidParameters
-from ....core.strategies import size
-from ....core.types import Array
-from ....objects.fields.preferences import in_user_units
-from ....objects.shapes.bodies import FIXTURES
-from ....objects.solid_feature import SolidFeature
-from ....objects.stage_parts import Link, Outcome
-from ... import picking, recorded
-from ...in_language import marked, sentence, tr
-from ...nodes.hub import NOTHING, Drawing, HubNodes, drawing
-from ...nodes.lines import Faces
-from ...views.preview import Draft
-from ...widgets.pick_field import PickField
-from ...widgets.upright import scrolls
-from ..preview import PickPanel, coarsened
+from ...core.issues import AmError
+from ...core.layers import centre_line
+from ...core.layers import guide_field as along
+from ...core.layers.stacking import CONTACT_HEIGHTS, Leaning, find_leaning, prepare_stack
+from ...core.parameters.filled import SolidParameters
+from ...core.strategies import size
+from ...core.types import Array
+from ...objects.fields.preferences import in_user_units
+from ...objects.shapes.bodies import FIXTURES
+from ...objects.solid_feature import SolidFeature
+from ...objects.stage_parts import Link, Outcome
+from .. import picking, recorded
+from ..in_language import marked, sentence, tr
+from ..nodes.hub import NOTHING, Drawing, HubNodes, drawing
+from ..nodes.lines import Faces
+from ..views.preview import Draft
+from ..widgets.pick_field import PickField
+from ..widgets.upright import scrolls
+from .preview import PickPanel, coarsened
 
 STEEPEST = 89  # deg of the slider
 MM2_PER_CM2 = 100.0

@@ -6,18 +6,18 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from ....core.parameters.filled import CladdingParameters
-from ....objects.cladding_feature import CladdingFeature
-from ....objects.fields.preferences import in_user_units
-from ....objects.shapes.bodies import FIXTURES
-from ....objects.stage_parts import Link, Outcome
-from ... import picking, recorded
-from ...in_language import marked, sentence, tr
-from ...nodes.wall import WallNodes
-from ...views.cladding import borders_of
-from ...views.preview import Draft
-from ...widgets.pick_field import PickField
-from ..preview import PickPanel
+from ...core.parameters.filled import CladdingParameters
+from ...objects.cladding_feature import CladdingFeature
+from ...objects.fields.preferences import in_user_units
+from ...objects.shapes.bodies import FIXTURES
+from ...objects.stage_parts import Link, Outcome
+from .. import picking, recorded
+from ..in_language import marked, sentence, tr
+from ..nodes.wall import WallNodes
+from ..views.cladding import borders_of
+from ..views.preview import Draft
+from ..widgets.pick_field import PickField
+from .preview import PickPanel
 
 FACES = Link(
     "Source",

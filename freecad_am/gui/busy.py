@@ -16,9 +16,9 @@ from typing import Any
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ...objects.work import progress
-from ..in_language import tr, translated
-from ..signals import connect
+from ..objects.work import progress
+from .in_language import tr, translated
+from .signals import connect
 from .worker import Worker
 
 NAME = "RoboticAM_Progress"

@@ -16,12 +16,12 @@ import os
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from ...core.geometry import job_files
-from ...core.issues import InputError, Text
-from ...sections import tree
-from .. import run
-from ..job import job
-from ..outputs.folder import REPORT
+from ..core.geometry import job_files
+from ..core.issues import InputError, Text
+from ..sections import tree
+from . import run
+from .job import job
+from .output_folder import REPORT
 from .row import CHECKED
 
 SETTING = "part.set."

@@ -8,16 +8,16 @@ from typing import Any
 
 import numpy as np
 
-from ....objects.curves_feature import CurvesFeature
-from ....objects.fields.preferences import in_user_units
-from ....objects.shapes.bodies import FIXTURES
-from ....objects.stage_parts import Link, Outcome
-from ... import picking, recorded
-from ...in_language import marked, sentence, tr
-from ...nodes.wall import WallNodes
-from ...views.preview import Draft
-from ...widgets.pick_field import PickField
-from ..preview import PickPanel
+from ...objects.curves_feature import CurvesFeature
+from ...objects.fields.preferences import in_user_units
+from ...objects.shapes.bodies import FIXTURES
+from ...objects.stage_parts import Link, Outcome
+from .. import picking, recorded
+from ..in_language import marked, sentence, tr
+from ..nodes.wall import WallNodes
+from ..views.preview import Draft
+from ..widgets.pick_field import PickField
+from .preview import PickPanel
 
 CURVES = Link(
     "Source",

@@ -8,12 +8,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from ...core.issues import AmError, Issue, has_errors
-from ...sections import tree
-from .. import run as planning
-from ..child import Child, crash
-from ..console import Session
-from ..job import job
+from ..core.issues import AmError, Issue, has_errors
+from ..sections import tree
+from . import run as planning
+from .child import Child, crash
+from .console import Session
+from .job import job
 
 CHECKED = "checked"  # status of a row that was not planned
 

@@ -12,7 +12,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtCore, QtGui
 
-from ...objects.fields.preferences import GROUP, SCHEME, SHOWN, UNIT_SETTINGS
+from ..objects.fields.preferences import GROUP, SCHEME, SHOWN, UNIT_SETTINGS
 
 _listeners: list[Callable[[], None]] = []
 _readers: list[Callable[[], None]] = []  # who shows texts

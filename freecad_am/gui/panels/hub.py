@@ -8,21 +8,21 @@ from typing import Any
 
 import numpy as np
 
-from ....core.issues import AmError, Issue
-from ....core.parameters.filled import DevelopableParameters
-from ....core.strategies import size
-from ....core.types import Array
-from ....objects.checks import deposit
-from ....objects.developable_feature import DevelopableFeature
-from ....objects.fields.preferences import in_user_units
-from ....objects.shapes.bodies import FIXTURES
-from ....objects.stage_parts import Link, Outcome
-from ... import picking, recorded
-from ...in_language import marked, sentence, tr
-from ...nodes.hub import NOTHING, Drawing, HubNodes, drawing
-from ...views.preview import Draft
-from ...widgets.pick_field import PickField
-from ..preview import PickPanel, coarsened
+from ...core.issues import AmError, Issue
+from ...core.parameters.filled import DevelopableParameters
+from ...core.strategies import size
+from ...core.types import Array
+from ...objects.checks import deposit
+from ...objects.developable_feature import DevelopableFeature
+from ...objects.fields.preferences import in_user_units
+from ...objects.shapes.bodies import FIXTURES
+from ...objects.stage_parts import Link, Outcome
+from .. import picking, recorded
+from ..in_language import marked, sentence, tr
+from ..nodes.hub import NOTHING, Drawing, HubNodes, drawing
+from ..views.preview import Draft
+from ..widgets.pick_field import PickField
+from .preview import PickPanel, coarsened
 
 SOLIDS = Link(
     "Solids",

@@ -23,10 +23,10 @@ from weakref import WeakMethod
 
 from PySide import QtCore
 
-from ...core import one_thread
-from ...core.issues import AmError
-from ...objects.work.progress import Cancelled, told_to
-from ..in_language import tr, translated, translated_error
+from ..core import one_thread
+from ..core.issues import AmError
+from ..objects.work.progress import Cancelled, told_to
+from .in_language import tr, translated, translated_error
 
 AGAIN = 200  # ms between two checks of running threads
 YOUNG = (

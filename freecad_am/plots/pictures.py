@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pictures of the axes: places, speeds, accelerations and jerks against their limits, and the condition."""
+"""Pictures by name: axes with their speeds, accelerations and jerks against limits, the
+condition, and charts of layers."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +15,7 @@ from ..core.kinematics.cell import Cell
 from ..core.layers.plane_field import outline
 from ..core.process import model_notes
 from ..core.types import Array, Index, Integers, Mask
-from .chart import INF, LINE, MARKED, OUTLINE, STEP, Bars, Chart, Curve, Quantity
+from .chart import INF, LINE, MARKED, OUTLINE, STEP, Bars, Chart, Curve, Picture, Quantity, fit
 from .source import Source
 
 TIME, PATH = "time", "path"
@@ -553,3 +555,73 @@ def _histogram(title: str, x: Quantity, values: Array, length: Array) -> Chart:
     edges = np.linspace(low - pad, high + pad, BINS + 1)
     share = np.histogram(values, edges, weights=length)[0] * (100.0 / length.sum())
     return Chart(title, x, Quantity("share of the length", "%"), bars=Bars("share", edges, share))
+
+
+# ---- All pictures by name
+
+Charts = tuple[Chart, ...]
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A picture. along: drawn over time or path, by which its charts come; else `of`, from layers. machine: needs a cell."""
+
+    title: str
+    along: Callable[[Source, Rows], Charts] | None = None
+    from_layers: Callable[[Source, tuple[int, int]], Charts] | None = None
+    machine: bool = False
+    lacking: str = "these layers have nothing to show"
+
+
+def _fit(source: Source, layers: tuple[int, int]) -> Charts:
+    model = source.model
+    return () if model is None else (fit(*model, source.process.bead_width),)
+
+
+_NO_PLANES = "only solids in planar layers have sections and volumes of layers"
+_NO_MODEL = "no bead model sets the speeds (process.bead_model)"
+PICTURES = {
+    "angles": Entry("Joint angles", angles, machine=True),
+    "speeds": Entry("Joint speeds", speeds, machine=True),
+    "shares": Entry("Joint speeds in %", shares, machine=True),
+    "accelerations": Entry("Joint accelerations", accelerations, machine=True),
+    "jerks": Entry("Joint jerks", jerks, machine=True),
+    "condition": Entry(
+        "Condition", condition, machine=True, lacking="this machine has no condition"
+    ),
+    "travel": Entry("Speed along the path", travel),
+    "deposit": Entry("Deposit rate", deposit),
+    "spacing": Entry(
+        "Distance between layers",
+        from_layers=spacing,
+        lacking="none of these layers rests on another",
+    ),
+    "volumes": Entry("Volume by layer", from_layers=by_layer, lacking=_NO_PLANES),
+    "infill": Entry(
+        "Void and double deposit",
+        from_layers=infill,
+        lacking="only solids in planar layers are measured for void and double deposit",
+    ),
+    "section": Entry("Section of the last layer", from_layers=section, lacking=_NO_PLANES),
+    "heights": Entry("Predicted heights", from_layers=heights, lacking=_NO_MODEL),
+    "spread": Entry("Predicted widths and speeds", from_layers=distributions, lacking=_NO_MODEL),
+    "fit": Entry("Fit of the bead widths", from_layers=_fit, lacking=_NO_MODEL),
+}
+
+
+def picture(
+    name: str, source: Source, over: str = TIME, layers: tuple[int, int] | None = None
+) -> Picture:
+    """A picture of PICTURES, over TIME or PATH where it is one along the job. layers: first and last, all when left out.
+
+    One that there is not has no charts and says why. Raises InputError where a table of a bead model cannot be read.
+    """
+    entry = PICTURES[name]
+    if entry.machine and source.cell is None:
+        return Picture(name, entry.title, (), "a toolpath has no joints yet; choose a joint path")
+    if entry.along is not None:
+        charts = entry.along(source, rows(source, over, layers))
+    else:
+        assert entry.from_layers is not None
+        charts = entry.from_layers(source, layers or (0, len(source.toolpath.layers) - 1))
+    return Picture(name, entry.title, charts, "" if charts else entry.lacking)

@@ -10,14 +10,14 @@ import FreeCAD as App
 import FreeCADGui as Gui
 from PySide import QtGui
 
-from ...core.issues import InputError
-from ...core.kinematics.machines import machine
-from ...objects import user_machines
-from ...objects.fields import preferences
-from ...objects.fields.rows import MIXED
-from ...posts import catalogue
-from ..in_language import tr, translated
-from ..widgets import choices, fields
+from ..core.issues import InputError
+from ..core.kinematics.machines import machine
+from ..objects import user_machines
+from ..objects.fields import preferences
+from ..objects.fields.rows import MIXED
+from ..posts import catalogue
+from .in_language import tr, translated
+from .widgets import choices, fields
 
 
 class PreferencesPage:

@@ -8,18 +8,18 @@ from typing import Any
 
 import numpy as np
 
-from ....core.issues import Issue
-from ....objects.checks import deposit
-from ....objects.fields.preferences import in_user_units
-from ....objects.shapes.bodies import snapshot_of
-from ....objects.stage_parts import Outcome
-from ....objects.surface_feature import SurfaceFeature
-from ... import picking
-from ...in_language import marked, sentence, tr, translated
-from ...nodes.wall import WallNodes, face_mesh, first_curves
-from ...views.preview import Draft
-from ...widgets.pick_field import PickField
-from ..preview import PickPanel
+from ...core.issues import Issue
+from ...objects.checks import deposit
+from ...objects.fields.preferences import in_user_units
+from ...objects.shapes.bodies import snapshot_of
+from ...objects.stage_parts import Outcome
+from ...objects.surface_feature import SurfaceFeature
+from .. import picking
+from ..in_language import marked, sentence, tr, translated
+from ..nodes.wall import WallNodes, face_mesh, first_curves
+from ..views.preview import Draft
+from ..widgets.pick_field import PickField
+from .preview import PickPanel
 
 _NAMES = {"Source": marked("Wall")}
 _ELEMENTS = {"Source": picking.FACE, "StartEdges": picking.EDGE}

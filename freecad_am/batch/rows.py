@@ -12,12 +12,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
-from .. import run as planning
-from .. import versions
-from ..child import Child
-from ..console import Session, escaped
 from . import row as row_process
-from . import table
+from . import row_table, versions
+from . import run as planning
+from .child import Child
+from .console import Session, escaped
 
 FIGURES = (
     "layers",
@@ -48,13 +47,15 @@ class How:
 def run(path: str, job_path: str, output: str | None, how: How, session: Session) -> int:
     """Plan every row; the summary goes to stdout. The exit status of the worst row: 1 over 130 over 2 over 3."""
     planning.import_all()  # once for all rows
-    columns, rows = table.read(path, job_path)
+    columns, rows = row_table.read(path, job_path)
     folder = output or os.path.join(
         os.path.dirname(os.path.abspath(job_path)),
         "out",
         os.path.splitext(os.path.basename(path))[0],
     )
-    journal = table.Journal(folder, versions.code() + str(versions.found_versions()), how.resume)
+    journal = row_table.Journal(
+        folder, versions.code() + str(versions.found_versions()), how.resume
+    )
     results: dict[int, dict[str, Any]] = {}
     waiting = []
     for row in rows:
@@ -88,8 +89,8 @@ def run(path: str, job_path: str, output: str | None, how: How, session: Session
 
 
 def _planned(
-    rows: list[table.Row], folder: str, how: How, session: Session, journal: table.Journal
-) -> Iterable[tuple[table.Row, dict[str, Any]]]:
+    rows: list[row_table.Row], folder: str, how: How, session: Session, journal: row_table.Journal
+) -> Iterable[tuple[row_table.Row, dict[str, Any]]]:
     """Rows with their results, as they end; finished rows are written to the journal."""
     if not how.scheduler or not rows:
         return _planned_here(rows, folder, how, session, journal)
@@ -97,19 +98,19 @@ def _planned(
 
 
 def _planned_there(
-    rows: list[table.Row], folder: str, how: How, session: Session, journal: table.Journal
-) -> Iterator[tuple[table.Row, dict[str, Any]]]:
-    from .. import cluster
+    rows: list[row_table.Row], folder: str, how: How, session: Session, journal: row_table.Journal
+) -> Iterator[tuple[row_table.Row, dict[str, Any]]]:
+    from . import cluster
 
     with cluster.Cluster(how.scheduler, session) as workers:
         yield from workers.planned(rows, folder, how.dry, journal)
 
 
 def _planned_here(
-    rows: list[table.Row], folder: str, how: How, session: Session, journal: table.Journal
-) -> Iterator[tuple[table.Row, dict[str, Any]]]:
+    rows: list[row_table.Row], folder: str, how: How, session: Session, journal: row_table.Journal
+) -> Iterator[tuple[row_table.Row, dict[str, Any]]]:
     waiting = list(reversed(rows))
-    running: dict[Any, tuple[table.Row, Child]] = {}
+    running: dict[Any, tuple[row_table.Row, Child]] = {}
     try:
         while waiting or running:
             while waiting and len(running) < how.processes:
@@ -153,7 +154,9 @@ def _progress(finished: int, rows: int, now: int, seconds: float) -> str:
     return f"{finished} of {rows} rows done" + (f", about {text} left" if finished < rows else "")
 
 
-def _summary(columns: list[str], rows: list[table.Row], results: dict[int, dict[str, Any]]) -> str:
+def _summary(
+    columns: list[str], rows: list[row_table.Row], results: dict[int, dict[str, Any]]
+) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(

@@ -11,11 +11,10 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
-from ...core.issues import InputError, Text
-from ...posts import earlier as earlier_posts
-from .. import child
-from ..job.job import Job
-from . import staging
+from ..core.issues import InputError, Text
+from ..posts import earlier as earlier_posts
+from . import child, staging
+from .job.job import Job
 
 WAYPOINTS, REPORT, PAGE, PROGRAMS, WIRES = (
     "waypoints.csv",
@@ -196,7 +195,7 @@ def results(stages: Any, programs: Sequence[str]) -> Any:
     from freecad_am import api
     from freecad_am.objects.checks import preflight
 
-    from ...report.figures import Results
+    from ..report.figures import Results
 
     path = stages.joint_path
     survey = functools.cache(preflight.survey_of(stages.toolpath, path, stages.job.program))
@@ -213,7 +212,7 @@ def results(stages: Any, programs: Sequence[str]) -> Any:
 
 def job(read_job: Job, stages: Any) -> Any:
     """The job in the form of its report."""
-    from ...report import figures
+    from ..report import figures
 
     features = tuple(
         figures.Feature(
