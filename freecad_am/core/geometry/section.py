@@ -25,7 +25,13 @@ class Section:
 
     @property
     def edges(self) -> Array:
-        """(k, 2, 2) mm, from start to end."""
+        """The edges of all loops.
+
+        Returns
+        -------
+        Array
+            (k, 2, 2) mm on the plane: start and end of each edge. The last edge of a loop ends at its first point.
+        """
         return np.concatenate(
             [np.zeros((0, 2, 2))]
             + [np.stack([loop, np.roll(loop, -1, axis=0)], axis=1) for loop in self.loops]

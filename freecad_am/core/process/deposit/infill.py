@@ -110,7 +110,22 @@ class Picture:
 
 
 def picture(toolpath: Toolpath, number: int, across: float = PIXELS_ACROSS) -> Picture | None:
-    """A layer on a raster of pixels, of which `across` are a nominal bead wide; None where its section is not known."""
+    """A layer on a raster of pixels.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        Its layers have sections where these are known.
+    number : int
+        Number of the layer, from 0.
+    across : float
+        Pixels to a nominal bead width. A large layer has larger pixels, to keep the raster below a limit.
+
+    Returns
+    -------
+    Picture or None
+        What is inside, reached and covered; None where the section is not known or has no area.
+    """
     layer = toolpath.layers[number]
     one = toolpath.features[layer.feature].values if toolpath.features else toolpath
     return None if layer.section is None else _picture(layer, layer.section, one, across)
@@ -157,7 +172,23 @@ def _reached(section: Section, raster: Raster, inside: Mask, width: float) -> Ma
 
 
 def strokes(layer: Layer, section: Section, toolpath: Toolpath) -> list[Stroke]:
-    """The beads of a layer on the plane of its section, with their effective widths: volume / length / layer height."""
+    """The beads of a layer on the plane of its section.
+
+    Parameters
+    ----------
+    layer : Layer
+        Beads in part coordinates, mm.
+    section : Section
+        The plane, and the bead width where the toolpath has none.
+    toolpath : Toolpath
+        Bead width, layer height and bead model of the feature.
+
+    Returns
+    -------
+    list of Stroke
+        Points (n, 2) mm without repeats, and effective widths (n - 1,) mm: volume / length / layer height. Beads without
+        length are left out.
+    """
     result = []
     for bead in layer.beads:
         widths = _effective_widths(bead, toolpath, section)

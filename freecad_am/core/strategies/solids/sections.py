@@ -37,7 +37,22 @@ def section_of(layer: Slice, strategy: FilledParameters) -> Section | None:
 def add_sections(
     layers: Sequence[Layer], sections: Sequence[tuple[Stack, int, Section]], course: Course
 ) -> tuple[Layer, ...]:
-    """The layers with sections, each of a layer of a stack by its number there; several in one layer are one section."""
+    """The layers with the sections they fill.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        All layers of the toolpath, in the order of the course.
+    sections : sequence of (Stack, int, Section)
+        A section, its stack, and the number of its layer in this stack.
+    course : Course
+        Finds the layer of the toolpath; sections of layers it leaves out are dropped.
+
+    Returns
+    -------
+    tuple of Layer
+        Several sections in one layer are joined, and sparse if one of them is. Layers without a section have None.
+    """
     by_layer: dict[int, Section] = {}
     for stack, stack_layer, section in sections:
         number = course.number(stack.group, stack.solid, stack_layer)
