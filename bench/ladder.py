@@ -134,7 +134,8 @@ def _beside_a_wall() -> Cell:
         np.eye(4),
     )
     middle = np.add(WALL_LOW, 0.5 * np.array(WALL)) + STATION
-    return dataclasses.replace(cell, obstacles=(box(WALL, frames.pose(np.eye(3), middle), "wall"),))
+    wall = box(WALL, frames.pose(np.eye(3), middle), "wall")
+    return dataclasses.replace(cell, shapes=cells.CellShapes(obstacles=(wall,)))
 
 
 def _cost(path: JointPath) -> float:

@@ -214,9 +214,7 @@ class JointPath(Stage):
                 job.fixed,
                 own_speed=job.own_speed,
                 cylinders=cylinders or cylinders_of(cell),
-                obstacles=cell.obstacles,
-                torch=cell.torch,
-                external_links=cell.external_links,
+                shapes=cell.shapes,
                 look=look,
             )
             _report_search_time(toolpath, issues, seconds_per_point)
@@ -277,9 +275,13 @@ def _fit_notes(cell: cells.Cell) -> list[Issue]:
 
 def _not_kept(cell: cells.Cell) -> list[Issue]:
     """A note if the cell has obstacles that planning does not keep links clear of."""
-    if not cell.obstacles or cell.arm_clearance is not None or not cell.arrangement.links_known:
+    if (
+        not cell.shapes.obstacles
+        or cell.arm_clearance is not None
+        or not cell.arrangement.links_known
+    ):
         return []
-    names = ", ".join(obstacle.name for obstacle in cell.obstacles)
+    names = ", ".join(obstacle.name for obstacle in cell.shapes.obstacles)
     return [
         Issue(
             NOTE,
@@ -298,7 +300,7 @@ def _not_known(cell: cells.Cell) -> list[Issue]:
     shape.
     """
     if cell.external is None or not (
-        lacking := ", ".join(titles_without_shape(cell.external, cell.external_links))
+        lacking := ", ".join(titles_without_shape(cell.external, cell.shapes.external_links))
     ):
         return []
     return [

@@ -165,6 +165,20 @@ _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
+class CellShapes:
+    """The shapes of a cell beside robot and part.
+
+    obstacles: obstacles in the world, the manufacturer's base frame. torch: the holder of the
+    nozzle, in the frame of its tip, Z into it. external_links: the known links of positioner
+    and track, each in its own frame.
+    """
+
+    obstacles: tuple[Body, ...] = ()
+    torch: Torch | None = None
+    external_links: tuple[ExternalLink, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class Cell:
     """A resolved cell. Frames are (4, 4) in mm.
 
@@ -175,10 +189,9 @@ class Cell:
     coordinates, the frame on the platform. branch: index of the branch (opw.branch_index), or
     None to search all. external: external axes; the machine is then the robot together with
     them, and base_link of its chain is the face that carries the part, or the world if only
-    the robot is carried. obstacles: obstacles in the world, the manufacturer's base frame.
-    up: (3,) against gravity, there. torch: the holder of the nozzle, in the frame of its tip,
-    Z into it. offset: pose of the part from touched points. external_links: the known links
-    of positioner and track, each in its own frame.
+    the robot is carried. up: (3,) against gravity in the world, the manufacturer's base frame.
+    offset: pose of the part from touched points. shapes: what stands in the cell beside robot
+    and part.
     """
 
     machine: Machine
@@ -192,11 +205,9 @@ class Cell:
     platform_diameter: float = 0.0
     external: ExternalAxes | None = None
     arm_clearance: float | None = None
-    obstacles: tuple[Body, ...] = ()
     up: Array = field(default_factory=lambda: np.array(UP))
-    torch: Torch | None = None
     offset: WorkOffset | None = None
-    external_links: tuple[ExternalLink, ...] = ()
+    shapes: CellShapes = CellShapes()
 
     @property
     def robot(self) -> Machine:
@@ -276,14 +287,14 @@ class Cell:
         Returns
         -------
         (n, links, 4, 4) array
-            Frames of `external_links`, seen from the start of the machine's chain, mm.
+            Frames of `shapes.external_links`, seen from the start of the machine's chain, mm.
         """
         values = self.external_of(joints)
-        if not self.external_links or self.external is None or values is None:
+        if not self.shapes.external_links or self.external is None or values is None:
             return np.zeros((len(joints), 0, 4, 4))
         links = self.external.links(values)
         in_world = np.stack(
-            [links[link.mechanism][:, link.link] for link in self.external_links], axis=1
+            [links[link.mechanism][:, link.link] for link in self.shapes.external_links], axis=1
         )
         return np.asarray(self.world(joints)[:, None] @ in_world)
 
@@ -321,11 +332,11 @@ class Cell:
         tuple of Body
             Empty if the part moves in the world.
         """
-        if self.part_moves or not self.obstacles:
+        if self.part_moves or not self.shapes.obstacles:
             return ()
         world = self.world(np.zeros((1, self.machine.chain.axes)))[0]
         to_part = self.mount @ frames.inverse(self.station) @ world
-        return tuple(body.move(to_part) for body in self.obstacles)
+        return tuple(body.move(to_part) for body in self.shapes.obstacles)
 
     def pose_frames(
         self, position: Array, tool: Array, external: Array | None = None
@@ -664,7 +675,7 @@ def resolve(
         arm_clearance=parameters.arm_clearance,
         up=upward(parameters.world_up),
         offset=offset,
-        external_links=external_links(external),
+        shapes=CellShapes(external_links=external_links(external)),
     )
 
 

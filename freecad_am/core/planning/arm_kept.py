@@ -206,7 +206,7 @@ def clearance_issue(
         An error with the remedy.
     """
     where = " on the rapid way to the bead" if on_way else ""
-    stands = what in [external_link.name for external_link in cell.external_links]
+    stands = what in [external_link.name for external_link in cell.shapes.external_links]
     if link == NOZZLE:
         moved = (
             "lift the part over it by cell.platform, or move it in cell.external"

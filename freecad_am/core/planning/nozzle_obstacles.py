@@ -38,7 +38,10 @@ def in_the_way(cell: Cell) -> tuple[str, ...]:
     tuple of str
         Names as messages show them: obstacles, then links of external axes.
     """
-    return (*(body.name for body in cell.obstacles), *(link.name for link in cell.external_links))
+    return (
+        *(body.name for body in cell.shapes.obstacles),
+        *(link.name for link in cell.shapes.external_links),
+    )
 
 
 def findings(motion: Motion, cell: Cell) -> list[Issue]:
@@ -49,7 +52,7 @@ def findings(motion: Motion, cell: Cell) -> list[Issue]:
         laying = rows[hits]
         remedy = (
             "move it in cell.obstacles, or the part"
-            if number < len(cell.obstacles)
+            if number < len(cell.shapes.obstacles)
             else ("lift the part over it by cell.platform, or move it in cell.external")
         )
         if len(laying):
@@ -96,8 +99,8 @@ def find_contacts(cell: Cell, start: Array, end: Array) -> Mask:
 
 
 def _find_batch_contacts(cell: Cell, start: Array, end: Array) -> Mask:
-    nozzle, turned, obstacles = cell.nozzle, end - start, len(cell.obstacles)
-    hits = np.zeros((obstacles + len(cell.external_links), len(start)), dtype=bool)
+    nozzle, turned, obstacles = cell.nozzle, end - start, len(cell.shapes.obstacles)
+    hits = np.zeros((obstacles + len(cell.shapes.external_links), len(start)), dtype=bool)
     joint_steps = np.abs(turned / np.where(cell.machine.chain.sliding, SLIDE, STEP)).max(
         axis=1, initial=0.0
     )
@@ -111,11 +114,11 @@ def _find_batch_contacts(cell: Cell, start: Array, end: Array) -> Mask:
         batch = slice(begin, begin + PIECE)
         joints = start[move[batch]] + share[batch, None] * turned[move[batch]]
         tip, axis = _in_world(cell, joints)
-        for number, body in enumerate(cell.obstacles):
+        for number, body in enumerate(cell.shapes.obstacles):
             hit = scene((body,), tip, cone.reach).find_touching(cone, tip, axis)
             hits[number, move[batch][hit]] = True
         to_world = frames.inverse(cell.world(joints))[:, None] @ cell.external_link_frames(joints)
-        for number, link in enumerate(cell.external_links):
+        for number, link in enumerate(cell.shapes.external_links):
             hit = link.solid.find_touching(
                 cone.bodies, *_transform(frames.inverse(to_world[:, number]), tip, axis)
             )

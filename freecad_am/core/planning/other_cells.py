@@ -15,14 +15,12 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry import frames
-from ..geometry.obstacles import Body
 from ..issues import Issue, Text, has_errors
 from ..kinematics import cell as cells
 from ..kinematics import proposed_cell
 from ..kinematics.arrangement import arrangement_of
 from ..kinematics.inverse import opw
-from ..kinematics.links.external_links import ExternalLink, external_links
-from ..kinematics.torch import Torch
+from ..kinematics.links.external_links import external_links
 from ..parameters.cell import CellParameters
 from ..parameters.joints import OF_CELL, JointParameters
 from ..parameters.process import ProcessParameters
@@ -56,8 +54,8 @@ class Tried:
 
     fixed: the toolpath with the part's axis as build direction; None if it has that direction
     already or cannot. own_speed: for several features, whether each has a travel speed of its own.
-    external_links: link geometry of its positioner and track as loaded. look: finds the collisions
-    of arm and platform; None to skip this check.
+    shapes: of its cell, as loaded. look: finds the collisions of arm and platform; None to skip
+    this check.
     """
 
     toolpath: Callable[[], Toolpath]
@@ -69,18 +67,15 @@ class Tried:
     remedy: str = field(default="")
     own_speed: tuple[bool, ...] = ()
     cylinders: Cylinders = ()
-    obstacles: tuple[Body, ...] = ()
-    torch: Torch | None = None
-    external_links: tuple[ExternalLink, ...] = ()
+    shapes: cells.CellShapes = cells.CellShapes()
     look: Look | None = None
 
     def cell(self, toolpath: Toolpath) -> cells.Cell:
         """Return the cell for a toolpath of this job."""
         found = cells.resolve(self.settings, toolpath.frame, toolpath.family, self.folders)
-        adjacent = external_links(found.external, known_links=self.external_links)
-        return dataclasses.replace(
-            found, obstacles=self.obstacles, torch=self.torch, external_links=adjacent
-        )
+        links = external_links(found.external, known_links=self.shapes.external_links)
+        shapes = dataclasses.replace(self.shapes, external_links=links)
+        return dataclasses.replace(found, shapes=shapes)
 
     def issues(self, toolpath: Toolpath, whole: bool, progress: Progress) -> tuple[Issue, ...]:
         """Plan the job and return its issues.

@@ -269,7 +269,7 @@ def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, lis
         parameters, **{name: getattr(usual, name) for name in OF_ROBOTS}
     )
     ignored += [] if cell.arm_clearance is None else ["cell.arm_clearance"]
-    ignored += ["cell.obstacles"] if cell.obstacles else []
+    ignored += ["cell.obstacles"] if cell.shapes.obstacles else []
     ignored += ["cell.nozzle.shape"] if cell.nozzle.shape is not None else []
     if not ignored:
         return parameters, []

@@ -234,8 +234,8 @@ def external_links(
     if cell.external is None:
         return []
     what = "Positioner and track stay clear of nozzle, torch, robot and obstacles"
-    names = [item.name for item in cell.external_links]
-    lacking = ", ".join(titles_without_shape(cell.external, cell.external_links))
+    names = [item.name for item in cell.shapes.external_links]
+    lacking = ", ".join(titles_without_shape(cell.external, cell.shapes.external_links))
     missing = Text("no file describes the shape of {}", lacking) if lacking else ""
     if touches is None or not names:
         return [

@@ -223,9 +223,9 @@ def bad_links(
     if touching != NONE:  # the load, part or nozzle, counts as its carrier
         robot_axes = cell.robot.chain.axes
         if touching >= robot_axes + LINKS_MORE:
-            bad[robot_axes + 1 + cell.external_links[touching - robot_axes - LINKS_MORE].axis] = (
-                True
-            )
+            bad[
+                robot_axes + 1 + cell.shapes.external_links[touching - robot_axes - LINKS_MORE].axis
+            ] = True
         else:
             on_positioner = touching == robot_axes + 1 and not cell.torch_stands
             bad[touching if touching <= robot_axes else -1 if on_positioner else robot_axes] = True

@@ -16,7 +16,7 @@ from ...core.geometry import frames
 from ...core.issues import InputError
 from ...core.kinematics import cell as cells
 from ...core.kinematics.arrangement import arrangement_of
-from ...core.kinematics.cell import Cell
+from ...core.kinematics.cell import Cell, CellShapes
 from ...core.kinematics.limits import Limits
 from ...core.kinematics.links import robot as robot_links
 from ...core.kinematics.links.bodies import LinkShape
@@ -288,7 +288,9 @@ def machine_scenery(
         (np.eye(4), "revolution") if toolpath is None else (toolpath.frame, toolpath.family)
     )
     cell = cells.resolve(parameters, frame, family, folders)
-    cell = replace(cell, external_links=external_links(cell.external, readable_mesh))
+    cell = replace(
+        cell, shapes=CellShapes(external_links=external_links(cell.external, readable_mesh))
+    )
     point = resting_point(toolpath, cell.mount)
     joints = at_rest(cell, point)
     solids = plain_links(cell.robot, parameters.platform_diameter, parameters.nozzle.length)
@@ -309,7 +311,7 @@ def _standing(cell: Cell, joints: Array, point: Array, solids: Links) -> tuple[A
         reached,
         cell.limits,
         joints,
-        cell.external_links,
+        cell.shapes.external_links,
         to_part @ placement.external_links,
     )
 

@@ -66,7 +66,7 @@ class Scene:
         self.machine = MachineNodes(
             cell.robot, plain_links(cell.robot, looks.platform_diameter, looks.nozzle.length)
         )
-        self.external_links = ExternalLinkNodes(cell.external_links)
+        self.external_links = ExternalLinkNodes(cell.shapes.external_links)
         self.part, self.nozzle = coin.SoMatrixTransform(), coin.SoMatrixTransform()
         self.part_matrix, self.nozzle_matrix = self.part.matrix, self.nozzle.matrix
         self.deposit, self.to_come = PathNodes(), PathNodes()

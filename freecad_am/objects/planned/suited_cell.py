@@ -85,9 +85,7 @@ def suit_to_toolpath(
             folders,
             process,
             JointParameters(),
-            obstacles=cell.obstacles,
-            torch=cell.torch,
-            external_links=cell.external_links,
+            shapes=cell.shapes,
             cylinders=cylinders_of(cell),
             look=look,
         )

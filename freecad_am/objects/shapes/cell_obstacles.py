@@ -22,7 +22,7 @@ from ...core.geometry.obstacles import Body, box, disc
 from ...core.issues import InputError
 from ...core.kinematics import cell as cells
 from ...core.kinematics import torch
-from ...core.kinematics.cell import Cell, mounted
+from ...core.kinematics.cell import Cell, CellShapes, mounted
 from ...core.kinematics.links.bodies import LinkShape
 from ...core.kinematics.links.external_links import Mesh, external_links
 from ...core.kinematics.machines.machine import Machine
@@ -66,12 +66,8 @@ def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str
     bodies = bodies_of(settings)
     if not cell.arrangement.links_known:
         return cell
-    cell = dataclasses.replace(
-        cell,
-        obstacles=bodies,
-        torch=torch_of(settings),
-        external_links=external_links(cell.external, readable_mesh),
-    )
+    shapes = CellShapes(bodies, torch_of(settings), external_links(cell.external, readable_mesh))
+    cell = dataclasses.replace(cell, shapes=shapes)
     if bodies:
         _refuse_at_start(cell, toolpath)
     return cell
@@ -154,7 +150,7 @@ def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
     point, axis = bead.points[:1], bead.tool[:1]
     if cell.torch_stands:
         to_world = frames.inverse(cell.machine.base) @ cell.station
-        point, axis, bodies = to_world[None, :3, 3], to_world[None, :3, 2], cell.obstacles
+        point, axis, bodies = to_world[None, :3, 3], to_world[None, :3, 2], cell.shapes.obstacles
     else:
         bodies = cell.in_part()
     nozzle = depositing(

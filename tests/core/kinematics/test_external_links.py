@@ -138,7 +138,7 @@ def anywhere(cell, count, seed):
 def test_they_are_where_pykdl_has_them_seen_from_part_and_world():
     cell = cell_of(BOTH)
     q = anywhere(cell, 40, 1)
-    assert [one.name.rsplit(" ", 1)[1] for one in cell.external_links] == [
+    assert [one.name.rsplit(" ", 1)[1] for one in cell.shapes.external_links] == [
         "base",
         "e1",
         "e2",
@@ -196,7 +196,7 @@ def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is
     found, beside = arm.touches(q), bodies_of(D500)
     told = np.flatnonzero(
         found.any
-        & np.isin(found.what, [arm.names.index(one.name) for one in cell.external_links[:3]])
+        & np.isin(found.what, [arm.names.index(one.name) for one in cell.shapes.external_links[:3]])
     )
     assert len(told) > 25 and (~found.any).sum() > 40
     links, seen = cell.links(q), cell.external_link_frames(q)
@@ -223,7 +223,7 @@ def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is
                 assert depth(k, link, body) < 0.5, (k, link, body)
     checked = 0
     for k in told[:120]:
-        body = int(found.what[k]) - arm.names.index(cell.external_links[0].name)
+        body = int(found.what[k]) - arm.names.index(cell.shapes.external_links[0].name)
         if found.link[k] <= 6:  # of nozzle and torch others tell
             assert depth(k, int(found.link[k]), body) > -1.8 * STEP
             checked += 1
@@ -251,7 +251,7 @@ def test_the_nozzle_is_looked_at_too():
     deep = (np.abs(at - middle) < half - 5.0).all(axis=1)
     assert deep.sum() > 30 and (found.link[deep] == 8).all()
     names = ArmContact(cell, [[] for _ in range(7)]).names
-    assert {cell.external_links[0].name} == {names[what] for what in found.what[deep]}
+    assert {cell.shapes.external_links[0].name} == {names[what] for what in found.what[deep]}
     far = np.linalg.norm(at - [0.0, -90.0, 260.0], axis=1) > 900.0
     assert far.sum() > 10 and (found.link[far] == NONE).all()
 
@@ -260,7 +260,7 @@ def test_a_mechanism_against_an_obstacle_and_the_part_against_what_carries_it_no
     """The table tilts into a box beside it; the box is touched by the table, or by what stands on it, by nothing else."""
     cell = cell_of(text(D500, (1400.0, 0.0, 0.0, 0.0, 0.0, 0.0), "part"))
     lamp = box((40.0, 40.0, 40.0), frames.pose(np.eye(3), [1400.0 - 255.0, 0.0, 245.0]), "lamp")
-    cell = dataclasses.replace(cell, obstacles=(lamp,))
+    cell = dataclasses.replace(cell, shapes=dataclasses.replace(cell.shapes, obstacles=(lamp,)))
     arm = ArmContact(cell, [[] for _ in range(7)])
     q = np.zeros((3, 8))
     q[:, :6] = [0.0, -1.6, 1.2, 0.0, 0.3, 0.0]
@@ -275,9 +275,10 @@ def test_a_mechanism_against_an_obstacle_and_the_part_against_what_carries_it_no
 def test_links_read_once_are_not_read_again():
     cell = cell_of(BOTH)
     moved = cell_of(text(D500, (900.0, 0.0, 0.0, 0.0, 0.0, 0.0), "part"))
-    again = external_links(moved.external, known_links=cell.external_links)
+    again = external_links(moved.external, known_links=cell.shapes.external_links)
     assert [
-        one.body.vertices is other.body.vertices for one, other in zip(again, cell.external_links)
+        one.body.vertices is other.body.vertices
+        for one, other in zip(again, cell.shapes.external_links)
     ] == [True] * 3
 
 
@@ -322,8 +323,10 @@ def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
         CellParameters(machine=machine, setup="tool-on-robot", external=external, platform=0.0),
         np.eye(4),
     )
-    cell = dataclasses.replace(cell, external_links=external_links(cell.external, mesh_of))
-    axes = {one.name.rsplit(" ", 1)[1] for one in cell.external_links}
+    cell = dataclasses.replace(
+        cell, shapes=cells.CellShapes(external_links=external_links(cell.external, mesh_of))
+    )
+    axes = {one.name.rsplit(" ", 1)[1] for one in cell.shapes.external_links}
     assert axes == {"e1", "e2", "e3", "base"}
     values = {"track_E1": 0.4, "positioner_E1": 0.3, "positioner_E2": -0.7}
     order = [
@@ -339,7 +342,7 @@ def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
     still = urdf_cells.placed(text_, {**zero, **values, "track_E1": 0.0})
     to_world = np.linalg.inv(still["robot_base_link"] @ cell.robot.base)
     seen = np.linalg.inv(cell.world(joints))[0] @ cell.external_link_frames(joints)[0]
-    for one, frame in zip(cell.external_links, seen):
+    for one, frame in zip(cell.shapes.external_links, seen):
         corners = one.body.vertices @ frame[:3, :3].T + frame[:3, 3]
         if one.axes_after == 0 and one.carries == "part":
             there = to_world @ at["plate"]
@@ -482,7 +485,7 @@ def test_pairs_that_are_left_out_are_these_and_no_others(external):
         for number in group.links
         if arm.solids[number] or names[number] in ("part", "torch")
     }
-    beside = [shortly(one.name) for one in cell.external_links]
+    beside = [shortly(one.name) for one in cell.shapes.external_links]
     # the part is looked at as a link where it moves, and else as what stands: either way counts
     looked_at |= {
         ("part", one) for one, other in looked_at if other == "platform" and one in beside

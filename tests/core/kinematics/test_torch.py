@@ -129,10 +129,11 @@ def test_a_contact_is_where_torch_and_box_are(setup):
         nozzle=dataclasses.replace(NOZZLE, tool=(0.0, 0.0, 300.0, 0.0, 0.0, 0.0)),
     )
     cell = dataclasses.replace(
-        cells.resolve(settings, np.eye(4)), torch=torch.torch(put(NECK, CAMERA), NOZZLE)
+        cells.resolve(settings, np.eye(4)),
+        shapes=cells.CellShapes(torch=torch.torch(put(NECK, CAMERA), NOZZLE)),
     )
     rng = np.random.default_rng(3)
-    points, size = samples(cell.torch.body, 6000), np.array([200.0, 160.0, 120.0])
+    points, size = samples(cell.shapes.torch.body, 6000), np.array([200.0, 160.0, 120.0])
     beyond = points[points[:, 2] > NOZZLE.length + 1.0]
     rods = external_links.robot_cylinders(cell.robot.chain)
     joints = np.array([0.3, 0.4, -0.2, 0.5, 0.8, -0.4]) + rng.uniform(-0.12, 0.12, (2000, 6))
@@ -162,7 +163,11 @@ def test_a_contact_is_where_torch_and_box_are(setup):
     assert (~told | nozzle | (away < 35.0)).all()
     assert (
         not ArmContact(
-            dataclasses.replace(cell, torch=None), [[] for _ in rods], (body,), None, 10.0
+            dataclasses.replace(cell, shapes=cells.CellShapes()),
+            [[] for _ in rods],
+            (body,),
+            None,
+            10.0,
         )
         .touches(joints[told & ~nozzle])
         .any.any()

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import ERROR, Issue, Text
+from freecad_am.core.kinematics.cell import CellShapes
 from freecad_am.core.kinematics.external import MECHANISMS
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links.contact import ArmContact
@@ -135,7 +136,7 @@ def test_what_is_not_known_of_the_shapes_is_said_on_the_preflight(hemisphere):
     touches = arm_touches(motion, ArmContact(far, external_links.robot_cylinders(far.robot.chain)))
     assert [one.ok for one in clearance.external_links(motion, far, touches, True, ())] == [True]
     # whether issues are about them is known by values, not by words: a name within a sentence, or another name, is none
-    name = far.external_links[-1].name
+    name = far.shapes.external_links[-1].name
     for message, ok in (
         (Text("the nozzle would meet {}", Text.joined(", ", ("post", name))), False),
         (f"the nozzle touches the cover of {name}", True),
@@ -149,7 +150,7 @@ def test_what_is_not_known_of_the_shapes_is_said_on_the_preflight(hemisphere):
     assert drawn.ok is None and drawn.how.startswith(
         "not checked in full, for links of the robot are drawn"
     )
-    blank = dataclasses.replace(far, external_links=())
+    blank = dataclasses.replace(far, shapes=CellShapes())
     touches = arm_touches(motion, ArmContact(blank, [[] for _ in range(7)]))
     (none,) = clearance.external_links(motion, blank, touches, True, ())
     assert none.ok is None and "no file describes the shape of Yaskawa MotoPos D500" in none.how

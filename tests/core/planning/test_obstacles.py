@@ -39,7 +39,9 @@ CARRIED = {
 
 def cell_with(dome, pose, name="post", size=SIZE, **values):
     cell = cells.resolve(CellParameters(**values), dome.frame)
-    return dataclasses.replace(cell, obstacles=(box(tuple(size), pose, name),))
+    return dataclasses.replace(
+        cell, shapes=cells.CellShapes(obstacles=(box(tuple(size), pose, name),))
+    )
 
 
 def nearest(motion, cell, pose, carried, size=SIZE, every=23):
@@ -157,10 +159,11 @@ def test_rapids_of_a_carried_nozzle_go_over_an_obstacle_that_links_are_not_kept_
     values = {**CELL, "branch": DOWN}
     for obstacles_, low in (
         ((), 0.0),
-        (cell_with(dome, pose, size=size, **values).obstacles, 1e-3),
+        (cell_with(dome, pose, size=size, **values).shapes.obstacles, 1e-3),
     ):
         cell = dataclasses.replace(
-            cells.resolve(CellParameters(**values), dome.frame), obstacles=obstacles_
+            cells.resolve(CellParameters(**values), dome.frame),
+            shapes=cells.CellShapes(obstacles=obstacles_),
         )
         motion, issues = planned(job, cell)
         assert not has_errors(issues)
@@ -170,7 +173,7 @@ def test_rapids_of_a_carried_nozzle_go_over_an_obstacle_that_links_are_not_kept_
         there = cell_with(dome, pose, size=size, **values)
         looked = rapid_look.looked_at(motion, ends, there, (), 0.0, 0.0, 50_000)
         assert (len(looked.rows) == 0) == bool(obstacles_)
-        without = dataclasses.replace(there, obstacles=())
+        without = dataclasses.replace(there, shapes=cells.CellShapes())
         assert not len(rapid_look.looked_at(motion, ends, without, (), 0.0, 0.0, 50_000).rows)
 
 

@@ -31,7 +31,7 @@ def beside(dome):
     """A cell with a post that the camera meets in the plan without clearance, and that plan's motion."""
     values = {**CELL, "branch": DOWN, "nozzle": NOZZLE}
     cell = cells.resolve(CellParameters(**values), dome.frame)
-    cell = dataclasses.replace(cell, torch=torch.torch(TORCH, NOZZLE))
+    cell = dataclasses.replace(cell, shapes=cells.CellShapes(torch=torch.torch(TORCH, NOZZLE)))
     motion, issues = planned(dome, cell)
     assert not has_errors(issues)
     row = int(0.5 * len(motion))
@@ -47,7 +47,7 @@ def beside(dome):
 
 def carried(cell):
     """Points on the torch beyond the nozzle, on the flange."""
-    points = samples(cell.torch.body, 3000)
+    points = samples(cell.shapes.torch.body, 3000)
     points = points[points[:, 2] > NOZZLE.length] * [1.0, -1.0, -1.0]
     return points @ cell.carried[:3, :3].T + cell.carried[:3, 3]
 
@@ -57,8 +57,7 @@ def test_a_camera_keeps_clear_of_a_post(dome, beside):
     assert nearest(motion, cell, pose, carried(cell), POST).min() < CLEARANCE
     kept = dataclasses.replace(
         cells.resolve(CellParameters(**values, arm_clearance=CLEARANCE), dome.frame),
-        torch=cell.torch,
-        obstacles=(box(tuple(POST), pose, "post"),),
+        shapes=dataclasses.replace(cell.shapes, obstacles=(box(tuple(POST), pose, "post"),)),
     )
     motion, issues = planned(dome, kept)
     assert not has_errors(issues), [issue for issue in issues if issue.level == "error"]
@@ -81,8 +80,7 @@ def test_what_the_torch_cannot_get_past_is_named(dome, beside):
     )
     kept = dataclasses.replace(
         cells.resolve(CellParameters(**values, arm_clearance=CLEARANCE), dome.frame),
-        torch=cell.torch,
-        obstacles=ring,
+        shapes=dataclasses.replace(cell.shapes, obstacles=ring),
     )
     _, issues = planned(dome, kept)
     told = [issue for issue in issues if issue.code == "ARM_CLEARANCE"]

@@ -12,6 +12,7 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.obstacles import box
 from freecad_am.core.geometry.spread import spread_points
 from freecad_am.core.issues import has_errors
+from freecad_am.core.kinematics.cell import CellShapes
 from freecad_am.core.motion import TRAVEL
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning import nozzle_obstacles
@@ -129,8 +130,10 @@ def test_what_cannot_be_led_round_is_refused_by_name(dome, monkeypatch):
     monkeypatch.setattr(sampled, "ROUNDS", 4)  # there is none however long it is looked for
     cell = dataclasses.replace(
         cell,
-        obstacles=tuple(
-            box(size, pose, name) for size, pose, name in zip(sizes, poses, names, strict=True)
+        shapes=CellShapes(
+            tuple(
+                box(size, pose, name) for size, pose, name in zip(sizes, poses, names, strict=True)
+            )
         ),
     )
     _, issues = planned(job, cell)
@@ -149,7 +152,7 @@ def test_rapids_over_a_positioner_are_led_past_an_obstacle(monkeypatch):
         middle = 0.5 * (motion.joints[row - 1] + motion.joints[row])[: len(cell.robot.axes)]
         nozzle = np.linalg.inv(cell.robot.base) @ arm.frame(middle) @ cell.carried
         pose = nozzle @ frames.pose(np.eye(3), np.array([0.0, 0.0, -30.0]))
-        there = dataclasses.replace(cell, obstacles=(box(size, pose, "lamp"),))
+        there = dataclasses.replace(cell, shapes=CellShapes((box(size, pose, "lamp"),)))
         if not nozzle_obstacles.findings(motion, there):  # it is in the way of travels alone
             break
     layers = tuple(Layer(tuple(beads[k : k + len(beads) // 2])) for k in (0, len(beads) // 2))
@@ -178,7 +181,9 @@ def test_rapids_over_a_positioner_are_led_past_an_obstacle(monkeypatch):
         nozzle_near(motion, cell, [pose], [size]) == 0.0 < nozzle_near(led, there, [pose], [size])
     )
     # one that is about all beads is refused by name
-    there = dataclasses.replace(cell, obstacles=(box((400.0, 400.0, 400.0), pose, "lamp"),))
+    there = dataclasses.replace(
+        cell, shapes=CellShapes((box((400.0, 400.0, 400.0), pose, "lamp"),))
+    )
     monkeypatch.setattr(sampled, "ROUNDS", 1)
     _, issues = again()
     assert any(issue.code == "RAPID_COLLISION" and "lamp" in issue.message for issue in issues)

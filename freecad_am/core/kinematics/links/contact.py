@@ -155,7 +155,7 @@ class ArmContact:
         around = [body for body in self.bodies if len(body.triangles)]
         if self.cell.platform_diameter > 0.0:
             around.append(disc(self.cell.platform_diameter, self.cell.mount, PLATFORM))
-        torch, holder = self.cell.torch, self._links(not self._carries_part)
+        torch, holder = self.cell.shapes.torch, self._links(not self._carries_part)
         part_links = [
             *self._links(self._carries_part),
             *self._torch,
@@ -197,23 +197,23 @@ class ArmContact:
                     radius + wide,
                 )
             )
-        groups += [_group_of_body(body, self._movers, WORLD) for body in self.cell.obstacles]
-        names += [body.name for body in self.cell.obstacles]
+        groups += [_group_of_body(body, self._movers, WORLD) for body in self.cell.shapes.obstacles]
+        names += [body.name for body in self.cell.shapes.obstacles]
         groups += [
             _group_of_body(external_link.body, self._against(external_link), external_link.name)
-            for external_link in self.cell.external_links
+            for external_link in self.cell.shapes.external_links
         ]
-        names += [external_link.name for external_link in self.cell.external_links]
+        names += [external_link.name for external_link in self.cell.shapes.external_links]
         solids += [
             [
                 round_solid(cylinder, growth)
                 for cylinder in (
                     external_link.cylinders
-                    if self.cell.obstacles or external_link.carries == ROBOT
+                    if self.cell.shapes.obstacles or external_link.carries == ROBOT
                     else ()
                 )
             ]
-            for external_link in self.cell.external_links
+            for external_link in self.cell.shapes.external_links
         ]
         object.__setattr__(
             self,
@@ -224,7 +224,7 @@ class ArmContact:
                 PART,
                 NOZZLE,
                 TORCH,
-                *(external_link.name for external_link in self.cell.external_links),
+                *(external_link.name for external_link in self.cell.shapes.external_links),
             ),
         )
         object.__setattr__(
@@ -257,7 +257,7 @@ class ArmContact:
     @property
     def _torch(self) -> list[int]:
         """The number of the torch, if there is one."""
-        return [] if self.cell.torch is None else [self.cell.robot.chain.axes + 3]
+        return [] if self.cell.shapes.torch is None else [self.cell.robot.chain.axes + 3]
 
     @property
     def _movers(self) -> list[int]:
@@ -269,7 +269,7 @@ class ArmContact:
         moving_links = list(range(0 if on_track else 1, axes + 1))
         adjacent = [
             axes + LINKS_MORE + k
-            for k, external_link in enumerate(cell.external_links)
+            for k, external_link in enumerate(cell.shapes.external_links)
             if external_link.axis != STANDS
         ]
         return [
@@ -305,13 +305,16 @@ class ArmContact:
         first_external = self.cell.robot.chain.axes + LINKS_MORE
         return [
             first_external + k
-            for k, external_link in enumerate(self.cell.external_links)
+            for k, external_link in enumerate(self.cell.shapes.external_links)
             if external_link.carries == ROBOT and (external_link.axis != STANDS or moves)
         ]
 
     def _part_cylinders(self, around: Sequence[Body]) -> list[Cylinder]:
         """Return cylinders around the part and its platform, if it may meet obstacles."""
-        if not (self.cell.obstacles or self.cell.external_links) or not self.cell.part_moves:
+        if (
+            not (self.cell.shapes.obstacles or self.cell.shapes.external_links)
+            or not self.cell.part_moves
+        ):
             return []
         part_cylinders = [
             cylinder for body in around for cylinder in enclosing_row(body.vertices, body.triangles)
@@ -362,12 +365,12 @@ class ArmContact:
         seen_from = {
             PART: part_frame,
             NOZZLE: nozzle,
-            WORLD: self.cell.world(joints) if self.cell.obstacles else part_frame,
+            WORLD: self.cell.world(joints) if self.cell.shapes.obstacles else part_frame,
         }
         adjacent = self.cell.external_link_frames(joints)
         seen_from |= {
             external_link.name: adjacent[:, k]
-            for k, external_link in enumerate(self.cell.external_links)
+            for k, external_link in enumerate(self.cell.shapes.external_links)
         }
         return np.concatenate(
             [links, part_frame[:, None], nozzle[:, None], nozzle[:, None], adjacent], axis=1

@@ -185,7 +185,7 @@ class RapidWays:
     def _clear_moves(self, moves: Moves) -> Mask:
         """(k,) whether nothing is met on moves."""
         met = self.obstacles.find_collisions(moves)
-        if self.cell.part_moves or self.cell.external_links:
+        if self.cell.part_moves or self.cell.shapes.external_links:
             met |= nozzle_obstacles.find_contacts(self.cell, moves.start, moves.end).any(axis=0)
         remaining = np.flatnonzero(~met)
         if self.arm is not None and len(remaining):
@@ -276,7 +276,7 @@ class RapidWays:
         """Return the obstacles that the nozzle hits on rapid k."""
         moves = self._moves(k, self.ways[k])
         names = self.obstacles.names(moves)
-        if self.cell.part_moves or self.cell.external_links:
+        if self.cell.part_moves or self.cell.shapes.external_links:
             met = nozzle_obstacles.find_contacts(self.cell, moves.start, moves.end)
             adjacent = [
                 name
