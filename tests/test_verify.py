@@ -82,7 +82,7 @@ def program_of(path, cell, **options):
             extra = {}
             if cartesian:
                 flange = cell.machine.chain.forward(path.joints[rows])
-                in_frame = np.linalg.inv(cell.station) @ flange @ cell.carried
+                in_frame = np.linalg.inv(cell.poses.station) @ flange @ cell.poses.carried
                 extra = {
                     "position": in_frame[:, :3, 3],
                     "rotation": in_frame[:, :3, :3],
@@ -264,7 +264,10 @@ def test_a_path_that_bulges_between_its_points_is_caught(cell, motion, program):
 
 
 def test_another_cell_than_the_planned_one_is_caught(cell, motion, program, files):
-    moved = dataclasses.replace(cell, carried=cell.carried + np.eye(4, k=3) * 0.1)
+    moved = dataclasses.replace(
+        cell,
+        poses=dataclasses.replace(cell.poses, carried=cell.poses.carried + np.eye(4, k=3) * 0.1),
+    )
     assert "VERIFY_POINT" in codes(verify(moved, motion, program, files))
 
 

@@ -161,7 +161,7 @@ def test_the_program_origin_changes_the_text_and_not_the_motion(planned):
         # a gauge is the point of the part seen from the origin
         moves = np.concatenate([run.position for run in program.moves if run.kind == "deposit"])
         seen = motion.position[motion.moves][linear] - (
-            np.array(origin[:3]) if origin != "auto" else cell.mount[:3, 3]
+            np.array(origin[:3]) if origin != "auto" else cell.poses.mount[:3, 3]
         )
         assert np.abs(np.linalg.norm(moves, axis=1) - np.linalg.norm(seen, axis=1)).max() < 1e-9
     assert texts[0]["dome/dome.dtx"] != texts[1]["dome/dome.dtx"]
@@ -173,7 +173,7 @@ def test_an_origin_of_zero_gauge_comes_to_the_deposition_point(planned):
     cell, motion, _ = planned
     row = int(np.flatnonzero(motion.deposit)[5])
     flange = cell.machine.chain.forward(motion.joints[row : row + 1])
-    there = cell.mount @ np.linalg.inv(flange @ cell.carried) @ cell.station
+    there = cell.poses.mount @ np.linalg.inv(flange @ cell.poses.carried) @ cell.poses.station
     origin = (*there[0, :3, 3], *Rotation.from_matrix(there[0, :3, :3]).as_euler("XYZ"))
     parameters = ProgramParameters(post="staubli", motion="cartesian", origin=origin)
     program = build(motion, cell, ProcessParameters(), parameters, "dome")

@@ -250,9 +250,9 @@ def _report_search_time(
 
 def _fit_notes(cell: cells.Cell) -> list[Issue]:
     """A note on how well touched points determine the position of the part."""
-    if cell.offset is None:
+    if cell.poses.offset is None:
         return []
-    residual, six = cell.offset.residual, cell.offset.six()
+    residual, six = cell.poses.offset.residual, cell.poses.offset.six()
     residuals, pose = (
         ", ".join(f"{value:.{digits}g}" for value in values)
         for values, digits in ((residual, 3), (six, 7))

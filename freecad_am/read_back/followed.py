@@ -76,9 +76,9 @@ def by_table(cell: Cell, text: ReadMoves, path: Path) -> Array:
         previous = serial[start - 1, turning] if start else np.zeros(2)
         turned = serial[rows, turning]
         if np.isnan(turned).any():
-            solutions, free = solver.inverse(points[rows], tools[rows], cell.station)
+            solutions, free = solver.inverse(points[rows], tools[rows], cell.poses.station)
             turned = _nearest(np.moveaxis(solutions[..., turning], 0, 1), free, previous)
-        serial[rows] = solver.place_points(turned, points[rows], cell.station)
+        serial[rows] = solver.place_points(turned, points[rows], cell.poses.station)
     return serial
 
 

@@ -116,7 +116,7 @@ def _bow(cell: Cell, serial: Array, ends: Index) -> Array:
     one over a lever of at most the chain length, and twice on prismatic axes.
     """
     chain, slides = cell.machine.chain, cell.machine.chain.sliding
-    links = [*chain.origins, chain.flange, cell.carried, cell.station]
+    links = [*chain.origins, chain.flange, cell.poses.carried, cell.poses.station]
     lever = (
         sum(np.linalg.norm(link[:3, 3]) for link in links)
         + np.abs(serial[:, slides]).max(axis=0).sum()

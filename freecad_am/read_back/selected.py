@@ -196,7 +196,7 @@ def into_platform(motion: Motion, cell: Cell) -> list[Finding]:
     motion: that of the text; unreachable rows are not checked.
     """
     rows = np.flatnonzero(motion.deposit & motion.reachable)
-    to_platform = frames.inverse(cell.mount)
+    to_platform = frames.inverse(cell.poses.mount)
     points = motion.position[rows] @ to_platform[:3, :3].T + to_platform[:3, 3]
     below = (points[:, 2] < -ROUNDED) & (
         np.hypot(points[:, 0], points[:, 1]) < 0.5 * cell.platform_diameter

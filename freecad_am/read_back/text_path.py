@@ -262,8 +262,12 @@ def _to_tip(cell: Cell, serial: Array, path: Path, rows: Index) -> tuple[Array, 
     tip, tool = cell.tip_in_part(joint_frames.flange)
     lever = cell.deposition_point(joint_frames.flange)[:, None, :] - joint_frames.origins
     moved = np.where(slides, joint_frames.directions, np.cross(joint_frames.directions, lever))
-    turned = np.cross(np.where(slides, 0.0, joint_frames.directions), cell.station[:3, 2]) * _LEVER
-    into = cell.mount[:3, :3] @ np.swapaxes((joint_frames.flange @ cell.carried)[:, :3, :3], 1, 2)
+    turned = (
+        np.cross(np.where(slides, 0.0, joint_frames.directions), cell.poses.station[:3, 2]) * _LEVER
+    )
+    into = cell.poses.mount[:3, :3] @ np.swapaxes(
+        (joint_frames.flange @ cell.poses.carried)[:, :3, :3], 1, 2
+    )
     columns = -np.concatenate(
         [moved @ np.swapaxes(into, 1, 2), turned @ np.swapaxes(into, 1, 2)], axis=2
     )
@@ -278,7 +282,7 @@ def text_tips(cell: Cell, program: Program, text: ReadMoves) -> Path:
     They come from its positions and its directions or rotary axes; rows with axis values use these.
     """
     assert text.position is not None and program.carried is not None
-    in_part = cell.mount @ frames.inverse(cell.carried) @ frames.bryant(program.carried)
+    in_part = cell.poses.mount @ frames.inverse(cell.poses.carried) @ frames.bryant(program.carried)
     position = text.position @ in_part[:3, :3].T + in_part[:3, 3]
     bound = np.full(len(position), np.sqrt(3.0) * text.position_digits + COMPUTED_MM)
     tool, tool_bound = np.full_like(position, np.nan), np.zeros(len(position))
@@ -334,13 +338,13 @@ def positions_path(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path,
     assert text.position is not None and text.rotation is not None
     count, lever = 1, np.zeros(len(text.position))
     user = (
-        cell.station
+        cell.poses.station
         if program.station is None
         else cell.machine.base @ frames.bryant(program.station)
     )
     tips, tools = (
         user @ frames.pose(text.rotation, text.position),
-        np.broadcast_to(cell.carried, (len(lever), 4, 4)),
+        np.broadcast_to(cell.poses.carried, (len(lever), 4, 4)),
     )
     if text.frame is not None and text.tool is not None:
         count, tools = 3, text.tool

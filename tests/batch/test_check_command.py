@@ -184,9 +184,9 @@ def test_one_point_below_the_platform_is_not_called_points(sound, below, words):
     cell = cells.resolve(
         dataclasses.replace(settings, platform=-1e3), np.eye(4)
     )  # of which all of the job is clear
-    position, up = motion.position.copy(), cell.mount[:3, 2]
+    position, up = motion.position.copy(), cell.poses.mount[:3, 2]
     rows = np.flatnonzero(motion.deposit)[:below]
-    position[rows] = cell.mount[:3, 3] - 2.0 * up
+    position[rows] = cell.poses.mount[:3, 3] - 2.0 * up
     (found,) = into_platform(dataclasses.replace(motion, position=position), cell)
     assert words in found.issue.message and found.row == rows[0]
 

@@ -55,15 +55,17 @@ def stands_as(person, parameters, toolpath):
     """Whether the previewed machine stands as PyKDL puts it, the part where it is in the document."""
     drawn = previewed(person)
     cell = cells.resolve(parameters, np.eye(4) if toolpath is None else toolpath.frame)
-    joints = at_rest(cell, resting_point(toolpath, cell.mount))
+    joints = at_rest(cell, resting_point(toolpath, cell.poses.mount))
     flange = KdlArm(cell.machine).forward([joints])[0]
     if drawn is None or len(drawn) != 9:
         return False
     if cell.setup == "tool-on-robot":
-        tip = (drawn[2] @ flange @ cell.carried)[:3, 3]
-        return np.abs(tip - resting_point(toolpath, cell.mount)).max() < 2e-3
-    part = drawn[2] @ flange @ cell.carried @ frames.inverse(cell.mount)
-    return np.abs(part - np.eye(4)).max() < 2e-3 and np.abs(drawn[0] - cell.mount).max() < 1e-5
+        tip = (drawn[2] @ flange @ cell.poses.carried)[:3, 3]
+        return np.abs(tip - resting_point(toolpath, cell.poses.mount)).max() < 2e-3
+    part = drawn[2] @ flange @ cell.poses.carried @ frames.inverse(cell.poses.mount)
+    return (
+        np.abs(part - np.eye(4)).max() < 2e-3 and np.abs(drawn[0] - cell.poses.mount).max() < 1e-5
+    )
 
 
 @pytest.fixture

@@ -61,7 +61,7 @@ def test_machines_are_drawn_where_pykdl_puts_them(person, hemisphere, name):
     drawn = frames.inverse(base) @ last @ resolved.machine.chain.flange
     assert np.abs(drawn - flange).max() < 2e-3  # Coin keeps floats of 24 bits
     if resolved.setup != "tool-on-robot":  # the part hangs on the flange: it has not moved
-        part = base @ flange @ resolved.carried @ frames.inverse(resolved.mount)
+        part = base @ flange @ resolved.poses.carried @ frames.inverse(resolved.poses.mount)
         assert np.abs(part - np.eye(4)).max() < 2e-3
     actions, _menu = shown_menu(person, cell.ViewObject)
     assert actions["RoboticAM_ShowMachine"].text() == "Hide machine"

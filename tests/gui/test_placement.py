@@ -61,7 +61,7 @@ def test_the_best_pose_is_entered_and_planned(person, hand, no_remedies, path):
     # a place is where the nozzle would be, seen from the part as it is drawn
     settings, toolpath = one.placing.settings, one.placing.job().toolpath
     cell = cells.resolve(settings, toolpath.frame, toolpath.family)
-    rest = placing(cell, at_rest(cell, resting_point(toolpath, cell.mount)))
+    rest = placing(cell, at_rest(cell, resting_point(toolpath, cell.poses.mount)))
     for number, place in enumerate(one.scene.places):
         world = rest.part @ np.append(place, 1.0)
         there = np.linalg.inv(cell.machine.base) @ world

@@ -69,7 +69,11 @@ def deepest_in_wrist(path, solid):
     cell = cell_obstacles.resolved(settings, toolpath, ())
     links = KdlLinks(machines.load(settings.machine, ()))
     points = samples(solid)
-    hung = np.c_[points, np.ones(len(points))] @ np.linalg.inv(cell.mount).T @ cell.carried.T
+    hung = (
+        np.c_[points, np.ones(len(points))]
+        @ np.linalg.inv(cell.poses.mount).T
+        @ cell.poses.carried.T
+    )
     joints = np.vstack([bead.joints for bead in planned.joint_path.beads])[::40]
     deepest = -math.inf
     for row in joints:

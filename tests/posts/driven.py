@@ -21,7 +21,7 @@ class Drive:
 
     def __init__(self, cell, read, start):
         self.cell, self.read, self.arm = cell, read, KdlArm(cell.machine)
-        self.user = cell.station
+        self.user = cell.poses.station
         self.poses = self._poses()
         self.joints = self._joints(start)
 
@@ -34,7 +34,7 @@ class Drive:
         told[:, :3, :3], told[:, :3, 3] = read.rotation, read.position
         if read.tool is not None:
             return self.cell.machine.base @ read.frame @ told @ np.linalg.inv(read.tool)
-        return self.user @ told @ np.linalg.inv(self.cell.carried)
+        return self.user @ told @ np.linalg.inv(self.cell.poses.carried)
 
     def _joints(self, start):
         """(n, axes) serial joints of all rows: as told, or by PyKDL, or by differences, from the row before."""
@@ -127,7 +127,7 @@ class Drive:
 
     @property
     def _in_part(self):
-        return self.cell.mount  # the program's origin is what sits on the table
+        return self.cell.poses.mount  # the program's origin is what sits on the table
 
     def ends(self, row):
         """Tip and axis (3,) at the end of a move."""

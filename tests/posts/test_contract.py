@@ -73,9 +73,9 @@ def contacts(way, files, lift=planned_jobs.LIFT):
             for end in (before, after):
                 if end is not None:
                     deep = np.where(inside_at(drive, end, laid), 0.0, deep)
-        up = (tips - cell.mount[:3, 3]) @ cell.mount[:3, 2]
+        up = (tips - cell.poses.mount[:3, 3]) @ cell.poses.mount[:3, 2]
         beside = (
-            np.linalg.norm((tips - cell.mount[:3, 3]) @ cell.mount[:3, :2], axis=1)
+            np.linalg.norm((tips - cell.poses.mount[:3, 3]) @ cell.poses.mount[:3, :2], axis=1)
             > 0.5 * cell.platform_diameter
         )
         deepest = max(

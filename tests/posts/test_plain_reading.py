@@ -127,14 +127,17 @@ def tips(way, moves):
             seen = flange(machine, values)
             rows.append(
                 (
-                    cell.mount @ np.linalg.inv(seen @ cell.carried) @ cell.station
+                    cell.poses.mount @ np.linalg.inv(seen @ cell.poses.carried) @ cell.poses.station
                     if setup.setup == "part-on-robot"
-                    else cell.mount @ np.linalg.inv(cell.station) @ seen @ cell.carried
+                    else cell.poses.mount
+                    @ np.linalg.inv(cell.poses.station)
+                    @ seen
+                    @ cell.poses.carried
                 )[:3, 3]
             )
         else:
             rows.append(
-                (cell.mount @ [*values, 1.0])[:3]
+                (cell.poses.mount @ [*values, 1.0])[:3]
             )  # the program's origin is where the part is mounted
     return np.array(rows)
 

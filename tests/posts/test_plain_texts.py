@@ -223,15 +223,15 @@ def seen(machine, shown):
 def tip(cell, setup, machine, move):
     """Where a move ends in part coordinates, and the tool's direction; None where it does not tell that."""
     if move.place:
-        way = cell.mount[:3, :3] @ move.way / np.linalg.norm(move.way) if move.way else None
-        return (cell.mount @ [*move.place, 1.0])[
+        way = cell.poses.mount[:3, :3] @ move.way / np.linalg.norm(move.way) if move.way else None
+        return (cell.poses.mount @ [*move.place, 1.0])[
             :3
         ], way  # the program's origin is where the part is mounted
     flange = seen(machine, move.joints)
     if setup.setup == "tool-on-robot":
-        frame = cell.mount @ np.linalg.inv(cell.station) @ flange @ cell.carried
+        frame = cell.poses.mount @ np.linalg.inv(cell.poses.station) @ flange @ cell.poses.carried
         return frame[:3, 3], -frame[:3, 2]
-    frame = cell.mount @ np.linalg.inv(flange @ cell.carried) @ cell.station
+    frame = cell.poses.mount @ np.linalg.inv(flange @ cell.poses.carried) @ cell.poses.station
     return frame[:3, 3], frame[:3, 2]
 
 

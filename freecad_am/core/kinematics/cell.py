@@ -179,34 +179,43 @@ class CellShapes:
 
 
 @dataclass(frozen=True, eq=False)
-class Cell:
-    """A resolved cell. Frames are (4, 4) in mm.
+class CellPoses:
+    """The poses (4, 4) of a cell, mm.
 
     station: in base_link, the deposition point (part on robot, five-axis machine) or the
     fixed platform (tool on robot). carried: on the flange, the platform (part on robot,
     five-axis machine) or the nozzle's tip (tool on robot). A five-axis machine is a chain
     seen from the torch, so the part is on its flange wherever its axes are. mount: in part
-    coordinates, the frame on the platform. branch: index of the branch (opw.branch_index), or
-    None to search all. external: external axes; the machine is then the robot together with
-    them, and base_link of its chain is the face that carries the part, or the world if only
-    the robot is carried. up: (3,) against gravity in the world, the manufacturer's base frame.
-    offset: pose of the part from touched points. shapes: what stands in the cell beside robot
-    and part.
+    coordinates, the frame on the platform. offset: pose of the part from touched points.
+    """
+
+    station: Array
+    carried: Array
+    mount: Array
+    offset: WorkOffset | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """A resolved cell: a machine with its limits, and what it must know of its surroundings.
+
+    poses: of deposition point, platform, nozzle and part. branch: index of the branch
+    (opw.branch_index), or None to search all. external: external axes; the machine is then
+    the robot together with them, and base_link of its chain is the face that carries the
+    part, or the world if only the robot is carried. up: (3,) against gravity in the world,
+    the manufacturer's base frame. shapes: what stands in the cell beside robot and part.
     """
 
     machine: Machine
     limits: Limits
     setup: str
-    station: Array
-    carried: Array
-    mount: Array
+    poses: CellPoses
     branch: int | None
     nozzle: NozzleParameters = field(default_factory=NozzleParameters)
     platform_diameter: float = 0.0
     external: ExternalAxes | None = None
     arm_clearance: float | None = None
     up: Array = field(default_factory=lambda: np.array(UP))
-    offset: WorkOffset | None = None
     shapes: CellShapes = CellShapes()
 
     @property
@@ -335,7 +344,7 @@ class Cell:
         if self.part_moves or not self.shapes.obstacles:
             return ()
         world = self.world(np.zeros((1, self.machine.chain.axes)))[0]
-        to_part = self.mount @ frames.inverse(self.station) @ world
+        to_part = self.poses.mount @ frames.inverse(self.poses.station) @ world
         return tuple(body.move(to_part) for body in self.shapes.obstacles)
 
     def pose_frames(
@@ -357,20 +366,22 @@ class Cell:
         PoseFrames
             Factors in base_link.
         """
-        to_platform = frames.inverse(self.mount)
+        to_platform = frames.inverse(self.poses.mount)
         points = position @ to_platform[:3, :3].T + to_platform[:3, 3]
         axes = tool @ to_platform[:3, :3].T
         upright = frames.smallest_rotation(axes, UP)
         if self.arrangement.carries_part:
             moved = frames.pose(upright, -np.einsum("nij,nj->ni", upright, points))
-            return PoseFrames(self.station[None], 1.0, moved @ frames.inverse(self.carried))
-        stands = self.station @ frames.pose(np.swapaxes(upright, 1, 2), points)
+            return PoseFrames(
+                self.poses.station[None], 1.0, moved @ frames.inverse(self.poses.carried)
+            )
+        stands = self.poses.station @ frames.pose(np.swapaxes(upright, 1, 2), points)
         if self.external is not None:
             assert (
                 external is not None
             )  # callers must give the values of the external axes of such a cell
             stands = frames.inverse(self.external.base(external)) @ stands
-        return PoseFrames(stands, -1.0, (_TURNED @ frames.inverse(self.carried))[None])
+        return PoseFrames(stands, -1.0, (_TURNED @ frames.inverse(self.poses.carried))[None])
 
     def to_carrier(self, position: Array) -> Array:
         """Return points of the part in the frame of the flange or face that carries it.
@@ -386,8 +397,8 @@ class Cell:
             Points in the frame of the last of `carriers`, mm.
         """
         carrier_frame = (
-            self.carried if self.arrangement.carries_part else self.station
-        ) @ frames.inverse(self.mount)
+            self.poses.carried if self.arrangement.carries_part else self.poses.station
+        ) @ frames.inverse(self.poses.mount)
         return np.asarray(position @ carrier_frame[:3, :3].T + carrier_frame[:3, 3])
 
     def to_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
@@ -407,7 +418,7 @@ class Cell:
         tool : (n, 3) array
             Tool axes in the flange frame.
         """
-        flange_frame = self.carried @ frames.inverse(self.mount)
+        flange_frame = self.poses.carried @ frames.inverse(self.poses.mount)
         return position @ flange_frame[:3, :3].T + flange_frame[:3, 3], tool @ flange_frame[
             :3, :3
         ].T
@@ -453,11 +464,13 @@ class Cell:
             The tool axis, unit vectors.
         """
         if self.torch_stands:
-            platform = flange @ self.carried
-            in_platform = frames.inverse(platform) @ self.station
+            platform = flange @ self.poses.carried
+            in_platform = frames.inverse(platform) @ self.poses.station
         else:
-            in_platform = frames.inverse(self.station) @ (flange @ self.carried @ _TURNED)
-        in_part = self.mount @ in_platform
+            in_platform = frames.inverse(self.poses.station) @ (
+                flange @ self.poses.carried @ _TURNED
+            )
+        in_part = self.poses.mount @ in_platform
         return in_part[:, :3, 3], in_part[:, :3, 2]
 
     def tip_at(self, joints: Array) -> Array:
@@ -476,13 +489,13 @@ class Cell:
         chain = self.machine.chain
         if self.torch_stands:
             tip, into = (
-                chain.point_from_flange(joints, self.station[:3, 3]),
-                self.mount @ frames.inverse(self.carried),
+                chain.point_from_flange(joints, self.poses.station[:3, 3]),
+                self.poses.mount @ frames.inverse(self.poses.carried),
             )
         else:
             tip, into = (
-                chain.point_position(joints, self.carried[:3, 3]),
-                self.mount @ frames.inverse(self.station),
+                chain.point_position(joints, self.poses.carried[:3, 3]),
+                self.poses.mount @ frames.inverse(self.poses.station),
             )
         in_part: Array = tip @ into[:3, :3].T + into[:3, 3]
         return in_part
@@ -506,8 +519,8 @@ class Cell:
             Points in base_link, mm.
         """
         if self.torch_stands:
-            return np.broadcast_to(self.station[:3, 3], (len(flange), 3))
-        tip: Array = (flange @ self.carried)[:, :3, 3]
+            return np.broadcast_to(self.poses.station[:3, 3], (len(flange), 3))
+        tip: Array = (flange @ self.poses.carried)[:, :3, 3]
         return tip
 
     def rotation_axis(self, flange: Array) -> Array:
@@ -524,8 +537,8 @@ class Cell:
             Unit vectors in base_link; the rotation is about the deposition point.
         """
         if self.torch_stands:
-            return np.broadcast_to(self.station[:3, 2], (len(flange), 3))
-        axis: Array = (flange @ self.carried)[:, :3, 2]
+            return np.broadcast_to(self.poses.station[:3, 2], (len(flange), 3))
+        axis: Array = (flange @ self.poses.carried)[:, :3, 2]
         return axis
 
     def phi_of_rz(self, tool: Array, rz: Array) -> tuple[Array, Array]:
@@ -549,7 +562,7 @@ class Cell:
         ----------
         Chalvin 2020, eqs. 14 and 15.
         """
-        t = tool @ self.mount[:3, :3]
+        t = tool @ self.poses.mount[:3, :3]
         cos, sin = np.cos(rz), np.sin(rz)
         sx = t[:, 1] * cos + t[:, 0] * sin
         sy = -(t[:, 0] * cos - t[:, 1] * sin)
@@ -577,7 +590,7 @@ class Cell:
         (n,) array
             RZ in -pi to pi, rad.
         """
-        t = tool @ self.mount[:3, :3]
+        t = tool @ self.poses.mount[:3, :3]
         upright = frames.smallest_rotation(t, UP)
         first_row = np.cos(phi)[:, None] * upright[:, 0] - np.sin(phi)[:, None] * upright[:, 1]
         side = np.where(t[:, 2] < 0.0, -1.0, 1.0)
@@ -663,18 +676,18 @@ def resolve(
         machine=machine,
         limits=limits,
         setup=parameters.setup,
-        station=machine.base @ station,
-        carried=frames.bryant(
-            platform_pose if arrangement.carries_part else parameters.nozzle.tool
+        poses=CellPoses(
+            machine.base @ station,
+            frames.bryant(platform_pose if arrangement.carries_part else parameters.nozzle.tool),
+            mount,
+            offset,
         ),
-        mount=mount,
         branch=None if isinstance(parameters.branch, str) else opw.branch_index(parameters.branch),
         nozzle=parameters.nozzle,
         platform_diameter=parameters.platform_diameter,
         external=external,
         arm_clearance=parameters.arm_clearance,
         up=upward(parameters.world_up),
-        offset=offset,
         shapes=CellShapes(external_links=external_links(external)),
     )
 

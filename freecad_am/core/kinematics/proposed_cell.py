@@ -220,7 +220,8 @@ def _places(cell: Cell, axes: Array, branches: Sequence[int]) -> Iterator[_Place
 
 def _stood(cell: Cell, point: Pose) -> Cell:
     """The cell with the deposition point, or the platform, at a point of the manufacturer's base frame."""
-    return replace(cell, station=cell.machine.base @ frames.bryant(point))
+    station = cell.machine.base @ frames.bryant(point)
+    return replace(cell, poses=replace(cell.poses, station=station))
 
 
 def _joints(cell: Cell, axes: Array) -> Array:

@@ -57,7 +57,7 @@ def reach(cell: Cell, step: float, progress: Progress = lambda share, text: None
         return Reach(np.zeros((0, 3)), np.zeros(0), step)
     ahead, height = arm.shoulder
     tool_length = float(np.linalg.norm(cell.robot.chain.flange[:3, 3])) + float(
-        np.linalg.norm(cell.carried[:3, 3])
+        np.linalg.norm(cell.poses.carried[:3, 3])
     )
     size = ahead + arm.reach + tool_length
     step = max(step, 2.0 * size / MOST_PLACES ** (1.0 / 3.0))
@@ -88,7 +88,9 @@ def _poses(cell: Cell) -> Array:
     axes = np.stack([across * np.cos(around), across * np.sin(around), up], axis=1)
     lean = np.swapaxes(frames.smallest_rotation(axes, (0.0, 0.0, 1.0)), 1, 2)
     turn = frames.about_z(np.linspace(0.0, TURN, TURNS, endpoint=False))
-    poses: Array = frames.pose(lean[:, None] @ turn, np.zeros(3)) @ frames.inverse(cell.carried)
+    poses: Array = frames.pose(lean[:, None] @ turn, np.zeros(3)) @ frames.inverse(
+        cell.poses.carried
+    )
     return poses
 
 

@@ -90,7 +90,7 @@ def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
     lengths = (
         *cell.robot.chain.origins[4:, :3, 3],
         cell.robot.chain.flange[:3, 3],
-        cell.carried[:3, 3],
+        cell.poses.carried[:3, 3],
     )
     reach = arm.reach + sum(float(np.linalg.norm(length)) for length in lengths)
     if nearest <= reach:

@@ -128,7 +128,9 @@ def _find_batch_contacts(cell: Cell, start: Array, end: Array) -> Mask:
 
 def _in_world(cell: Cell, joints: Array) -> tuple[Array, Array]:
     """Tip and axis (n, 3) of a nozzle that the flange carries, in the maker's base frame."""
-    to_world = frames.inverse(cell.world(joints)) @ (cell.station @ frames.inverse(cell.mount))
+    to_world = frames.inverse(cell.world(joints)) @ (
+        cell.poses.station @ frames.inverse(cell.poses.mount)
+    )
     return _transform(to_world, *cell.tip_in_part(cell.machine.chain.forward(joints)))
 
 

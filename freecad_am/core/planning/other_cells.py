@@ -164,9 +164,9 @@ def held_by_clamp(job: Tried) -> Tried | None:
     """
     toolpath, settings = job.toolpath(), job.settings
     cell = job.cell(toolpath)
-    if cell.offset is not None:
+    if cell.poses.offset is not None:
         return None
-    to_platform = frames.inverse(cell.mount)
+    to_platform = frames.inverse(cell.poses.mount)
     points = [bead.points for _, _, bead in toolpath]
     points += [body.vertices for body in toolpath.surroundings]
     local = np.vstack(points) @ to_platform[:3, :3].T + to_platform[:3, 3]

@@ -68,11 +68,11 @@ def frames_of(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:
         The load in the flange frame.
     """
     if isinstance(parameters.origin, str):
-        return cell.station, cell.carried
-    origin = frames.inverse(cell.mount) @ frames.bryant(parameters.origin)
+        return cell.poses.station, cell.poses.carried
+    origin = frames.inverse(cell.poses.mount) @ frames.bryant(parameters.origin)
     if cell.torch_stands:
-        return cell.station, cell.carried @ origin
-    return cell.station @ origin, cell.carried
+        return cell.poses.station, cell.poses.carried @ origin
+    return cell.poses.station @ origin, cell.poses.carried
 
 
 def six_of(pose: Array) -> Six:

@@ -402,7 +402,7 @@ def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:
     if axis == ROTATION:
         return np.array(np.broadcast_to(value, np.broadcast_shapes(value.shape, (len(tool),))))
     # eq. 9 and 10 solved for phi, as Cell.rz_of_phi has them for RZ
-    upright = frames.smallest_rotation(tool @ cell.mount[:3, :3], (0.0, 0.0, 1.0))
+    upright = frames.smallest_rotation(tool @ cell.poses.mount[:3, :3], (0.0, 0.0, 1.0))
     sin, cos = np.sin(value), np.cos(value)
     return np.asarray(
         np.arctan2(
@@ -518,7 +518,7 @@ def _touching(cell: Cell, points: Points, bodies: Sequence[Body]) -> Mask:
     is left out, as where toolpaths are kept clear."""
     around = list(bodies)
     if cell.platform_diameter > 0.0:
-        around.append(disc(cell.platform_diameter, cell.mount))
+        around.append(disc(cell.platform_diameter, cell.poses.mount))
     if not around:
         return np.zeros(len(points), dtype=bool)
     slope = float(np.tan(cell.nozzle.half_angle))

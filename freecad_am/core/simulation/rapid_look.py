@@ -78,7 +78,9 @@ def looked_at(
     )
 
     ends = BeadEnds.of(Beads.of(beads, width, height), size)
-    platform = [disc(cell.platform_diameter, cell.mount)] if cell.platform_diameter > 0.0 else []
+    platform = (
+        [disc(cell.platform_diameter, cell.poses.mount)] if cell.platform_diameter > 0.0 else []
+    )
     reach = float(np.hypot(size.length, size.radius + size.slope * size.length))
     stands = [*bodies, *platform, *cell.in_part()]
     around = scene(stands, np.concatenate(corners), reach, ends.deposit) if len(rows) else None

@@ -231,17 +231,21 @@ def placing(cell: Cell, joints: ArrayLike) -> Placing:
     chain, values = cell.robot.chain, np.asarray(joints, float)
     links = cell.links(values)
     flange = links[-1] @ chain.flange
-    carried = flange @ cell.carried
+    carried = flange @ cell.poses.carried
     on_robot = not cell.torch_stands
-    platform = cell.station if on_robot else carried
-    nozzle = carried @ frames.pose(frames.about_x(np.pi), np.zeros(3)) if on_robot else cell.station
+    platform = cell.poses.station if on_robot else carried
+    nozzle = (
+        carried @ frames.pose(frames.about_x(np.pi), np.zeros(3))
+        if on_robot
+        else cell.poses.station
+    )
     stands = links[standing_link(chain)]
     if cell.external is not None:
         stands = cell.world(values[None])[0] @ frames.inverse(cell.robot.base)
     to_world = frames.inverse(stands)
     return Placing(
         links=to_world @ links,
-        part=to_world @ platform @ frames.inverse(cell.mount),
+        part=to_world @ platform @ frames.inverse(cell.poses.mount),
         nozzle=to_world @ nozzle,
         platform=to_world @ platform,
         external_links=to_world @ cell.external_link_frames(values[None])[0],
@@ -257,15 +261,18 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     """
     target, chain = np.asarray(point, float), cell.machine.chain
     if not cell.machine.free:
-        on_flange, _ = cell.to_flange(target[None], cell.mount[None, :3, 2])
+        on_flange, _ = cell.to_flange(target[None], cell.poses.mount[None, :3, 2])
         return np.asarray(
-            FiveAxis(chain).place_points(np.zeros((1, TURNING)), on_flange, cell.station)[0]
+            FiveAxis(chain).place_points(np.zeros((1, TURNING)), on_flange, cell.poses.station)[0]
         )
     arm = cell.robot.arm
     assert arm is not None  # a cell has no other robots
     rotations = np.linspace(0.0, 2.0 * np.pi, _ROTATIONS, endpoint=False)
     external = np.zeros((_ROTATIONS, chain.axes))
-    targets, axes = np.tile(target, (_ROTATIONS, 1)), np.tile(cell.mount[:3, 2], (_ROTATIONS, 1))
+    targets, axes = (
+        np.tile(target, (_ROTATIONS, 1)),
+        np.tile(cell.poses.mount[:3, 2], (_ROTATIONS, 1)),
+    )
     flange = cell.flange_poses(targets, axes, rotations, external)
     branches = range(8) if cell.branch is None else (cell.branch,)
     solutions = np.concatenate([arm.inverse_branch(flange, branch) for branch in branches])

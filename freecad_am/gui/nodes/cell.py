@@ -273,7 +273,7 @@ def at_the_end(
     if toolpath is None:
         return nozzle_scenery(parameters, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.eye(4))
     mount, last_bead = (
-        cells.resolve(parameters, toolpath.frame, toolpath.family, folders).mount,
+        cells.resolve(parameters, toolpath.frame, toolpath.family, folders).poses.mount,
         toolpath.layers[-1].beads[-1],
     )
     return nozzle_scenery(parameters, last_bead.points[-1], last_bead.tool[-1], mount)
@@ -291,10 +291,10 @@ def machine_scenery(
     cell = replace(
         cell, shapes=CellShapes(external_links=external_links(cell.external, readable_mesh))
     )
-    point = resting_point(toolpath, cell.mount)
+    point = resting_point(toolpath, cell.poses.mount)
     joints = at_rest(cell, point)
     solids = plain_links(cell.robot, parameters.platform_diameter, parameters.nozzle.length)
-    return Scenery(parameters, cell.mount, *_standing(cell, joints, point, solids))
+    return Scenery(parameters, cell.poses.mount, *_standing(cell, joints, point, solids))
 
 
 def _standing(cell: Cell, joints: Array, point: Array, solids: Links) -> tuple[Array, Rest]:

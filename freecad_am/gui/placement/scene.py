@@ -134,7 +134,7 @@ class Scene:
         """Draw the machine of a cell about the part; places are seen from it."""
         folders = user_machines.folders()
         cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
-        joints = at_rest(cell, resting_point(toolpath, cell.mount))
+        joints = at_rest(cell, resting_point(toolpath, cell.poses.mount))
         self.settings, self.cell, self.joints = settings, cell, joints
         self.rest = placing(cell, joints)
         self.to_view = frames.inverse(self.rest.part)

@@ -216,7 +216,7 @@ class Board:
         value = redundancy_map.value_of(self.source.cell, points.tool, phi, self.axis)
         if self.axis == RZ:
             # RZ follows the rotation, reversed if the tool points down, except for a slow drift
-            side = np.where((points.tool @ self.source.cell.mount[:3, 2]) < 0.0, -1.0, 1.0)
+            side = np.where((points.tool @ self.source.cell.poses.mount[:3, 2]) < 0.0, -1.0, 1.0)
             value = side * phi + redundancy_map.in_turns(
                 value - side * phi, np.diff(self.columns.bead, prepend=-1) != 0
             )
@@ -275,7 +275,7 @@ class Board:
         old_rotation, new_rotation = (
             float((cell.rz_of_phi(tool, angle) if of_rz else angle)[0]) for angle in phi
         )
-        side = -1.0 if float(tool[0] @ cell.mount[:3, 2]) < 0.0 else 1.0
+        side = -1.0 if float(tool[0] @ cell.poses.mount[:3, 2]) < 0.0 else 1.0
         by = new_rotation - old_rotation
         return by - TURN * round((by - side * (new - old)) / TURN)
 

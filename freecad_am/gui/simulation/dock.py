@@ -59,7 +59,7 @@ class Scene:
 
     def __init__(self, run: Run, view: Any) -> None:
         self.run, self.view = run, view
-        cell, mount = run.cell, run.cell.mount
+        cell, mount = run.cell, run.cell.poses.mount
         resting = placing(cell, at_rest(cell, resting_point(run.toolpath, mount)))
         self.to_view = frames.inverse(resting.part)
         looks = run.looks

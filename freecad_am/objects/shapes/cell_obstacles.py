@@ -149,7 +149,7 @@ def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
     bead = next(bead for _, _, bead in toolpath)
     point, axis = bead.points[:1], bead.tool[:1]
     if cell.torch_stands:
-        to_world = frames.inverse(cell.machine.base) @ cell.station
+        to_world = frames.inverse(cell.machine.base) @ cell.poses.station
         point, axis, bodies = to_world[None, :3, 3], to_world[None, :3, 2], cell.shapes.obstacles
     else:
         bodies = cell.in_part()

@@ -113,7 +113,7 @@ def test_links_are_kept_as_far_as_two_lots_of_triangles_are_off(gap, touched, cl
     )
     joints = np.radians([[10.0, 20.0, -15.0, 5.0, 40.0, 30.0]])
     ends = np.array([[-5.0 - gap - clearance, y, 0.0, 1.0] for y in (-10.0, 10.0)])
-    part = cell.station @ np.linalg.inv(cell.mount)
+    part = cell.poses.station @ np.linalg.inv(cell.poses.mount)
     seen = (np.linalg.inv(cell.links(joints)[0, 2]) @ part @ ends.T).T[:, :3]
     rods = [()] * 2 + [(Cylinder(*seen, 5.0),)] + [()] * 4
     found = ArmContact(cell, rods, (wall(0.0),), clearance=clearance).touches(joints)

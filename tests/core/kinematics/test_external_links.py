@@ -236,9 +236,9 @@ def test_the_nozzle_is_looked_at_too():
     middle, half = np.array([0.0, 290.0, 289.5]), 0.5 * np.array([300.0, 178.0, 429.0])
 
     def tip_of(cell, q):
-        return (np.linalg.inv(cell.world(q)) @ (cell.machine.chain.forward(q) @ cell.carried))[
-            :, :3, 3
-        ]
+        return (
+            np.linalg.inv(cell.world(q)) @ (cell.machine.chain.forward(q) @ cell.poses.carried)
+        )[:, :3, 3]
 
     anyhow = cell_of(text(D500, STANDS, "part"))
     place = tip_of(anyhow, np.append(posture, [0.0, 0.0])[None])[0] - middle
@@ -570,8 +570,8 @@ def test_the_base_meets_what_a_positioner_swings_at_it_and_a_carriage_runs_into_
 
     cell = cell_of(text(TRACK, RAIL, "robot"), deposition_point=(500.0, 900.0, 0.0, 0.0, 0.0, 0.0))
     wall = box((100.0, 100.0, 400.0), np.eye(4), "wall")
-    place = cell.mount @ np.linalg.inv(
-        cell.station
+    place = cell.poses.mount @ np.linalg.inv(
+        cell.poses.station
     )  # the world, with the track at zero, in part coordinates
     across = frames.pose(np.eye(3), [0.0, 700.0, -150.0])
     wall = dataclasses.replace(

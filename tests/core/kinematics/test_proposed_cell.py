@@ -143,7 +143,7 @@ def clear_rotations(parameters, tilt):
     disc = disc.reshape(-1, 4)
     for k in np.flatnonzero(good):
         links = chain.links(joints[k])
-        platform = disc @ (links[-1] @ chain.flange @ cell.carried).T
+        platform = disc @ (links[-1] @ chain.flange @ cell.poses.carried).T
         seen = [(platform @ frames.inverse(links[number]).T)[:, :3] for number in range(5)]
         good[k] = not any(
             hulls[number] and inside_hulls(seen[number], hulls[number]).any() for number in range(5)

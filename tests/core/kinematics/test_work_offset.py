@@ -100,7 +100,7 @@ def test_points_of_the_toolpath_are_met_where_they_were_touched():
     joints = cell.machine.arm.inverse_branch(flange, cell.branch)
     assert np.isfinite(joints).all()
     for q, point in zip(joints, wanted, strict=True):
-        pose = np.linalg.inv(cell.machine.base) @ arm.frame(q) @ cell.carried
+        pose = np.linalg.inv(cell.machine.base) @ arm.frame(q) @ cell.poses.carried
         assert np.abs(pose[:3, 3] - point).max() < 1e-6
 
 

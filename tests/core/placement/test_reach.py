@@ -32,7 +32,7 @@ def test_where_the_tip_can_be_there_is_a_place(volume):
     low, high = np.maximum(cell.limits.lower, -np.pi), np.minimum(cell.limits.upper, np.pi)
     q = rng.uniform(low, high, (3000, 6))
     q = q[(cell.limits.margin(q) >= 0.0).all(axis=1)]
-    tip = (KdlArm(cell.machine).forward(q) @ cell.carried)[:, :3, 3]
+    tip = (KdlArm(cell.machine).forward(q) @ cell.poses.carried)[:, :3, 3]
     away, _ = cKDTree(found.places).query(tip)
     assert (
         len(q) > 500 and (away <= found.step * np.sqrt(3.0)).all()
@@ -51,7 +51,7 @@ def test_shares_are_those_of_directions_at_random(volume):
     whole = 2.0 * np.pi * np.arange(-2, 3)
     apart = []
     for place, share in zip(found.places[chosen], found.share[chosen]):
-        flange = frames.pose(turned, place) @ frames.inverse(cell.carried)
+        flange = frames.pose(turned, place) @ frames.inverse(cell.poses.carried)
         q = cell.machine.arm.inverse(flange.reshape(-1, 4, 4))[:8]
         # all turns of all axes: the limits couple some
         served = np.zeros(q.shape[:2], dtype=bool)

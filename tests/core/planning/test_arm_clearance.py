@@ -115,7 +115,7 @@ def nearest(motion, cell, low):
 def nearest_of(joints, cell, low):
     """(k,) the same with joints (k, axes)."""
     arm, found = KdlLinks(cell.machine), []
-    mount = cell.station @ np.linalg.inv(cell.mount)
+    mount = cell.poses.station @ np.linalg.inv(cell.poses.mount)
     links = [
         (number, on_rods(rods))
         for number, rods in enumerate(external_links.robot_cylinders(cell.robot.chain))

@@ -65,7 +65,7 @@ def places(motion, cell, row, count):
     share = np.linspace(0.0, 1.0, count)[:, None]
     joints = motion.joints[row - 1] + share * (motion.joints[row] - motion.joints[row - 1])
     flange = KdlArm(cell.machine).forward(joints)
-    seen = cell.mount @ np.linalg.inv(flange @ cell.carried) @ cell.station
+    seen = cell.poses.mount @ np.linalg.inv(flange @ cell.poses.carried) @ cell.poses.station
     return seen[:, :3, 3], seen[:, :3, 2]
 
 

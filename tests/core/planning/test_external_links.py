@@ -113,7 +113,7 @@ def test_a_nozzle_driven_into_the_positioner_is_told_with_its_link_and_on_the_pr
     wrong = dataclasses.replace(motion, joints=joints)
     told = nozzle_obstacles.findings(wrong, cell)
     seen = cell.external_link_frames(lowered)[:, 2]
-    tip = cell.machine.chain.forward(lowered) @ cell.carried
+    tip = cell.machine.chain.forward(lowered) @ cell.poses.carried
     at = (np.linalg.inv(seen) @ tip)[:, :3, 3]
     pieces = json.loads((MECHANISMS / f"{POSITIONER}.json").read_text(encoding="utf-8"))["bodies"][
         "joint_2"

@@ -247,21 +247,21 @@ def test_cartesian_positions_with_the_part_on_the_robot_are_those_of_the_deposit
         motion, cell, ProcessParameters(), ProgramParameters(motion="cartesian"), "gauge"
     )
     rows = motion.moves
-    platform = cell.machine.chain.forward(motion.joints[rows]) @ cell.carried
+    platform = cell.machine.chain.forward(motion.joints[rows]) @ cell.poses.carried
     position = np.concatenate([moves.position for moves in program.moves])
     rotation = np.concatenate([moves.rotation for moves in program.moves])
     # carried along by the platform each of them comes to lie where the deposit comes out, Z to the nozzle
     place = platform[:, :3, :3] @ position[:, :, None] + platform[:, :3, 3:]
     np.testing.assert_allclose(
-        place[:, :, 0], np.tile(cell.station[:3, 3], (len(place), 1)), atol=1e-9
+        place[:, :, 0], np.tile(cell.poses.station[:3, 3], (len(place), 1)), atol=1e-9
     )
     np.testing.assert_allclose(
         platform[:, :3, :3] @ rotation,
-        np.tile(cell.station[:3, :3], (len(place), 1, 1)),
+        np.tile(cell.poses.station[:3, :3], (len(place), 1, 1)),
         atol=1e-12,
     )
     # and in part coordinates they are the points of the part
-    in_part = position @ cell.mount[:3, :3].T + cell.mount[:3, 3]
+    in_part = position @ cell.poses.mount[:3, :3].T + cell.poses.mount[:3, 3]
     np.testing.assert_allclose(in_part, motion.position[rows], atol=1e-6)
 
 

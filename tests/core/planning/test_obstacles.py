@@ -77,13 +77,13 @@ def nozzle_points(cell):
     points = np.stack(
         [radius * np.cos(turn), radius * np.sin(turn), -height + 0.0 * turn], axis=-1
     ).reshape(-1, 3)
-    return points @ cell.carried[:3, :3].T + cell.carried[:3, 3]
+    return points @ cell.poses.carried[:3, :3].T + cell.poses.carried[:3, 3]
 
 
 def part_points(dome, cell):
     """Points about all beads of a part that the flange carries, by half their width and height."""
     points = np.concatenate([bead.points for _, _, bead in dome])
-    seen = cell.carried @ np.linalg.inv(cell.mount)
+    seen = cell.poses.carried @ np.linalg.inv(cell.poses.mount)
     around = [
         points + [0.5 * dome.layer_height * a, 0.5 * dome.layer_height * b, 0.0]
         for a in (-1, 1)

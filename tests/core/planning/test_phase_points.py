@@ -20,7 +20,7 @@ def condition(arm, cell, joints):
     """The ratio of the singular values of the Jacobian of the tip of a tool on the robot, by differences."""
 
     def at(values):
-        return arm.forward(values[None])[0] @ cell.carried
+        return arm.forward(values[None])[0] @ cell.poses.carried
 
     here, columns = at(joints), []
     for axis in STEP * np.eye(6):
@@ -63,7 +63,9 @@ def test_points_of_phases_have_the_condition_of_where_they_are():
             abs(bead.condition[new] - between) > 1e-6
         )  # what lies between its neighbours would be another one
     flange = arm.forward(bead.joints)
-    tip = (cell.mount @ np.linalg.inv(cell.station) @ flange @ cell.carried)[:, :3, 3]
+    tip = (cell.poses.mount @ np.linalg.inv(cell.poses.station) @ flange @ cell.poses.carried)[
+        :, :3, 3
+    ]
     np.testing.assert_allclose(tip, bead.bead.points, atol=1e-6)
 
 

@@ -80,7 +80,7 @@ def conditions(arm, cell, joints):
     here = arm.forward(joints)
     found = []
     for k in range(len(joints)):
-        tip = np.linalg.inv(here[k]) @ np.append(cell.station[:3, 3], 1.0)
+        tip = np.linalg.inv(here[k]) @ np.append(cell.poses.station[:3, 3], 1.0)
         columns = []
         for axis in range(6):
             up, down = moved[2 * axis][k], moved[2 * axis + 1][k]
@@ -123,7 +123,7 @@ def driven(seed, sliced, cell_of):
         ), (seed, lift)
     arm = kdl.KdlArm(cell.machine)
     flange = arm.forward(motion.joints)
-    in_part = cell.mount @ np.linalg.inv(flange @ cell.carried) @ cell.station
+    in_part = cell.poses.mount @ np.linalg.inv(flange @ cell.poses.carried) @ cell.poses.station
     assert np.abs(in_part[:, :3, 3] - motion.position).max() < 1e-5
     turned = np.abs(np.diff(motion.joints, axis=0)).max(axis=1) > 1e-9
     fastest = np.radians(

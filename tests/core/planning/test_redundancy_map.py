@@ -103,8 +103,10 @@ def test_cells_are_where_pykdl_finds_them(funnel, setup, axis):
                 axis == spin_map.RZ
             ):  # the last Bryant angle of the same rotation, from the flange that PyKDL finds
                 mounted = np.eye(3) if setup is not PART_ON_ROBOT else None
-                platform = flange[0] @ cell.carried
-                turned = (cell.station[:3, :3].T @ platform[:3, :3]) if mounted is None else None
+                platform = flange[0] @ cell.poses.carried
+                turned = (
+                    (cell.poses.station[:3, :3].T @ platform[:3, :3]) if mounted is None else None
+                )
                 if turned is not None:
                     rz = np.arctan2(-turned[0, 1], turned[0, 0])
                     assert abs((rz - found.values[row] + np.pi) % TURN - np.pi) < 1e-6
@@ -231,7 +233,7 @@ def test_columns_are_even_and_have_the_ends_of_beads(dome, funnel):
 def test_values_and_rotations_are_each_others_inverse(funnel):
     cell = cells.resolve(CellParameters(limits="paper"), funnel.frame)
     tool = np.concatenate([bead.tool for bead in beads_of(funnel)[0]])
-    tool = tool[np.abs(tool @ cell.mount[:3, 2]) > 0.05]
+    tool = tool[np.abs(tool @ cell.poses.mount[:3, 2]) > 0.05]
     random = np.random.default_rng(3).uniform(-np.pi, np.pi, len(tool))
     for axis in (spin_map.RZ, spin_map.ROTATION):
         phi = spin_map.rotation_of(cell, tool, random, axis)

@@ -90,7 +90,7 @@ def test_axes_go_by_their_letters(machine, names):
 def test_positions_and_directions_turn_with_the_part(origin):
     cell, motion = planned("table-xyzac")
     made = program(cell, motion, motion="cartesian", origin=origin)
-    on_part = cell.mount if origin == "auto" else frames.bryant(origin)
+    on_part = cell.poses.mount if origin == "auto" else frames.bryant(origin)
     seen = frames.inverse(on_part)
     rows = motion.moves
     position, direction = (

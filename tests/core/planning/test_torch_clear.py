@@ -40,7 +40,7 @@ def beside(dome):
         @ cell.machine.chain.links(motion.joints[row])[-1]
         @ cell.machine.chain.flange
     )
-    camera = flange @ cell.carried @ [140.0, 0.0, -87.5, 1.0]
+    camera = flange @ cell.poses.carried @ [140.0, 0.0, -87.5, 1.0]
     pose = frames.pose(np.eye(3), camera[:3])
     return values, cell, pose, motion
 
@@ -49,7 +49,7 @@ def carried(cell):
     """Points on the torch beyond the nozzle, on the flange."""
     points = samples(cell.shapes.torch.body, 3000)
     points = points[points[:, 2] > NOZZLE.length] * [1.0, -1.0, -1.0]
-    return points @ cell.carried[:3, :3].T + cell.carried[:3, 3]
+    return points @ cell.poses.carried[:3, :3].T + cell.poses.carried[:3, 3]
 
 
 def test_a_camera_keeps_clear_of_a_post(dome, beside):

@@ -150,7 +150,7 @@ def test_rapids_over_a_positioner_are_led_past_an_obstacle(monkeypatch):
     size, arm = (6.0, 6.0, 6.0), KdlLinks(cell.robot)
     for row in np.flatnonzero(motion.role == TRAVEL)[1:]:
         middle = 0.5 * (motion.joints[row - 1] + motion.joints[row])[: len(cell.robot.axes)]
-        nozzle = np.linalg.inv(cell.robot.base) @ arm.frame(middle) @ cell.carried
+        nozzle = np.linalg.inv(cell.robot.base) @ arm.frame(middle) @ cell.poses.carried
         pose = nozzle @ frames.pose(np.eye(3), np.array([0.0, 0.0, -30.0]))
         there = dataclasses.replace(cell, shapes=CellShapes((box(size, pose, "lamp"),)))
         if not nozzle_obstacles.findings(motion, there):  # it is in the way of travels alone

@@ -45,17 +45,17 @@ def test_nozzle_and_part_are_where_pykdl_puts_them(cell):
         base = placed.links[0]
         assert np.abs(frames.inverse(base) @ drawn - flange[row]).max() < 1e-9
         assert np.abs(placed.links[standing_link(cell.machine.chain)] - np.eye(4)).max() < 1e-12
-        assert np.abs(placed.part @ cell.mount - placed.platform).max() < 1e-9
+        assert np.abs(placed.part @ cell.poses.mount - placed.platform).max() < 1e-9
 
 
 def test_at_rest_the_nozzle_stands_upright_on_the_point(cell):
-    point = (cell.mount @ [3.0, -4.0, 25.0, 1.0])[:3]
+    point = (cell.poses.mount @ [3.0, -4.0, 25.0, 1.0])[:3]
     joints = at_rest(cell, point)
     assert np.isfinite(joints).all() and (cell.limits.margin(joints) > 0.0).all()
     placed = placing(cell, joints)
     seen = frames.inverse(placed.part) @ placed.nozzle
     assert np.abs(seen[:3, 3] - point).max() < 1e-6
-    assert np.abs(seen[:3, 2] - cell.mount[:3, 2]).max() < 1e-9
+    assert np.abs(seen[:3, 2] - cell.poses.mount[:3, 2]).max() < 1e-9
 
 
 def test_out_of_reach_all_axes_are_at_zero():

@@ -148,8 +148,8 @@ def platform_collisions(cell: Cell, bodies: Sequence[Body]) -> list[Collision]:
     if plate is None:
         return []
     tip, axis = (
-        frames.transform_point(cell.mount[None], plate.tip),
-        frames.rotate_vector(cell.mount[None], plate.axis),
+        frames.transform_point(cell.poses.mount[None], plate.tip),
+        frames.rotate_vector(cell.poses.mount[None], plate.axis),
     )
     return [
         Collision(PLATFORM, body.name, np.zeros(0, dtype=np.intp), True, True)
@@ -168,7 +168,7 @@ def plate_of(cell: Cell) -> Solid | None:
     radius = 0.5 * cell.platform_diameter - PENETRATION
     if radius <= 0.0:
         return None
-    depth = float(cell.carried[2, 3]) if cell.arrangement.carries_part else PLATFORM_DEPTH
+    depth = float(cell.poses.carried[2, 3]) if cell.arrangement.carries_part else PLATFORM_DEPTH
     below = max(depth, 2.0 * PENETRATION)
     plate = Cylinder(np.array([0.0, 0.0, -below]), np.array([0.0, 0.0, -PENETRATION]), radius)
     return round_solid(plate, 0.0)

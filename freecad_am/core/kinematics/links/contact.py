@@ -154,7 +154,7 @@ class ArmContact:
     def __post_init__(self) -> None:
         around = [body for body in self.bodies if len(body.triangles)]
         if self.cell.platform_diameter > 0.0:
-            around.append(disc(self.cell.platform_diameter, self.cell.mount, PLATFORM))
+            around.append(disc(self.cell.platform_diameter, self.cell.poses.mount, PLATFORM))
         torch, holder = self.cell.shapes.torch, self._links(not self._carries_part)
         part_links = [
             *self._links(self._carries_part),
@@ -358,10 +358,10 @@ class ArmContact:
             Frames (k, 4, 4) of part, nozzle, world and external links, by name.
         """
         links = self.cell.links(joints)
-        carried = links[:, -1] @ (self.cell.robot.chain.flange @ self.cell.carried)
-        still = np.broadcast_to(self.cell.station, carried.shape)
+        carried = links[:, -1] @ (self.cell.robot.chain.flange @ self.cell.poses.carried)
+        still = np.broadcast_to(self.cell.poses.station, carried.shape)
         platform, nozzle = (carried, still) if self._carries_part else (still, carried @ _TURNED)
-        part_frame = platform @ frames.inverse(self.cell.mount)
+        part_frame = platform @ frames.inverse(self.cell.poses.mount)
         seen_from = {
             PART: part_frame,
             NOZZLE: nozzle,

@@ -153,9 +153,11 @@ def _interpolate_flange(
         angle[:, None] > 1e-12, vector / np.maximum(angle, 1e-12)[:, None], [0.0, 0.0, 1.0]
     )
     rotation = start_rotation @ frames.rotation_about(axis, share * angle)
-    on_flange = cell.carried @ frames.inverse(cell.mount)
+    on_flange = cell.poses.carried @ frames.inverse(cell.poses.mount)
     carried = position @ on_flange[:3, :3].T + on_flange[:3, 3]
-    return frames.pose(rotation, cell.station[:3, 3] - (rotation @ carried[:, :, None])[:, :, 0])
+    return frames.pose(
+        rotation, cell.poses.station[:3, 3] - (rotation @ carried[:, :, None])[:, :, 0]
+    )
 
 
 def _joints(motion: Motion, cell: Cell, flange: Array, reference: Array) -> Array:

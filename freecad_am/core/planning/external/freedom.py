@@ -274,7 +274,7 @@ def external_rates(cell: Cell, position: Array, joints: Array) -> list[Array]:
         d q / d e for each external axis.
     """
     robot_axes, count = cell.robot.chain.axes, cell.machine.chain.axes
-    stands = cell.station @ frames.inverse(cell.mount)
+    stands = cell.poses.station @ frames.inverse(cell.poses.mount)
     jacobian = jac.jacobian(cell.machine.chain, joints, position @ stands[:3, :3].T + stands[:3, 3])
     robot, external = jacobian[:, :, :robot_axes], jacobian[:, :, robot_axes:]
     try:

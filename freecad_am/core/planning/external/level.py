@@ -122,7 +122,7 @@ def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
         if max_lean >= math.pi:
             continue
         directions = (
-            cell.station[None, :3, 2]
+            cell.poses.station[None, :3, 2]
             if cell.arrangement.carries_part
             else directions_on_face(cell, bead.tool)
         )

@@ -43,7 +43,7 @@ def directions_on_face(cell: Cell, tool: Array) -> Array:
     (n, 3) array
         The same directions in the frame of the face.
     """
-    turned = cell.station[:3, :3] @ cell.mount[:3, :3].T
+    turned = cell.poses.station[:3, :3] @ cell.poses.mount[:3, :3].T
     return np.asarray(tool @ turned.T)
 
 

@@ -82,7 +82,7 @@ def _at_points(bead: Bead, cell: Cell) -> Array:
     at_zero = bead.external.copy()
     at_zero[:, external.slides] = 0.0
     world = external.base(at_zero) @ cell.robot.base
-    stands = cell.station @ frames.inverse(cell.mount)
+    stands = cell.poses.station @ frames.inverse(cell.poses.mount)
     point = bead.points @ stands[:3, :3].T + stands[:3, 3]
     on_track = np.einsum("nji,nj->ni", world[:, :3, :3], point - world[:, :3, 3])
     return np.asarray(on_track @ external.along)

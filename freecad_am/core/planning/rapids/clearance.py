@@ -74,7 +74,7 @@ class RapidObstacles:
     def __init__(self, cell: Cell, deposit: Beads, bodies: Sequence[Body]) -> None:
         self.cell = cell
         platform = (
-            [disc(cell.platform_diameter, cell.mount, "the platform")]
+            [disc(cell.platform_diameter, cell.poses.mount, "the platform")]
             if cell.platform_diameter > 0.0
             else []
         )

@@ -221,7 +221,7 @@ class Retracts:
             bead or repeats an earlier one.
         """
         tool, build = self.ends.tool, self.ends.build
-        normal = np.broadcast_to(self.cell.mount[:3, 2], tool.shape)
+        normal = np.broadcast_to(self.cell.poses.mount[:3, 2], tool.shape)
         sides = (tool + self._sides(2.0 * np.pi * k / 4) for k in range(4))
         directions: Array = np.stack(
             [tool, tool + build, build, tool + normal, normal, build + normal, *sides]
@@ -240,7 +240,7 @@ class Retracts:
     def _across(self) -> tuple[Array, Array]:
         """(n, 3) unit vectors across the tool axes, one that the platform gives and one across both."""
         tool = self.ends.tool
-        x, y = self.cell.mount[:3, 0], self.cell.mount[:3, 1]
+        x, y = self.cell.poses.mount[:3, 0], self.cell.poses.mount[:3, 1]
         # where two choices are as good, rounding must not choose
         across = np.cross(tool, np.where((np.abs(tool @ x) < 0.8)[:, None], x, y))
         across /= np.linalg.norm(across, axis=1, keepdims=True)
@@ -439,7 +439,9 @@ class Retracts:
             five = FiveAxis(self.cell.machine.chain)
             above, _ = self.cell.to_flange(tip.reshape(-1, 3), tools)
             return five.place_points(
-                np.repeat(joints[:, list(five.turning)], moves, axis=0), above, self.cell.station
+                np.repeat(joints[:, list(five.turning)], moves, axis=0),
+                above,
+                self.cell.poses.station,
             ).reshape(shape), tip
         arm, robot_axes = self.cell.robot.arm, self.cell.robot.chain.axes
         assert arm is not None

@@ -69,7 +69,7 @@ def attempts(
         Attempts in order of preference.
     """
     radius = 0.5 * cell.platform_diameter
-    x, y, origin = cell.mount[:3, 0], cell.mount[:3, 1], cell.mount[:3, 3]
+    x, y, origin = cell.poses.mount[:3, 0], cell.poses.mount[:3, 1], cell.poses.mount[:3, 3]
     platform = [origin + radius * (a * x + b * y) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
     all_ = (*bodies, *cell.in_part())
     points = np.vstack(

@@ -255,12 +255,12 @@ def courses(cell: Cell, lock: Lock | None, bead: Bead, pole: float = AT_POLE) ->
     list of (n, 5) array
         Axis values, rad or mm.
     """
-    arm, torch = FiveAxis(cell.machine.chain), cell.station[:3, 2]
+    arm, torch = FiveAxis(cell.machine.chain), cell.poses.station[:3, 2]
     points, tools = cell.to_flange(bead.points, bead.tool)
     if lock is not None:
         turned = _locked(arm, lock, tools, torch)
         turned[:, 1 - lock.axis] = np.unwrap(turned[:, 1 - lock.axis])
-        return [arm.place_points(turned, points, cell.station)]
+        return [arm.place_points(turned, points, cell.poses.station)]
     found = arm.turns(onto_pole(tools, arm.pole, pole), torch)
     ways = rotary_courses(found)
     if pole > AT_POLE:
@@ -268,7 +268,7 @@ def courses(cell: Cell, lock: Lock | None, bead: Bead, pole: float = AT_POLE) ->
         for axis, free in enumerate((found.first_free, found.second_free)):
             for course in ways:
                 course[:, axis] = led_over(course[:, axis], free, place)
-    return [arm.place_points(course, points, cell.station) for course in ways]
+    return [arm.place_points(course, points, cell.poses.station) for course in ways]
 
 
 def chosen(cell: Cell, ways: Sequence[Array], before: Array) -> Array:
@@ -348,7 +348,7 @@ def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock
     turning = arm.turning[axis]
     low = max(float(cell.limits.lower[turning]) + RESERVE, -math.pi)
     high = min(float(cell.limits.upper[turning]) - RESERVE, math.pi)
-    return Lock(axis, arm.best_lock(axis, directions, cell.station[:3, 2], low, high))
+    return Lock(axis, arm.best_lock(axis, directions, cell.poses.station[:3, 2], low, high))
 
 
 def as_held(
