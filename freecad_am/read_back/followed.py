@@ -69,7 +69,7 @@ def by_table(cell: Cell, text: ReadMoves, path: Path) -> Array:
     assert text.joints is not None
     serial = cell.machine.from_controller(text.joints)
     solver, unknown = FiveAxis(cell.machine.chain), np.isnan(text.joints).any(axis=1)
-    points, tools = cell.to_flange(path.position, path.tool)
+    points, tools = cell.poses.to_flange(path.position, path.tool)
     turning = list(solver.turning)
     for start, end in _runs(unknown):
         rows = slice(start, end)

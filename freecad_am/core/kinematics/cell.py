@@ -194,6 +194,84 @@ class CellPoses:
     mount: Array
     offset: WorkOffset | None = None
 
+    def to_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
+        """Return points and tool axes of the part in the frame of the flange that carries it.
+
+        Parameters
+        ----------
+        position : (n, 3) array
+            Points in part coordinates, mm.
+        tool : (n, 3) array
+            Tool axes in part coordinates.
+
+        Returns
+        -------
+        position : (n, 3) array
+            Points in the flange frame, mm.
+        tool : (n, 3) array
+            Tool axes in the flange frame.
+        """
+        flange_frame = self.carried @ frames.inverse(self.mount)
+        return position @ flange_frame[:3, :3].T + flange_frame[:3, 3], tool @ flange_frame[
+            :3, :3
+        ].T
+
+    def phi_of_rz(self, tool: Array, rz: Array) -> tuple[Array, Array]:
+        """Return the rotation phi for the RZ of the paper.
+
+        Parameters
+        ----------
+        tool : (n, 3) array
+            Tool axes in part coordinates, unit vectors.
+        rz : (n,) array
+            RZ, rad.
+
+        Returns
+        -------
+        phi : (n,) array
+            Rotation about the tool axes, rad.
+        rate : (n,) array
+            d phi / d RZ.
+
+        References
+        ----------
+        Chalvin 2020, eqs. 14 and 15.
+        """
+        t = tool @ self.mount[:3, :3]
+        cos, sin = np.cos(rz), np.sin(rz)
+        sx = t[:, 1] * cos + t[:, 0] * sin
+        sy = -(t[:, 0] * cos - t[:, 1] * sin)
+        cx = np.sqrt(sy * sy + t[:, 2] ** 2)
+        level = np.where(cx > 0.0, cx, 1.0)
+        # Rx Ry Rz on the first row of the rotation that brings the tool upright; two of its entries give the angle
+        x, y, z = columns(frames.smallest_rotation(t, UP)[:, 0])
+        x, y = cos * x - sin * y, sin * x + cos * y
+        cos_y, sin_y = np.where(cx > 0.0, t[:, 2], 1.0) / level, sy / level
+        first_row = cos_y * x + sin_y * z, cx * y - sx * (cos_y * z - sin_y * x)
+        return np.arctan2(first_row[1], first_row[0]), t[:, 2] / np.maximum(cx * cx, 1e-300)
+
+    def rz_of_phi(self, tool: Array, phi: Array) -> Array:
+        """Return the RZ of the paper for rotations phi.
+
+        Parameters
+        ----------
+        tool : (n, 3) array
+            Tool axes in part coordinates, unit vectors.
+        phi : (n,) array
+            Rotation about the tool axes, rad.
+
+        Returns
+        -------
+        (n,) array
+            RZ in -pi to pi, rad.
+        """
+        t = tool @ self.mount[:3, :3]
+        upright = frames.smallest_rotation(t, UP)
+        first_row = np.cos(phi)[:, None] * upright[:, 0] - np.sin(phi)[:, None] * upright[:, 1]
+        side = np.where(t[:, 2] < 0.0, -1.0, 1.0)
+        rz: Array = np.arctan2(-first_row[:, 1] * side, first_row[:, 0] * side)
+        return rz
+
 
 @dataclass(frozen=True, eq=False)
 class Cell:
@@ -401,28 +479,6 @@ class Cell:
         ) @ frames.inverse(self.poses.mount)
         return np.asarray(position @ carrier_frame[:3, :3].T + carrier_frame[:3, 3])
 
-    def to_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
-        """Return points and tool axes of the part in the frame of the flange that carries it.
-
-        Parameters
-        ----------
-        position : (n, 3) array
-            Points in part coordinates, mm.
-        tool : (n, 3) array
-            Tool axes in part coordinates.
-
-        Returns
-        -------
-        position : (n, 3) array
-            Points in the flange frame, mm.
-        tool : (n, 3) array
-            Tool axes in the flange frame.
-        """
-        flange_frame = self.poses.carried @ frames.inverse(self.poses.mount)
-        return position @ flange_frame[:3, :3].T + flange_frame[:3, 3], tool @ flange_frame[
-            :3, :3
-        ].T
-
     def flange_poses(
         self, position: Array, tool: Array, phi: Array, joints: Array | None = None
     ) -> Array:
@@ -540,62 +596,6 @@ class Cell:
             return np.broadcast_to(self.poses.station[:3, 2], (len(flange), 3))
         axis: Array = (flange @ self.poses.carried)[:, :3, 2]
         return axis
-
-    def phi_of_rz(self, tool: Array, rz: Array) -> tuple[Array, Array]:
-        """Return the rotation phi for the RZ of the paper.
-
-        Parameters
-        ----------
-        tool : (n, 3) array
-            Tool axes in part coordinates, unit vectors.
-        rz : (n,) array
-            RZ, rad.
-
-        Returns
-        -------
-        phi : (n,) array
-            Rotation about the tool axes, rad.
-        rate : (n,) array
-            d phi / d RZ.
-
-        References
-        ----------
-        Chalvin 2020, eqs. 14 and 15.
-        """
-        t = tool @ self.poses.mount[:3, :3]
-        cos, sin = np.cos(rz), np.sin(rz)
-        sx = t[:, 1] * cos + t[:, 0] * sin
-        sy = -(t[:, 0] * cos - t[:, 1] * sin)
-        cx = np.sqrt(sy * sy + t[:, 2] ** 2)
-        level = np.where(cx > 0.0, cx, 1.0)
-        # Rx Ry Rz on the first row of the rotation that brings the tool upright; two of its entries give the angle
-        x, y, z = columns(frames.smallest_rotation(t, UP)[:, 0])
-        x, y = cos * x - sin * y, sin * x + cos * y
-        cos_y, sin_y = np.where(cx > 0.0, t[:, 2], 1.0) / level, sy / level
-        first_row = cos_y * x + sin_y * z, cx * y - sx * (cos_y * z - sin_y * x)
-        return np.arctan2(first_row[1], first_row[0]), t[:, 2] / np.maximum(cx * cx, 1e-300)
-
-    def rz_of_phi(self, tool: Array, phi: Array) -> Array:
-        """Return the RZ of the paper for rotations phi.
-
-        Parameters
-        ----------
-        tool : (n, 3) array
-            Tool axes in part coordinates, unit vectors.
-        phi : (n,) array
-            Rotation about the tool axes, rad.
-
-        Returns
-        -------
-        (n,) array
-            RZ in -pi to pi, rad.
-        """
-        t = tool @ self.poses.mount[:3, :3]
-        upright = frames.smallest_rotation(t, UP)
-        first_row = np.cos(phi)[:, None] * upright[:, 0] - np.sin(phi)[:, None] * upright[:, 1]
-        side = np.where(t[:, 2] < 0.0, -1.0, 1.0)
-        rz: Array = np.arctan2(-first_row[:, 1] * side, first_row[:, 0] * side)
-        return rz
 
 
 def mounted(parameters: CellParameters, feature_frame: Array, family: str) -> Array:

@@ -397,11 +397,11 @@ def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:
 
     Notes
     -----
-    Inverts `Cell.rz_of_phi` (Chalvin 2020, eqs. 9 and 10).
+    Inverts `CellPoses.rz_of_phi` (Chalvin 2020, eqs. 9 and 10).
     """
     if axis == ROTATION:
         return np.array(np.broadcast_to(value, np.broadcast_shapes(value.shape, (len(tool),))))
-    # eq. 9 and 10 solved for phi, as Cell.rz_of_phi has them for RZ
+    # eq. 9 and 10 solved for phi, as CellPoses.rz_of_phi has them for RZ
     upright = frames.smallest_rotation(tool @ cell.poses.mount[:3, :3], (0.0, 0.0, 1.0))
     sin, cos = np.sin(value), np.cos(value)
     return np.asarray(
@@ -431,7 +431,7 @@ def value_of(cell: Cell, tool: Array, phi: Array, axis: str) -> Array:
     (C,) array
         Values, rad; RZ is in -pi to pi.
     """
-    return phi if axis == ROTATION else cell.rz_of_phi(tool, phi)
+    return phi if axis == ROTATION else cell.poses.rz_of_phi(tool, phi)
 
 
 def in_turns(values: Array, starts: Mask) -> Array:

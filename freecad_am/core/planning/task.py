@@ -255,7 +255,7 @@ class Task:
         if self.parameters.parameter == "rotation":
             ones: Array = np.ones(len(value))
             return value, ones
-        return self.cell.phi_of_rz(points.tool, value)
+        return self.cell.poses.phi_of_rz(points.tool, value)
 
     @property
     def arm(self) -> SerialArm:
@@ -542,7 +542,9 @@ class Task:
         if not isinstance(min_condition, str):
             return np.full(len(points), float(min_condition))
         tools = [points.tool[rows] for rows in in_pieces(len(points))]
-        phi = np.concatenate([self.cell.phi_of_rz(tool, np.zeros(len(tool)))[0] for tool in tools])
+        phi = np.concatenate(
+            [self.cell.poses.phi_of_rz(tool, np.zeros(len(tool)))[0] for tool in tools]
+        )
         at_zero = self.condition(points, phi, self.raw_joints(points, phi))
         return np.maximum(CONDITION_SHARE * at_zero, CONDITION_FLOOR)
 

@@ -261,7 +261,7 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     """
     target, chain = np.asarray(point, float), cell.machine.chain
     if not cell.machine.free:
-        on_flange, _ = cell.to_flange(target[None], cell.poses.mount[None, :3, 2])
+        on_flange, _ = cell.poses.to_flange(target[None], cell.poses.mount[None, :3, 2])
         return np.asarray(
             FiveAxis(chain).place_points(np.zeros((1, TURNING)), on_flange, cell.poses.station)[0]
         )

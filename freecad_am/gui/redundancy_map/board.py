@@ -273,7 +273,7 @@ class Board:
             for value in (old, new)
         ]
         old_rotation, new_rotation = (
-            float((cell.rz_of_phi(tool, angle) if of_rz else angle)[0]) for angle in phi
+            float((cell.poses.rz_of_phi(tool, angle) if of_rz else angle)[0]) for angle in phi
         )
         side = -1.0 if float(tool[0] @ cell.poses.mount[:3, 2]) < 0.0 else 1.0
         by = new_rotation - old_rotation
@@ -301,7 +301,7 @@ class Board:
         outside = high - low < TURN - 1e-9 and float((phi[0] - low) % TURN) > high - low
         return Cell(
             self.place(column),
-            float(task.cell.rz_of_phi(sample.tool, phi)[0]),
+            float(task.cell.poses.rz_of_phi(sample.tool, phi)[0]),
             float(phi[0]),
             joints,
             float(1.0 - offset.max()) if reached else -np.inf,

@@ -354,7 +354,7 @@ class Draft:
         """The rotation (T,) of the curve at points of beads (T,)."""
         task = self.source.task(self.branch)
         if self.kind == CONSTANT:
-            phi, _ = self.source.cell.phi_of_rz(points.tool, np.full(len(points), self.rz))
+            phi, _ = self.source.cell.poses.phi_of_rz(points.tool, np.full(len(points), self.rz))
             return in_turns(phi, np.diff(bead, prepend=-1) != 0)
         value = np.zeros(len(points))
         for column in self.coefficients.T[::-1]:
@@ -517,8 +517,8 @@ class Draft:
         """The variable of the job's polynomials at rotations phi (T,), counted on along the beads."""
         if self.source.parameters.parameter == "rotation":
             return phi
-        return in_turns(self.source.cell.rz_of_phi(points.tool, phi), points.starts)
+        return in_turns(self.source.cell.poses.rz_of_phi(points.tool, phi), points.starts)
 
     def _mean_rz(self) -> float:
-        rz = self.source.cell.rz_of_phi(self.live.points.tool, self.live.planned)
+        rz = self.source.cell.poses.rz_of_phi(self.live.points.tool, self.live.planned)
         return float(np.angle(np.exp(1j * rz).mean()))

@@ -114,7 +114,7 @@ def test_rz_is_the_last_bryant_angle_of_the_rotation_that_takes_the_build_direct
     rng = np.random.default_rng(3)
     cell = cells.resolve(CellParameters(limits="paper"), np.eye(4))
     tool, rz = directions(rng, 200), rng.uniform(-np.pi, np.pi, 200)
-    phi, _ = cell.phi_of_rz(tool, rz)
+    phi, _ = cell.poses.phi_of_rz(tool, rz)
     part_to_robot = frames.about_z(phi) @ frames.smallest_rotation(tool, (0.0, 0.0, 1.0))
     assert np.abs(np.einsum("nij,nj->ni", part_to_robot, tool) - [0, 0, 1]).max() < 1e-12
     back = frames.to_bryant(part_to_robot)
@@ -122,15 +122,18 @@ def test_rz_is_the_last_bryant_angle_of_the_rotation_that_takes_the_build_direct
     assert np.abs(rebuilt - part_to_robot).max() < 1e-12
     up = tool[:, 2] > 0.0
     assert np.abs(np.exp(1j * back[up, 2]) - np.exp(1j * rz[up])).max() < 1e-9
-    assert np.abs(np.exp(1j * cell.rz_of_phi(tool, phi)) - np.exp(1j * rz)).max() < 1e-9
+    assert np.abs(np.exp(1j * cell.poses.rz_of_phi(tool, phi)) - np.exp(1j * rz)).max() < 1e-9
 
 
 def test_the_rate_of_the_rotation_by_rz():
     rng = np.random.default_rng(4)
     cell = cells.resolve(CellParameters(limits="paper"), np.eye(4))
     tool, rz, step = directions(rng, 200), rng.uniform(-3, 3, 200), 1e-6
-    _, rate = cell.phi_of_rz(tool, rz)
-    later, earlier = cell.phi_of_rz(tool, rz + step)[0], cell.phi_of_rz(tool, rz - step)[0]
+    _, rate = cell.poses.phi_of_rz(tool, rz)
+    later, earlier = (
+        cell.poses.phi_of_rz(tool, rz + step)[0],
+        cell.poses.phi_of_rz(tool, rz - step)[0],
+    )
     measured = np.angle(np.exp(1j * (later - earlier))) / (2 * step)
     assert np.abs(measured / rate - 1.0).max() < 1e-5
 
@@ -139,7 +142,7 @@ def test_rz_degenerates_where_the_build_direction_is_nearly_horizontal():
     """ERRATA: at 85 deg of tilt |d phi / d RZ| ranges from 0.09 to 11."""
     cell = cells.resolve(CellParameters(limits="paper"), np.eye(4))
     tool = np.repeat([[np.sin(np.radians(85.0)), 0.0, np.cos(np.radians(85.0))]], 3600, axis=0)
-    _, rate = cell.phi_of_rz(tool, np.linspace(-np.pi, np.pi, 3600))
+    _, rate = cell.poses.phi_of_rz(tool, np.linspace(-np.pi, np.pi, 3600))
     assert np.abs(rate).min() == pytest.approx(0.0872, abs=1e-3)
     assert np.abs(rate).max() == pytest.approx(11.47, abs=0.1)
 

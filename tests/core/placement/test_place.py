@@ -136,7 +136,11 @@ def test_points_that_no_rotation_serves_are_counted_right(dome):
     at_zero = np.zeros(len(position))
     spins = np.concatenate([[np.nan], np.linspace(-np.pi, np.pi, 1440, endpoint=False)])
     for k, spin in enumerate(spins):
-        phi = cell.phi_of_rz(tool, np.zeros(len(tool)))[0] if k == 0 else np.full(len(tool), spin)
+        phi = (
+            cell.poses.phi_of_rz(tool, np.zeros(len(tool)))[0]
+            if k == 0
+            else np.full(len(tool), spin)
+        )
         flange = cell.flange_poses(position, tool, phi)
         q = cell.machine.arm.inverse_branch(flange, cell.branch)
         reached = np.isfinite(q).all(axis=1)

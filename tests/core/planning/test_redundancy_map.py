@@ -119,7 +119,7 @@ def test_cells_are_what_the_planner_says_of_points(funnel, branch):
     points = found.columns.points
     threshold = task.thresholds(points)
     for row in (0, 13, 30, 47):
-        phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), found.values[row]))
+        phi, _ = task.cell.poses.phi_of_rz(points.tool, np.full(len(points), found.values[row]))
         assert np.abs(np.exp(1j * phi) - np.exp(1j * found.phi[row])).max() < 1e-7
         joints = task.joints(points, phi)
         assert (
@@ -241,7 +241,7 @@ def test_values_and_rotations_are_each_others_inverse(funnel):
     assert (
         np.abs(
             np.exp(1j * spin_map.rotation_of(cell, tool, random, spin_map.RZ))
-            - np.exp(1j * cell.phi_of_rz(tool, random)[0])
+            - np.exp(1j * cell.poses.phi_of_rz(tool, random)[0])
         ).max()
         < 1e-7
     )

@@ -151,7 +151,7 @@ def _keeps_clear(task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int
     few_points[::POINT_STRIDE] = True
 
     def clear(rz: float) -> bool:
-        phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), rz))
+        phi, _ = task.cell.poses.phi_of_rz(points.tool, np.full(len(points), rz))
         joints = task.joints(points, phi)
         return not any(
             arm_clearance.touches(
@@ -184,7 +184,7 @@ def margins(task: Task, points: Points, thresholds: Array, values: Array) -> Arr
     """
     result = np.empty(len(values))
     for index, rz in enumerate(values):
-        phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), rz))
+        phi, _ = task.cell.poses.phi_of_rz(points.tool, np.full(len(points), rz))
         joints = task.joints(points, phi)
         margin = float(task.rows.margin(joints).min())
         if margin >= 0.0:
@@ -202,7 +202,7 @@ def _paths(
     threshold: Array,
     rz: float,
 ) -> list[BeadPath]:
-    phi, _ = task.cell.phi_of_rz(points.tool, np.full(len(points), rz))
+    phi, _ = task.cell.poses.phi_of_rz(points.tool, np.full(len(points), rz))
     phi = _unwrapped(phi, points)
     joints = task.joints(points, phi)
     return bead_paths(

@@ -437,7 +437,7 @@ class Retracts:
         shape = (len(point), moves, joints.shape[1])
         if self.branch is None:
             five = FiveAxis(self.cell.machine.chain)
-            above, _ = self.cell.to_flange(tip.reshape(-1, 3), tools)
+            above, _ = self.cell.poses.to_flange(tip.reshape(-1, 3), tools)
             return five.place_points(
                 np.repeat(joints[:, list(five.turning)], moves, axis=0),
                 above,

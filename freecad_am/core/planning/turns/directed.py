@@ -256,7 +256,7 @@ def courses(cell: Cell, lock: Lock | None, bead: Bead, pole: float = AT_POLE) ->
         Axis values, rad or mm.
     """
     arm, torch = FiveAxis(cell.machine.chain), cell.poses.station[:3, 2]
-    points, tools = cell.to_flange(bead.points, bead.tool)
+    points, tools = cell.poses.to_flange(bead.points, bead.tool)
     if lock is not None:
         turned = _locked(arm, lock, tools, torch)
         turned[:, 1 - lock.axis] = np.unwrap(turned[:, 1 - lock.axis])
@@ -342,7 +342,7 @@ def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock
         return Lock(axis, parameters.lock_at)
     arm, tools = (
         FiveAxis(cell.machine.chain),
-        [cell.to_flange(bead.points, bead.tool)[1] for _, _, bead in toolpath],
+        [cell.poses.to_flange(bead.points, bead.tool)[1] for _, _, bead in toolpath],
     )
     directions: Array = np.unique(np.round(np.concatenate(tools), 5), axis=0)
     turning = arm.turning[axis]
