@@ -171,10 +171,8 @@ class BeadEnds:
         )
         ends_found = []
         for side in np.split(np.arange(len(rows)), 2):
-            point, height = (
-                np.full((len(beads.points) + 1, 3), np.nan),
-                np.zeros(len(beads.points) + 1),
-            )
+            point = np.full((len(beads.points) + 1, 3), np.nan)
+            height = np.zeros(len(beads.points) + 1)
             point[when[side]], height[when[side]] = beads.points[rows[side]], heights[side]
             ends_found.append(_Ends(point, height))
         self._ends = ends_found
@@ -199,10 +197,8 @@ class BeadEnds:
         bodies, deposit = np.zeros(len(tip)), np.zeros(len(tip))
         for end in self._ends:
             distances = np.linalg.norm(tip - end.point[deposited], axis=1)
-            bodies, deposit = (
-                np.fmax(bodies, about - distances),
-                np.fmax(deposit, end.height[deposited] - distances),
-            )
+            bodies = np.fmax(bodies, about - distances)
+            deposit = np.fmax(deposit, end.height[deposited] - distances)
         return Nozzle(
             travelling(*self._size, bodies).bodies, travelling(*self._size, deposit).deposit
         )

@@ -80,12 +80,10 @@ def build_deposit(
         np.broadcast_to(np.asarray(size_of, dtype=float), n)[kept_rows]
         for size_of in (width, height)
     )
-    points, build, moment, is_first = (
-        points[kept_rows],
-        build[kept_rows],
-        moment[kept_rows],
-        is_first[kept_rows],
-    )
+    points = points[kept_rows]
+    build = build[kept_rows]
+    moment = moment[kept_rows]
+    is_first = is_first[kept_rows]
     end = np.flatnonzero(~is_first)
     along = points[end] - points[end - 1]
     size = lengths(along)

@@ -111,10 +111,8 @@ class Frustum:
         across = offset - x[:, None] * axis
         side = np.sqrt(dots(across, across))
         low: float | Array = self.low
-        low_radius, high_radius = (
-            self.radius + self.slope * low,
-            self.radius + self.slope * self.high,
-        )
+        low_radius = self.radius + self.slope * low
+        high_radius = self.radius + self.slope * self.high
         inside = (x >= low) & (x <= self.high) & (side <= self.radius + self.slope * x)
         # in the half plane of height and distance from the axis: on the side, or else on the lower or the upper disc
         tall, wide = self.high - low, high_radius - low_radius
@@ -126,11 +124,9 @@ class Frustum:
             on_disc = np.minimum(side, size)
             to_disc = np.square(x - disc) + np.square(side - on_disc)
             nearer = to_disc < squared_distance
-            height, out, squared_distance = (
-                np.where(nearer, disc, height),
-                np.where(nearer, on_disc, out),
-                np.minimum(to_disc, squared_distance),
-            )
+            height = np.where(nearer, disc, height)
+            out = np.where(nearer, on_disc, out)
+            squared_distance = np.minimum(to_disc, squared_distance)
         height, out = np.where(inside, x, height), np.where(inside, side, out)
         points: Array = (
             height[:, None] * axis + (out / np.where(side > 0.0, side, 1.0))[:, None] * across
@@ -206,10 +202,8 @@ class Frustum:
         rise = dots(normal, axis)
         lean = np.sqrt(np.maximum(1.0 - rise * rise, 0.0))
         low, high = self.low * rise, self.high * rise
-        small, large = (
-            (self.radius + self.slope * self.low) * lean,
-            (self.radius + self.slope * self.high) * lean,
-        )
+        small = (self.radius + self.slope * self.low) * lean
+        large = (self.radius + self.slope * self.high) * lean
         above = np.maximum(low + small, high + large)
         below = np.minimum(low - small, high - large)
         cut: Mask = (level < above) & (level > below)
@@ -293,11 +287,9 @@ class Frustum:
         Where the plane misses the axis between the end discs, it cuts a diameter of one disc: the
         diameter that goes farthest towards the plane.
         """
-        base, side_a, side_b = (
-            corners[:, 0],
-            corners[:, 1] - corners[:, 0],
-            corners[:, 2] - corners[:, 0],
-        )
+        base = corners[:, 0]
+        side_a = corners[:, 1] - corners[:, 0]
+        side_b = corners[:, 2] - corners[:, 0]
         normal = np.cross(side_a, side_b)
         square = dots(normal, normal)
         level = dots(normal, base)
@@ -346,10 +338,8 @@ class Lines(NamedTuple):
 
     def merge(self, starts: Index) -> Lines:
         """Merge the nodes from each start to the next."""
-        low, high = (
-            np.minimum.reduceat(self.low, starts, axis=1),
-            np.maximum.reduceat(self.high, starts, axis=1),
-        )
+        low = np.minimum.reduceat(self.low, starts, axis=1)
+        high = np.maximum.reduceat(self.high, starts, axis=1)
         return Lines(low, high, np.minimum.reduceat(self.foot, starts))
 
 

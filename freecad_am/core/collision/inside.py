@@ -39,10 +39,8 @@ class Inside:
     def _boxes(self, size: int) -> tuple[Array, Array]:
         """Lowest and highest coordinates (3, k) in the frame of the ray, of groups of `size` triangles."""
         starts = np.arange(0, len(self._seen), size)
-        low, high = (
-            np.minimum.reduceat(self._seen.min(axis=1), starts),
-            np.maximum.reduceat(self._seen.max(axis=1), starts),
-        )
+        low = np.minimum.reduceat(self._seen.min(axis=1), starts)
+        high = np.maximum.reduceat(self._seen.max(axis=1), starts)
         return np.ascontiguousarray(low.T), np.ascontiguousarray(high.T)
 
     def holds(self, points: Array) -> Mask:
@@ -63,10 +61,8 @@ class Inside:
     def _test_inside(self, ray_points: Array) -> Mask:
         x, y, z = np.ascontiguousarray(ray_points.T)
         top = self._levels[-1][0].shape[1]
-        query, node = (
-            np.repeat(np.arange(len(ray_points)), top),
-            np.tile(np.arange(top), len(ray_points)),
-        )
+        query = np.repeat(np.arange(len(ray_points)), top)
+        node = np.tile(np.arange(top), len(ray_points))
         for depth in range(len(self._levels) - 1, -1, -1):
             low, high = self._levels[depth]
             # one side of the boxes after the other: each leaves fewer pairs to test

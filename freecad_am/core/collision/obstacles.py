@@ -170,10 +170,8 @@ class Obstacles:
         self._boxes = [(0.5 * (low + high), 0.5 * (high - low))]
         for level in self._levels[:-1]:
             starts = np.arange(0, len(level.since), tree.BRANCH)
-            low, high = (
-                np.minimum.reduceat(low, starts, axis=1),
-                np.maximum.reduceat(high, starts, axis=1),
-            )
+            low = np.minimum.reduceat(low, starts, axis=1)
+            high = np.maximum.reduceat(high, starts, axis=1)
             self._boxes.append((0.5 * (low + high), 0.5 * (high - low)))
         if corners.shape[1] == 3:
             normal = doubled_areas(self.corners)
@@ -182,10 +180,8 @@ class Obstacles:
 
     def _build_levels(self) -> list[_Level]:
         """The levels of the tree, each from the one below it."""
-        rounding, since = (
-            np.zeros(len(self.since)) if self.radius is None else self.radius,
-            self.since,
-        )
+        rounding = np.zeros(len(self.since)) if self.radius is None else self.radius
+        since = self.since
         lines = (
             None
             if self.line is None or self.foot is None
@@ -195,10 +191,8 @@ class Obstacles:
         for _ in self._sizes[1:]:
             starts = np.arange(0, len(since), tree.BRANCH)
             lines = None if lines is None else lines.merge(starts)
-            rounding, since = (
-                np.maximum.reduceat(rounding, starts),
-                np.minimum.reduceat(since, starts),
-            )
+            rounding = np.maximum.reduceat(rounding, starts)
+            since = np.minimum.reduceat(since, starts)
             levels.append(_Level(rounding, since, lines))
         return levels
 
@@ -516,12 +510,10 @@ class Obstacles:
             now = np.arange(len(query)) - np.searchsorted(query, query) < share
             self._bring_nearer(solid, tip, axis, query[now], node[now], low, best, nearest_ids)
             remaining = ~now & (bounds_below < best[query])
-            query, node, bounds_below, share = (
-                query[remaining],
-                node[remaining],
-                bounds_below[remaining],
-                4 * share,
-            )
+            query = query[remaining]
+            node = node[remaining]
+            bounds_below = bounds_below[remaining]
+            share = 4 * share
         return np.where(best <= CONVERGED, 0.0, np.minimum(low, best)), nearest_ids
 
     def _bring_nearer(

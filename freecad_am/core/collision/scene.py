@@ -360,10 +360,8 @@ class Scene:
         if self.deposit is None:
             return hits
         rows = np.flatnonzero(~hits)
-        when, layer = (
-            _all(moment, len(tip))[rows],
-            None if layer_start is None else layer_start[rows],
-        )
+        when = _all(moment, len(tip))[rows]
+        layer = None if layer_start is None else layer_start[rows]
         hits[rows] = self.deposit.find_touching(
             nozzle.deposit.rows(rows), tip[rows], axis[rows], when, layer
         )
@@ -438,11 +436,9 @@ class Scene:
         position : (k, 3) array
             The nearest points of the solids, mm.
         """
-        gap, normal, position = (
-            np.full(len(tip), reach),
-            np.zeros((len(tip), 3)),
-            np.zeros((len(tip), 3)),
-        )
+        gap = np.full(len(tip), reach)
+        normal = np.zeros((len(tip), 3))
+        position = np.zeros((len(tip), 3))
         assert not isinstance(self.deposit, InParts), "made for looks, not for distances"
         for obstacles in (
             self.bodies.triangles,

@@ -171,12 +171,10 @@ def shortest_vectors(
         )
         size = np.sqrt(dots(direction, direction))
         going = np.flatnonzero(dots(direction, newest[:, :3]) < size * (size - CONVERGED))
-        rows, newest, nearest_point, size = (
-            rows[going],
-            newest[going],
-            nearest_point[going],
-            size[going],
-        )
+        rows = rows[going]
+        newest = newest[going]
+        nearest_point = nearest_point[going]
+        size = size[going]
         solid, axis, points = solid.rows(going), axis[going], points[going]
         nearest_point, simplex = (
             _nearest_on_segments(nearest_point, newest)
@@ -424,12 +422,10 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
     # handful of simplices
     edge = np.ascontiguousarray(edges[:, :, :3].transpose(1, 2, 0))
     squares = _summed(edge.take(_FACTOR_A, axis=0) * edge.take(_FACTOR_B, axis=0))
-    square, b, pull, square_norm = (
-        squares[:3],
-        squares[3:],
-        -_summed(edge * origin),
-        _summed((origin * origin)[None])[0],
-    )
+    square = squares[:3]
+    b = squares[3:]
+    pull = -_summed(edge * origin)
+    square_norm = _summed((origin * origin)[None])[0]
     shares, value = np.zeros((7, 3, len(newest))), np.empty((7, len(newest)))
     value[0] = square_norm
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -575,11 +571,9 @@ def axes_apart(cylinders: PlacedCylinders, others_at: PlacedCylinders) -> Array:
         Distances of the segments from end to end, mm.
     """
     off = cylinders.start - others_at.start
-    lean, first_offset, second_offset = (
-        dots(cylinders.axis, others_at.axis),
-        dots(cylinders.axis, off),
-        dots(others_at.axis, off),
-    )
+    lean = dots(cylinders.axis, others_at.axis)
+    first_offset = dots(cylinders.axis, off)
+    second_offset = dots(others_at.axis, off)
     square = 1.0 - lean * lean
     crossing = square > PARALLEL
     along = np.where(

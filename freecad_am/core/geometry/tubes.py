@@ -76,10 +76,8 @@ def frames(points: Array, build: Array, starts: Index, closed: Mask) -> Frames:
     length = np.linalg.norm(step, axis=1, keepdims=True)
     step = np.divide(step, length, out=np.zeros_like(step), where=length > 0.0)
     start_rows, end_rows = starts[:-1], starts[1:] - 1
-    direction_after, direction_before = (
-        np.concatenate([step, step[-1:]]),
-        np.concatenate([step[:1], step]),
-    )
+    direction_after = np.concatenate([step, step[-1:]])
+    direction_before = np.concatenate([step[:1], step])
     direction_after[end_rows], direction_before[start_rows] = (
         direction_before[end_rows],
         direction_after[start_rows],

@@ -83,10 +83,8 @@ def along_beads(
         The beads with directions and offsets.
     """
     close = max(tolerance, NOISE_MM)
-    points, directions = (
-        np.concatenate([bead.points for bead in beads]),
-        np.concatenate([directions_of(bead) for bead in beads]),
-    )
+    points = np.concatenate([bead.points for bead in beads])
+    directions = np.concatenate([directions_of(bead) for bead in beads])
     offsets = np.split(off(points, directions), np.cumsum([len(bead) for bead in beads])[:-1])
     refined, open_ = list(beads), [np.ones(len(bead) - 1, dtype=np.bool_) for bead in beads]
     for _ in range(ROUNDS):
@@ -432,10 +430,8 @@ def _record(
     deposited = np.concatenate([bead.points for bead in beads])
     heights = scan.heights(deposited, np.concatenate([directions_of(bead) for bead in beads]))
     sample = np.unique(np.linspace(0, len(deposited) - 1, LOOKED).astype(np.intp))
-    positions, off = (
-        np.concatenate([scanned_bead.bead.points for scanned_bead in planned]),
-        np.concatenate([scanned_bead.off for scanned_bead in planned]),
-    )
+    positions = np.concatenate([scanned_bead.bead.points for scanned_bead in planned])
+    off = np.concatenate([scanned_bead.off for scanned_bead in planned])
     position_sample = np.unique(np.linspace(0, len(positions) - 1, LOOKED).astype(np.intp))
     return Fitted(
         scan.label,

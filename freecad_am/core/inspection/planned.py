@@ -260,10 +260,8 @@ class _Meridian:
         """Radius, height, azimuth (n,) kept within the wall's turn, and how far (n,) past that in mm."""
         frame = self.wall.frame
         local_points = (points - frame[:3, 3]) @ frame[:3, :3]
-        radius, azimuth = (
-            np.hypot(local_points[:, 0], local_points[:, 1]),
-            np.arctan2(local_points[:, 1], local_points[:, 0]),
-        )
+        radius = np.hypot(local_points[:, 0], local_points[:, 1])
+        azimuth = np.arctan2(local_points[:, 1], local_points[:, 0])
         if self.wall.full:
             return radius, local_points[:, 2], azimuth, np.zeros(len(points))
         span = self.wall.end - self.wall.start
@@ -278,10 +276,8 @@ class _Meridian:
         """Arc lengths (n,) of the nearest places of the meridian."""
         nearest_row = self.tree.query(np.column_stack([radius, height]))[1]
         start = self.s[nearest_row]
-        low, high = (
-            np.maximum(start - self.step, 0.0),
-            np.minimum(start + self.step, self.curve.length),
-        )
+        low = np.maximum(start - self.step, 0.0)
+        high = np.minimum(start + self.step, self.curve.length)
         f_low, f_high = self._slope(low, radius, height), self._slope(high, radius, height)
         s = start
         for _ in range(3):  # false position; the slope of the distance is nearly linear so close by

@@ -252,11 +252,9 @@ def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
         raise InputError("EMPTY_FILE", label, "the file is empty; export the points again")
     suffix = Path(label).suffix.lower()
     if suffix in MESHES:
-        points, messages, named = (
-            MESHES[suffix](data, label),
-            ["the vertices of a mesh are taken as points"],
-            _unit_of_remarks(_remarks_of_mesh(data, suffix), label) if unit == AUTO else "",
-        )
+        points = MESHES[suffix](data, label)
+        messages = ["the vertices of a mesh are taken as points"]
+        named = _unit_of_remarks(_remarks_of_mesh(data, suffix), label) if unit == AUTO else ""
     else:
         points, messages, named = _table(_text(data), label)
     level = NOTE

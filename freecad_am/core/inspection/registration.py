@@ -372,13 +372,11 @@ def _converged(
                 break
             continue
         moved = float(np.linalg.norm(moving - aligned, axis=1).max())
-        motion, aligned, distance, normal, square = (
-            trial,
-            moving,
-            next_distance,
-            next_normal,
-            next_square,
-        )
+        motion = trial
+        aligned = moving
+        distance = next_distance
+        normal = next_normal
+        square = next_square
         damping *= 0.1 if damping > 1e-9 else 0.0
         if moved < CONVERGED:
             break

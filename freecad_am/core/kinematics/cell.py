@@ -104,10 +104,8 @@ def work_offset(points: Sequence[TouchedPoint], tolerance: float) -> WorkOffset:
         np.array([getattr(touched_point, side) for touched_point in points])
         for side in ("part", "robot")
     )
-    centred_part, centred_robot = (
-        part_points - part_points.mean(axis=0),
-        robot_points - robot_points.mean(axis=0),
-    )
+    centred_part = part_points - part_points.mean(axis=0)
+    centred_robot = robot_points - robot_points.mean(axis=0)
     for side, centred in (("part", centred_part), ("robot", centred_robot)):
         spread = np.linalg.svd(centred, compute_uv=False)
         if not spread[1] > LINE * spread[0]:
@@ -544,15 +542,11 @@ class Cell:
         """
         chain = self.machine.chain
         if self.torch_stands:
-            tip, into = (
-                chain.point_from_flange(joints, self.poses.station[:3, 3]),
-                self.poses.mount @ frames.inverse(self.poses.carried),
-            )
+            tip = chain.point_from_flange(joints, self.poses.station[:3, 3])
+            into = self.poses.mount @ frames.inverse(self.poses.carried)
         else:
-            tip, into = (
-                chain.point_position(joints, self.poses.carried[:3, 3]),
-                self.poses.mount @ frames.inverse(self.poses.station),
-            )
+            tip = chain.point_position(joints, self.poses.carried[:3, 3])
+            into = self.poses.mount @ frames.inverse(self.poses.station)
         in_part: Array = tip @ into[:3, :3].T + into[:3, 3]
         return in_part
 
@@ -662,10 +656,8 @@ def resolve(
     limits, external = machine.limits(parameters.limits), None
     # the torch of a machine that leaves nothing free is where its chain begins
     station = frames.bryant(parameters.deposition_point) if arrangement.free else np.eye(4)
-    mount, offset = (
-        mounted(parameters, feature_frame, family),
-        offset_of_cell(parameters, arrangement),
-    )
+    mount = mounted(parameters, feature_frame, family)
+    offset = offset_of_cell(parameters, arrangement)
     station = station if offset is None else offset.pose @ mount
     if mechanisms:
         machine, limits, external = coupled(

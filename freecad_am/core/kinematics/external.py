@@ -183,10 +183,8 @@ def coupled(
     _check_names(robot, loaded)
     _check(loaded)
     axes, ends = robot.chain.axes, np.cumsum([0, *(machine.chain.axes for _, machine in loaded)])
-    values, count = (
-        [np.arange(begin, end) for begin, end in zip(ends[:-1], ends[1:], strict=True)],
-        int(ends[-1]),
-    )
+    values = [np.arange(begin, end) for begin, end in zip(ends[:-1], ends[1:], strict=True)]
+    count = int(ends[-1])
     carriers = [k for k, (named_axis, _) in enumerate(loaded) if named_axis.carries == PART]
     in_world = frames.inverse(robot.base)
     sections, face, turned = [], np.eye(4), np.zeros(0, dtype=np.intp)
@@ -203,10 +201,8 @@ def coupled(
             # at zero the robot's base is the base of the world
             in_world = frames.inverse(start @ machine.chain.forward(np.zeros(1))) @ in_world
             sections.append(Piece(start, machine.chain, values[k]))
-            along, slides = (
-                start[:3, :3] @ machine.chain.frames(np.zeros(1)).directions[0],
-                int(values[k][0]),
-            )
+            along = start[:3, :3] @ machine.chain.frames(np.zeros(1)).directions[0]
+            slides = int(values[k][0])
     to_robot = join_chains(sections, in_world)
     coupled_chain = join_chains(
         [
@@ -363,10 +359,8 @@ def _chain(loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> tuple[Chain, 
                 frames.inverse(flange) @ start, machine.chain, begin + np.arange(machine.chain.axes)
             )
         )
-        flange, begin = (
-            start @ machine.chain.forward(np.zeros(machine.chain.axes)),
-            begin + machine.chain.axes,
-        )
+        flange = start @ machine.chain.forward(np.zeros(machine.chain.axes))
+        begin = begin + machine.chain.axes
     return join_chains(sections, np.eye(4)), flange
 
 

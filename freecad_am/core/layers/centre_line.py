@@ -375,10 +375,8 @@ def _smooth_line(solid: _Solid, sections: Sequence[Section], start: _Plane) -> t
         ]
         if len(valid_cuts) < 3:
             break
-        middles, areas = (
-            np.array([section.middle for section in valid_cuts]),
-            np.array([section.area for section in valid_cuts]),
-        )
+        middles = np.array([section.middle for section in valid_cuts])
+        areas = np.array([section.area for section in valid_cuts])
     line, positions = _fit_line(middles, start, end)
     length_before, length_after = (
         0.0 if plane is None else float(plane.above(middle))

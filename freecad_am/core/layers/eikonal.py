@@ -237,11 +237,9 @@ def _root(values: Array, steps: Array) -> Array:
     order = np.argsort(values, axis=0, kind="stable")
     v, h = np.take_along_axis(values, order, axis=0), np.take_along_axis(steps, order, axis=0)
     root_value: Array = v[0] + h[0]
-    weight, first_moment, second_moment = (
-        np.zeros(v.shape[1]),
-        np.zeros(v.shape[1]),
-        np.zeros(v.shape[1]),
-    )
+    weight = np.zeros(v.shape[1])
+    first_moment = np.zeros(v.shape[1])
+    second_moment = np.zeros(v.shape[1])
     base = np.where(
         np.isfinite(v[0]), v[0], 0.0
     )  # relative to the smallest value: far from the seeds squares would lose digits
@@ -249,11 +247,9 @@ def _root(values: Array, steps: Array) -> Array:
         use = (root_value > v[k]) & np.isfinite(v[k])
         relative = np.where(use, v[k] - base, 0.0)
         share = np.where(use, h[k] ** -2, 0.0)
-        weight, first_moment, second_moment = (
-            weight + share,
-            first_moment + share * relative,
-            second_moment + share * relative**2,
-        )
+        weight = weight + share
+        first_moment = first_moment + share * relative
+        second_moment = second_moment + share * relative**2
         inside = first_moment**2 - weight * (second_moment - 1.0)
         root = base + (first_moment + np.sqrt(np.maximum(inside, 0.0))) / np.maximum(weight, 1e-300)
         root_value = np.where(use & (inside >= 0.0), root, root_value)

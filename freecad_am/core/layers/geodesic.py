@@ -444,10 +444,8 @@ def _seeds(start: Array, positions: Array, step: float) -> tuple[Index, Array]:
     """Return nodes near the start and their distances from it."""
     if not len(start):
         return np.zeros(0, dtype=np.intp), np.zeros(0)
-    low, high = (
-        start.min(axis=(0, 1)) - EXACT_STEPS * step,
-        start.max(axis=(0, 1)) + EXACT_STEPS * step,
-    )
+    low = start.min(axis=(0, 1)) - EXACT_STEPS * step
+    high = start.max(axis=(0, 1)) + EXACT_STEPS * step
     nearby = np.flatnonzero(((positions > low) & (positions < high)).all(axis=1))
     if not len(nearby):
         return nearby, np.zeros(0)

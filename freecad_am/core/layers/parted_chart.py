@@ -83,10 +83,8 @@ def align_to_x(mesh: Mesh, flat: Array) -> Array:
         [x, np.cross(up, x)], axis=1
     )
     centred = flat - flat.mean(axis=0)
-    along, across = (
-        (centred * projected).sum(),
-        (centred[:, 0] * projected[:, 1] - centred[:, 1] * projected[:, 0]).sum(),
-    )
+    along = (centred * projected).sum()
+    across = (centred[:, 0] * projected[:, 1] - centred[:, 1] * projected[:, 0]).sum()
     angle = np.arctan2(across, along)
     cos, sin = np.cos(angle), np.sin(angle)
     moved: Array = centred @ np.array([[cos, sin], [-sin, cos]])

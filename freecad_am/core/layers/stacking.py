@@ -76,10 +76,8 @@ def prepare_stack(
     """
     if strategy.direction is None:
         ranking = rank_directions(bodies, strategy)
-        direction, issues = (
-            ranking[0].direction,
-            (*issues, _note(ranking, label, np.degrees(strategy.max_overhang))),
-        )
+        direction = ranking[0].direction
+        issues = (*issues, _note(ranking, label, np.degrees(strategy.max_overhang)))
     else:
         direction = np.array(strategy.direction) / np.linalg.norm(strategy.direction)
     turned = upright(np.zeros(3), direction)
@@ -205,11 +203,9 @@ def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Ar
     normal = doubled_areas(corners)
     doubled = np.linalg.norm(normal, axis=1)
     has_area = doubled > 1e-12
-    corners, normal, area = (
-        corners[has_area],
-        normal[has_area] / doubled[has_area, None],
-        0.5 * doubled[has_area],
-    )
+    corners = corners[has_area]
+    normal = normal[has_area] / doubled[has_area, None]
+    area = 0.5 * doubled[has_area]
     if len(bodies) > 1 and slit is not None:
         body_number = np.repeat(np.arange(len(bodies)), [len(body.triangles) for body in bodies])[
             has_area

@@ -341,11 +341,9 @@ class Judge:
         of_bead = np.bincount(
             number[~motion.deposit], steps[~motion.deposit], int(starts.sum()) + 1
         )
-        arrival, departure, between = (
-            of_bead[0],
-            of_bead[int(starts.sum())],
-            of_bead[1 : int(starts.sum())],
-        )
+        arrival = of_bead[0]
+        departure = of_bead[int(starts.sum())]
+        between = of_bead[1 : int(starts.sum())]
         if not len(between):
             return float(arrival + departure)
         number_of = {

@@ -64,10 +64,8 @@ def refined_clear(
         Coefficients, objective, reason and iterations of each bead. A bead without a better
         polynomial keeps its start and has an infinite objective.
     """
-    thresholds, directions = (
-        task.thresholds(points),
-        refine_state.changes(task, points, start.shape[1] - 1),
-    )
+    thresholds = task.thresholds(points)
+    directions = refine_state.changes(task, points, start.shape[1] - 1)
     gaps = Gaps(arm_clearance.contact, GAP_RANGE_MM)
     moment = np.array([arm_clearance.moment(bead_id) for bead_id in bead_ids], dtype=np.int64)
     trial, best = start.copy(), start.copy()
@@ -242,10 +240,8 @@ def _map(
     beads. The second is a mask (B,): beads with a point at which no rotation is clear. At most ENDS
     points of these beads are checked.
     """
-    contact_map, hopeless = (
-        np.zeros(joints.shape[:2], dtype=bool),
-        np.zeros(points.beads, dtype=bool),
-    )
+    contact_map = np.zeros(joints.shape[:2], dtype=bool)
+    hopeless = np.zeros(points.beads, dtype=bool)
     last_points = np.append(points.first[1:], len(points)) - 1
     share = np.linspace(0.0, 1.0, ENDS)[:, None]
     ends = np.zeros(len(points), dtype=bool)
@@ -310,11 +306,9 @@ def brought_clear(
     back, touching[affected] = _stepped_back(
         start[affected], reached.coefficients[affected], task.joined & points.closed, serves
     )
-    coefficients, reason, iterations = (
-        reached.coefficients.copy(),
-        list(reached.reason),
-        list(reached.iterations),
-    )
+    coefficients = reached.coefficients.copy()
+    reason = list(reached.reason)
+    iterations = list(reached.iterations)
     coefficients[affected] = back
     affected = np.flatnonzero(touching)
     if len(affected):
@@ -387,10 +381,8 @@ def findings(arm_clearance: ArmKept, paths: Sequence[BeadPath]) -> list[Issue]:
         )
         if met.any.any():
             first_contact = int(np.argmax(met.link != NONE))
-            link, what = (
-                arm_clearance.contact.links[met.link[first_contact]],
-                arm_clearance.contact.names[met.what[first_contact]],
-            )
+            link = arm_clearance.contact.links[met.link[first_contact]]
+            what = arm_clearance.contact.names[met.what[first_contact]]
             issues.append(
                 clearance_issue(arm_clearance.contact.cell, link, what, path.layer, path.index)
             )

@@ -109,10 +109,8 @@ def plan_joints(
     """
     lock, (parameters, not_used) = lock_of(cell, parameters, toolpath), _used(cell, parameters)
     features = toolpath.parts
-    joined, arm_clearance = (
-        not any(feature.traits.has_axis for feature, _ in features),
-        build_arm_clearance(toolpath, cell, cylinders),
-    )
+    joined = not any(feature.traits.has_axis for feature, _ in features)
+    arm_clearance = build_arm_clearance(toolpath, cell, cylinders)
     requested_branch = _branch_wanted(cell, parameters)
     among = range(BRANCHES) if requested_branch is None else (requested_branch,)
     task = Task(
@@ -349,10 +347,8 @@ def _ranked(
                 task, task.kept, points, [bead_ids[k] for k in sampled], candidates
             )
         best, bead_rows = candidates.best(), np.arange(len(sampled))
-        margin, objective = (
-            candidates.margin[best, bead_rows],
-            candidates.objective[best, bead_rows],
-        )
+        margin = candidates.margin[best, bead_rows]
+        objective = candidates.objective[best, bead_rows]
         feasible = margin >= 0.0
         worth = float(objective[feasible].sum()) if feasible.any() else np.inf
         # rounded, so that every machine puts the same one of two mirrored branches first
@@ -416,10 +412,8 @@ def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], li
     paths, notes = turns.unwrapped(task, [path for path, _ in straight])
     paths, missed = as_held(task.cell, paths, task.lock, task.parameters.max_residual)
     phased = [phases.phased(task.cell, path, task.condition_at) for path in paths]
-    paths, issues = (
-        [path for path, _ in phased],
-        notes + [issue for _, issues_found in (*phased, *straight) for issue in issues_found],
-    )
+    paths = [path for path, _ in phased]
+    issues = notes + [issue for _, issues_found in (*phased, *straight) for issue in issues_found]
     for path in paths:
         issues += findings(task, path)
     issues += missed

@@ -103,10 +103,8 @@ def remarks_of(
     moved = not isinstance(parameters.origin, str)
     station, carried = frames_of(cell, parameters)
     if not cell.machine.free:
-        where, frame = (
-            "Work offset" if parameters.motion == "cartesian" else "Platform on the table",
-            carried,
-        )
+        where = "Work offset" if parameters.motion == "cartesian" else "Platform on the table"
+        frame = carried
     else:
         where = "Deposition point" if cell.torch_stands else "User frame" if moved else "Platform"
         where += " on the face" if cell.external is not None and cell.external.turning else ""
@@ -467,10 +465,8 @@ class _Blocks:
             if arm is None:
                 direction = tool_poses[:, :3, 2]
             else:
-                rotation, robot_joints = (
-                    tool_poses[:, :3, :3],
-                    motion.joints[rows, : cell.robot.chain.axes],
-                )
+                rotation = tool_poses[:, :3, :3]
+                robot_joints = motion.joints[rows, : cell.robot.chain.axes]
                 configuration = tuple(
                     opw.branch_name(int(index)) for index in arm.branch_of(robot_joints)
                 )

@@ -92,10 +92,8 @@ def deposited(
         1:
     ]:  # posts may stop between runs, so keep only as many runs as schedules
         blocks += [*([] if number is None or parameters.dry_run else [Schedule(number, True)]), run]
-    off, still = (
-        DepositOff(bead_process.lead_off, schedule, None if bead_process.lead_off else lead),
-        [Weave(0)] if weave else [],
-    )
+    off = DepositOff(bead_process.lead_off, schedule, None if bead_process.lead_off else lead)
+    still = [Weave(0)] if weave else []
     # one that is ahead comes while the last move is still woven
     return [*blocks, *still, off] if off.ahead is None else [*blocks, off, *still]
 

@@ -646,10 +646,8 @@ def span(task: Task, bead: Bead, point: int, axis: int, count: int) -> Array:
     """
     machine_axis = task.cell.robot.chain.axes + axis
     planned_value = float(planned_external(bead)[point, axis])
-    low, high = (
-        float(task.cell.limits.lower[machine_axis]),
-        float(task.cell.limits.upper[machine_axis]),
-    )
+    low = float(task.cell.limits.lower[machine_axis])
+    high = float(task.cell.limits.upper[machine_axis])
     if not task.cell.machine.chain.sliding[machine_axis]:
         low, high = max(low, planned_value - np.pi), min(high, planned_value + np.pi)
     return np.linspace(low, high, count)

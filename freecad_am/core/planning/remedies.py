@@ -179,10 +179,8 @@ def _failed(issues: Sequence[Issue]) -> list[int]:
 
 
 def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[Tried]:
-    codes, free = (
-        {issue.code for issue in issues if issue.level == ERROR},
-        arrangement_of(job.settings.setup).free > 0,
-    )
+    codes = {issue.code for issue in issues if issue.level == ERROR}
+    free = arrangement_of(job.settings.setup).free > 0
     if free:
         yield from other_cells.clear_of_arm(job, codes)
     usual = CellParameters()

@@ -39,10 +39,8 @@ def promises(
 
 
 def _limits(motion: Motion, cell: Cell) -> Promise:
-    what, how = (
-        "Every axis stays within its limits",
-        "every point of the motion, rapids included, against the machine file",
-    )
+    what = "Every axis stays within its limits"
+    how = "every point of the motion, rapids included, against the machine file"
     margins = shown_margins(cell, motion.joints)
     if not np.isfinite(margins).any():
         return Promise(what, "no axis has limits, or no point is reached", None)

@@ -441,10 +441,8 @@ def check_speeds(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     for layer, number, bead in toolpath:
         ends = bead.ends
         at_ends = [speed for speed in (ends.start_speed, ends.end_speed) if speed] if ends else []
-        low, high = (
-            float(min(bead.speed[1:].min(), *at_ends, np.inf)),
-            float(max(bead.speed[1:].max(), *at_ends, 0.0)),
-        )
+        low = float(min(bead.speed[1:].min(), *at_ends, np.inf))
+        high = float(max(bead.speed[1:].max(), *at_ends, 0.0))
         speed_range = [min(speed_range[0], low), max(speed_range[1], high)]
         off = max(slowest / low, 0.0 if fastest is None else high / fastest)
         if off > worst:

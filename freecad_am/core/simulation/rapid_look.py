@@ -53,9 +53,9 @@ def looked_at(
     """
     rows = 1 + np.flatnonzero(~motion.deposit[1:] & motion.reachable[1:] & motion.reachable[:-1])
     start, turned = motion.joints[rows - 1], motion.joints[rows] - motion.joints[rows - 1]
-    chain, size = (
-        cell.machine.chain,
-        Size(0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)), cell.nozzle.length),
+    chain = cell.machine.chain
+    size = Size(
+        0.5 * cell.nozzle.diameter, float(np.tan(cell.nozzle.half_angle)), cell.nozzle.length
     )
     travel, corners = np.zeros(len(rows)), [np.zeros((0, 3))]
     for rows_now in _pieces(len(rows)):

@@ -34,10 +34,8 @@ def heights(deposited: Array, position: Array, layer: Index) -> Array:
     surface_heights = np.full(len(position), np.nan)
     piece_layers = deposited[:, 3].astype(np.intp)
     for number in np.unique(layer).tolist():
-        piece_rows, point_rows = (
-            np.flatnonzero(piece_layers == number),
-            np.flatnonzero(layer == number),
-        )
+        piece_rows = np.flatnonzero(piece_layers == number)
+        point_rows = np.flatnonzero(layer == number)
         if len(piece_rows):
             nearest = np.asarray(cKDTree(deposited[piece_rows, :3]).query(position[point_rows])[1])
             surface_heights[point_rows] = np.maximum(

@@ -245,11 +245,9 @@ class Run:
 def all_moves(run: Run) -> ReadMoves:
     """The moves of the routines. Raises InputError UNREADABLE_PROGRAM."""
     linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
-    time_or_speed, half, rounding = (
-        np.array(run.time_or_speed),
-        np.array(run.half),
-        np.array(run.rounding),
-    )
+    time_or_speed = np.array(run.time_or_speed)
+    half = np.array(run.half)
+    rounding = np.array(run.rounding)
     used = run.used or ()
     joints = np.full((len(time_or_speed), 6 + len(used)), np.nan)
     joints[~linear, :6] = np.radians(_numbers(run.joints, 6))

@@ -150,10 +150,8 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
                 "a second analogue output follows the speed, or a joint move, or without a deposit",
             )
         run.analogue = feed.output
-    starts, ends = (
-        [feed for feed in feeds if feed.scale],
-        [feed for feed in feeds if not feed.scale],
-    )
+    starts = [feed for feed in feeds if feed.scale]
+    ends = [feed for feed in feeds if not feed.scale]
     if len(starts) > 1 or len(ends) > 1 or (ends and not starts) or (starts and run.fed):
         raise unreadable(
             where,

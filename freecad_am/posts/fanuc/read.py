@@ -445,11 +445,9 @@ def _arc(arc: re.Match[str], where: str, run: Run) -> None:
 def _move(listing: Listing, rows_moved: slice, option: str, run: Run) -> None:
     """Carry out a run of moves, column by column, and the option of the last one."""
     moves, cartesian = listing.moves, listing.records.cartesian
-    unit, straight, corner = (
-        moves.unit[rows_moved],
-        moves.straight[rows_moved],
-        moves.corner[rows_moved],
-    )
+    unit = moves.unit[rows_moved]
+    straight = moves.straight[rows_moved]
+    corner = moves.corner[rows_moved]
     rows = listing.rows(moves.point[rows_moved])
     wrong = (
         (rows < 0)
@@ -489,11 +487,9 @@ def _move(listing: Listing, rows_moved: slice, option: str, run: Run) -> None:
 def _refuse(listing: Listing, move: int, run: Run) -> None:
     """InputError for what cannot be understood of a move."""
     moves, records = listing.moves, listing.records
-    where, unit, corner = (
-        _line_name(listing, int(moves.line[move])),
-        int(moves.unit[move]),
-        moves.corner[move],
-    )
+    where = _line_name(listing, int(moves.line[move]))
+    unit = int(moves.unit[move])
+    corner = moves.corner[move]
     if moves.point[move] not in records.point:
         raise unreadable(where, Text("P[{}] is not recorded", moves.point[move]))
     if run.cartesian != records.cartesian and run.duration:

@@ -148,10 +148,8 @@ def _lines(program: Program, block: DepositOn | DepositOff) -> list[str]:
         return lighting(block.schedule) if isinstance(block, DepositOn) else ending(block.schedule)
     if block.ahead is None:
         return []
-    early, switched = (
-        -round(1000.0 * block.ahead),
-        "TRUE" if isinstance(block, DepositOn) else "FALSE",
-    )
+    early = -round(1000.0 * block.ahead)
+    switched = "TRUE" if isinstance(block, DepositOn) else "FALSE"
     return [f"{TRIGGER}WHEN DISTANCE=1 DELAY={early} DO $OUT[{program.deposit_output}]={switched}"]
 
 

@@ -161,10 +161,8 @@ def _refuse(program: Program) -> None:
     refuse_triggers(program, NO_TRIGGER)
     refuse_cooling(program, LAST_PIN)
     refuse_schedules(program, LAST_PIN, LAST_SCHEDULE, inside=True)
-    scheduled, fed = (
-        any(isinstance(block, Schedule) for block in program.blocks),
-        any(run.wire is not None for run in program.moves),
-    )
+    scheduled = any(isinstance(block, Schedule) for block in program.blocks)
+    fed = any(run.wire is not None for run in program.moves)
     if scheduled and fed and program.schedule_output == program.nc.wire_output:
         raise InputError(
             "SCHEDULE",

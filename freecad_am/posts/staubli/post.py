@@ -296,11 +296,9 @@ def _motion(program: Program, run: Run, arrays: dict[str, tuple[str, list[str]]]
             pattern, array, kind = "movel(pTarget,tPath[{point}],mPath[{speed}])", "tPath", "tool"
             values = text.frames(frames, _GAUGE)
         else:
-            pattern, array, kind = (
-                "movel(pPath[{point}],tCarried,mPath[{speed}])",
-                "pPath",
-                "pointRx",
-            )
+            pattern = "movel(pPath[{point}],tCarried,mPath[{speed}])"
+            array = "pPath"
+            kind = "pointRx"
             values = text.frames(frames, _POINT)
     first_index = _appended(arrays, array, kind, values)
     words = list(run.words[rows])

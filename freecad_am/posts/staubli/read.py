@@ -348,16 +348,12 @@ def moves_of(steps: list[Step]) -> ReadMoves:
     values = _Values()
     joints, point = np.full((total, 6), np.nan), np.full((total, 6), np.nan)
     tools, lever = np.tile(np.eye(4), (total, 1, 1)), np.zeros(total)
-    share, speed, deposit = (
-        np.full(total, np.nan),
-        np.full(total, np.nan),
-        np.zeros(total, dtype=bool),
-    )
-    stops, rounding, straight = (
-        np.zeros(total, dtype=bool),
-        np.full(total, np.nan),
-        np.zeros(total, dtype=bool),
-    )
+    share = np.full(total, np.nan)
+    speed = np.full(total, np.nan)
+    deposit = np.zeros(total, dtype=bool)
+    stops = np.zeros(total, dtype=bool)
+    rounding = np.full(total, np.nan)
+    straight = np.zeros(total, dtype=bool)
     frame: Array | None = None
     row = 0
     for step in steps:

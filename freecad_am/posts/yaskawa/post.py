@@ -433,10 +433,8 @@ def _instructions(program: Program, block: Block) -> list[str]:
 
 def _timer(seconds: float) -> list[str]:
     """Standing still for a time, to 0.01 s; nothing for no time."""
-    hundredths, max_hundredths = (
-        max(round(100.0 * seconds), int(seconds > 0.0)),
-        round(100.0 * LONGEST_WAIT),
-    )
+    hundredths = max(round(100.0 * seconds), int(seconds > 0.0))
+    max_hundredths = round(100.0 * LONGEST_WAIT)
     full_waits, remainder = divmod(hundredths, max_hundredths)
     return [
         f"TIMER T={step / 100.0:.2f}"

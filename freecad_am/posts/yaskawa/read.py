@@ -132,10 +132,8 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 def _moves(run: _Run) -> ReadMoves:
     table = np.array(run.moves).reshape(-1, _WORDS + run.axes)
     names = _axes(run.axes)
-    per_unit, slides = (
-        np.array([run.per_unit[axis] for axis in names]),
-        np.array([axis in run.slides for axis in names]),
-    )
+    per_unit = np.array([run.per_unit[axis] for axis in names])
+    slides = np.array([axis in run.slides for axis in names])
     pulses = table[:, _WORDS:]
     if slides.any():  # the track comes before the station in a job, independent of its axis number
         track, column = pulses[:, _ROBOT_AXES], int(np.argmax(slides))
@@ -264,10 +262,8 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
     if name in callers:
         raise unreadable(job.file, "it calls itself")
     units = [ratio[1].split() for line in job.lines if (ratio := _PER_UNIT.match(line))]
-    named, slides = (
-        sorted(axis for _, axis in units),
-        [axis for unit, axis in units if unit == "mm"],
-    )
+    named = sorted(axis for _, axis in units)
+    slides = [axis for unit, axis in units if unit == "mm"]
     if len(job.points) and (
         named != sorted(_axes(job.points.shape[1])) or len(slides) != job.track
     ):

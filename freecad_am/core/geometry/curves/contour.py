@@ -203,10 +203,8 @@ def _rims(chain: Chain, meets: bool, low: float, high: float) -> set[int]:
     for index, segment in enumerate(chain):
         if not meets and index in (0, len(chain) - 1):
             continue
-        tangent_before, tangent_after = (
-            chain[index - 1].tangents[-1],
-            chain[(index + 1) % len(chain)].tangents[0],
-        )
+        tangent_before = chain[index - 1].tangents[-1]
+        tangent_after = chain[(index + 1) % len(chain)].tangents[0]
         turns = (
             turning_angle(tangent_before, segment.tangents[0]),
             turning_angle(segment.tangents[-1], tangent_after),

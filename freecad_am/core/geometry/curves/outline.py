@@ -112,10 +112,8 @@ def estimate_outline(points: Array, closed: bool) -> Outline:
     corner = (previous_direction * next_direction).sum(axis=1) < np.cos(CORNER)
     long = (length > LENGTH_RATIO * np.minimum(previous_length[:-1], next_length[1:]))[:, 0]
     straight = (corner[:-1] | corner[1:] | long)[:, None]
-    leaving, arriving = (
-        np.where(straight, along, tangent[:-1]),
-        np.where(straight, along, tangent[1:]),
-    )
+    leaving = np.where(straight, along, tangent[:-1])
+    arriving = np.where(straight, along, tangent[1:])
     return outline(points, at_points(leaving, arriving))
 
 

@@ -180,10 +180,8 @@ def nearest_among(lines: Sequence[tuple[Array, bool]], points: Array) -> tuple[A
     for line, closed in lines:
         candidate = nearest(line, points, closed)
         nearer = candidate.distance < distance
-        feet, distance = (
-            np.where(nearer[:, None], candidate.points, feet),
-            np.where(nearer, candidate.distance, distance),
-        )
+        feet = np.where(nearer[:, None], candidate.points, feet)
+        distance = np.where(nearer, candidate.distance, distance)
     return feet, distance
 
 

@@ -330,13 +330,11 @@ class SpaceCurve:
             if not moving.any():
                 break
             if not moving.all():
-                on, w, goal, low, high = (
-                    on[moving],
-                    w[moving],
-                    goal[moving],
-                    low[moving],
-                    high[moving],
-                )
+                on = on[moving]
+                w = w[moving]
+                goal = goal[moving]
+                low = low[moving]
+                high = high[moving]
         return result.reshape(shape)
 
     @cached_property

@@ -59,10 +59,8 @@ class SmoothMesh:
         size = np.linalg.norm(double, axis=1)
         unit = double / np.maximum(size, 1e-300)[:, None]
         for k in range(3):
-            edge_a, edge_b = (
-                corner[:, (k + 1) % 3] - corner[:, k],
-                corner[:, (k + 2) % 3] - corner[:, k],
-            )
+            edge_a = corner[:, (k + 1) % 3] - corner[:, k]
+            edge_b = corner[:, (k + 2) % 3] - corner[:, k]
             angle = np.arctan2(
                 np.linalg.norm(np.cross(edge_a, edge_b), axis=1), dot(edge_a, edge_b)
             )
@@ -248,11 +246,9 @@ def _find_allowed_collapses(
     allowed = target >= 0
     normal = _normals(vertices[triangles])
     for k in range(3):
-        tip, following, third = (
-            triangles[:, k],
-            triangles[:, (k + 1) % 3],
-            triangles[:, (k + 2) % 3],
-        )
+        tip = triangles[:, k]
+        following = triangles[:, (k + 1) % 3]
+        third = triangles[:, (k + 2) % 3]
         to = target[tip]
         moved = (to >= 0) & (to != following) & (to != third)
         new = _normals(

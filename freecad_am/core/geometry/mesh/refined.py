@@ -290,10 +290,8 @@ def flip_edges(vertices: Array, triangles: Index, owner: Index) -> Index:
         )
         pair = pair[open_[edges.faces[pair]].any(axis=1)]
         face_a, face_b = edges.faces[pair].T
-        turn, back = (
-            np.argmax(edges.of_triangle[face_a] == pair[:, None], axis=1),
-            np.argmax(edges.of_triangle[face_b] == pair[:, None], axis=1),
-        )
+        turn = np.argmax(edges.of_triangle[face_a] == pair[:, None], axis=1)
+        back = np.argmax(edges.of_triangle[face_b] == pair[:, None], axis=1)
         a, b = triangles[face_a, turn], triangles[face_a, (turn + 1) % 3]
         c, d = triangles[face_a, (turn + 2) % 3], triangles[face_b, (back + 2) % 3]
         excess = _angle(vertices, c, a, b) + _angle(vertices, d, a, b) - np.pi

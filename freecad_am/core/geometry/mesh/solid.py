@@ -296,15 +296,11 @@ class Search:
         )  # most parts near a point belong to the same few triangles
         for k in range(1, count):
             fresh[:, k] = (nearest_triangles[:, :k] != nearest_triangles[:, k : k + 1]).all(axis=1)
-        corner, owner = (
-            self.vertices[self.triangles[nearest_triangles[fresh]]],
-            np.nonzero(fresh)[0],
-        )
+        corner = self.vertices[self.triangles[nearest_triangles[fresh]]]
+        owner = np.nonzero(fresh)[0]
         part_distance, shares = closest(corner[:, 0], corner[:, 1], corner[:, 2], points[owner])
-        distance, row_of_part = (
-            np.full(nearest_triangles.shape, np.inf),
-            np.zeros(nearest_triangles.shape, dtype=np.intp),
-        )
+        distance = np.full(nearest_triangles.shape, np.inf)
+        row_of_part = np.zeros(nearest_triangles.shape, dtype=np.intp)
         distance[fresh], row_of_part[fresh] = part_distance, np.arange(len(part_distance))
         row, best = np.arange(len(points)), np.argmin(distance, axis=1)
         return distance[row, best], nearest_triangles[row, best], shares[row_of_part[row, best]]
@@ -317,10 +313,8 @@ class Search:
         corner = self.vertices[self.triangles]
         at_vertex = np.zeros_like(self.vertices)
         for k in range(3):
-            edge_a, edge_b = (
-                corner[:, (k + 1) % 3] - corner[:, k],
-                corner[:, (k + 2) % 3] - corner[:, k],
-            )
+            edge_a = corner[:, (k + 1) % 3] - corner[:, k]
+            edge_b = corner[:, (k + 2) % 3] - corner[:, k]
             angle = np.arctan2(
                 np.linalg.norm(np.cross(edge_a, edge_b), axis=1), dot(edge_a, edge_b)
             )

@@ -518,10 +518,8 @@ def _insert_corners(
     key = np.r_[np.arange(count), index[accepted] + 0.5]
     order = np.argsort(key, kind="stable")
     edge = np.r_[np.zeros(count, dtype=bool), np.ones(int(accepted.sum()), dtype=bool)]
-    piece_before, piece_after = (
-        np.r_[ground_piece, piece_a[accepted]],
-        np.r_[ground_piece, piece_b[accepted]],
-    )
+    piece_before = np.r_[ground_piece, piece_a[accepted]]
+    piece_after = np.r_[ground_piece, piece_b[accepted]]
     return (
         np.vstack([points, p[accepted]])[order],
         piece_before[order],

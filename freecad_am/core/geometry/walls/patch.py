@@ -107,10 +107,8 @@ def _basis(knots: Array, count: int, parameter: Array) -> tuple[Index, Array]:
     lower = values
     for p in range(1, degree + 1):
         steps = np.arange(1, p + 1)
-        to_left, right = (
-            parameter[:, None] - knots[span[:, None] + 1 - steps],
-            knots[span[:, None] + steps] - parameter[:, None],
-        )
+        to_left = parameter[:, None] - knots[span[:, None] + 1 - steps]
+        right = knots[span[:, None] + steps] - parameter[:, None]
         share = values / (right + to_left[:, ::-1])
         lower = values
         values = np.zeros((len(parameter), p + 1))

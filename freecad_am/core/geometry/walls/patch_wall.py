@@ -320,12 +320,10 @@ class _Joints(NamedTuple):
     def evaluate(self, arc: Index, t: Array) -> tuple[Array, Array, Array]:
         """Return points, first and second derivatives (n, 3) of arcs at t in [0, 1]."""
         t = t[:, None]
-        start, end, a, b = (
-            self.start[arc],
-            self.end[arc],
-            self.start_slope[arc],
-            self.end_slope[arc],
-        )
+        start = self.start[arc]
+        end = self.end[arc]
+        a = self.start_slope[arc]
+        b = self.end_slope[arc]
         chord = end - start
         square, cube = 3.0 * chord - 2.0 * a - b, a + b - 2.0 * chord
         slope = a + t * (2.0 * square + 3.0 * t * cube)

@@ -196,10 +196,8 @@ def _plane_of_meeting(
     squared = forward * forward + above * above
     bend = (squared - (curves.upper**2 + curves.fore**2)) / (2.0 * curves.upper * curves.fore)
     bent = np.stack([elbow * np.sqrt(np.maximum(1.0 - bend * bend, 0.0)), bend])
-    common, turn = (
-        (curves.fore + curves.upper * bend) / (squared + TINY),
-        curves.upper * bent[0] / (squared + TINY),
-    )
+    common = (curves.fore + curves.upper * bend) / (squared + TINY)
+    turn = curves.upper * bent[0] / (squared + TINY)
     fore = common * forward + turn * above, common * above - turn * forward
     cos, sin = curves.lean
     along = np.stack([fore[0] * cos + fore[1] * sin, fore[1] * cos - fore[0] * sin])

@@ -105,12 +105,10 @@ def zeros(curves: Curves) -> Zeros:
             np.concatenate([touching[1], angle[moved]]),
         )
         sure_rows = np.flatnonzero(sure)
-        number, angle, side, of_zero = (
-            number[sure_rows],
-            angle[sure_rows],
-            side[sure_rows],
-            of_zero[..., sure_rows],
-        )
+        number = number[sure_rows]
+        angle = angle[sure_rows]
+        side = side[sure_rows]
+        of_zero = of_zero[..., sure_rows]
     solutions = _solutions(arm, of_zero, number, angle, side)
     if even:
         solutions = _both_sides(solutions)
@@ -232,19 +230,15 @@ def _halves(arm: _Lengths, point: list[Array], five: list[Array]) -> tuple[Array
     common = (flat + z * z + (arm.ahead**2 + arm.fore**2 - arm.upper**2)) * (0.5 / arm.fore)
     factor = -arm.ahead / arm.fore
     squared = common * common + (factor * factor) * flat
-    across, by_across = (
-        arm.cos * rise + (arm.sin * arm.ahead) * within,
-        (arm.cos * arm.ahead) * up - arm.sin * level,
-    )
+    across = arm.cos * rise + (arm.sin * arm.ahead) * within
+    by_across = (arm.cos * arm.ahead) * up - arm.sin * level
     sizes = within * within + flat * up * up
     constant_part = squared * sizes - across * across - flat * by_across * by_across
     by_radius = 2.0 * (factor * common * sizes - across * by_across)
     if arm.square:
         # terms in q, then terms in its square
-        out, by_out = (
-            arm.sin * rise - (arm.cos * arm.ahead) * within,
-            (arm.sin * arm.ahead) * up + arm.cos * level,
-        )
+        out = arm.sin * rise - (arm.cos * arm.ahead) * within
+        by_out = (arm.sin * arm.ahead) * up + arm.cos * level
         constant_part -= (2.0 * arm.square) * flat * (common * by_out + factor * out)
         by_radius -= (2.0 * arm.square) * (common * out + factor * by_out * flat)
         constant_part += arm.square**2 * flat * (flat + z * z + arm.ahead**2)
@@ -291,18 +285,14 @@ def _terms(arm: _Lengths, harmonics: Array, angle: Array, side: Array) -> _Terms
     common = (squared + (arm.fore**2 - arm.upper**2)) * (0.5 / arm.fore)
     common_ = (half_flat_ + z * z_ - arm.ahead * radius_) * (1.0 / arm.fore)
     level, rise = within + z * up, z * within - flat * up
-    level_, rise_ = (
-        within_ + z_ * up + z * up_,
-        z_ * within + z * within_ - 2.0 * half_flat_ * up - flat * up_,
-    )
+    level_ = within_ + z_ * up + z * up_
+    rise_ = z_ * within + z * within_ - 2.0 * half_flat_ * up - flat * up_
     # S and N
     out, out_ = radius * level, radius_ * level + radius * level_
     if arm.ahead:
         out, out_ = out - arm.ahead * within, out_ - arm.ahead * within_
-        rise, rise_ = (
-            rise + arm.ahead * radius * up,
-            rise_ + arm.ahead * (radius_ * up + radius * up_),
-        )
+        rise = rise + arm.ahead * radius * up
+        rise_ = rise_ + arm.ahead * (radius_ * up + radius * up_)
     ahead, across = arm.cos * out + arm.sin * rise, arm.cos * rise - arm.sin * out
     across_ = arm.cos * rise_ - arm.sin * out_
     sizes = within * within + flat * up * up
@@ -325,11 +315,9 @@ def _roots(
     arm: _Lengths, harmonics: Array, side: Array, low: Array, high: Array, first_guess: Array
 ) -> tuple[Array, Mask, Array]:
     """The zero (k,) in each step, whether it was found, and how far from axis 1: Newton's method, kept in the step."""
-    angle, step, radii = (
-        first_guess.copy(),
-        np.full(len(first_guess), np.inf),
-        np.zeros(len(first_guess)),
-    )
+    angle = first_guess.copy()
+    step = np.full(len(first_guess), np.inf)
+    radii = np.zeros(len(first_guess))
     active, active_harmonics, its_side = np.arange(len(first_guess)), harmonics, side
     if not side.all():
         active = np.flatnonzero(side)
@@ -344,11 +332,9 @@ def _roots(
             break
         if 2 * len(going) < len(active):
             # most have converged: continue with the others
-            active, active_harmonics, its_side = (
-                active[going],
-                active_harmonics[..., going],
-                its_side[going],
-            )
+            active = active[going]
+            active_harmonics = active_harmonics[..., going]
+            its_side = its_side[going]
     return angle, np.abs(step) <= NEWTON_RAD, radii
 
 

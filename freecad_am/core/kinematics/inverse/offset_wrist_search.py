@@ -252,14 +252,10 @@ def _touching(
         )  # which is already between two zeros
         lower, right = fx < fb, x > b
         above = ~lower & (x != b)
-        a, fa = (
-            np.where(lower & right, b, np.where(above & ~right, x, a)),
-            np.where(lower & right, fb, np.where(above & ~right, fx, fa)),
-        )
-        c, fc = (
-            np.where(lower & ~right, b, np.where(above & right, x, c)),
-            np.where(lower & ~right, fb, np.where(above & right, fx, fc)),
-        )
+        a = np.where(lower & right, b, np.where(above & ~right, x, a))
+        fa = np.where(lower & right, fb, np.where(above & ~right, fx, fa))
+        c = np.where(lower & ~right, b, np.where(above & right, x, c))
+        fc = np.where(lower & ~right, fb, np.where(above & right, fx, fc))
         b, fb = np.where(lower, x, b), np.where(lower, fx, fb)
     through, touch = fb < 0.0, (fb >= 0.0) & (fb < TOUCHES)
     return [

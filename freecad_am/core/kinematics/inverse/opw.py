@@ -135,10 +135,8 @@ def _side(arm: OpwArm, centre: Array, distance: tuple[Array, Array], back: int) 
     if arm.b == 0.0:
         sine, cosine = centre[1] / signed, centre[0] / signed
     else:
-        sine, cosine = (
-            centre[1] * signed - centre[0] * arm.b,
-            centre[0] * signed + centre[1] * arm.b,
-        )
+        sine = centre[1] * signed - centre[0] * arm.b
+        cosine = centre[0] * signed + centre[1] * arm.b
         sine /= squared
         cosine /= squared
     return _Side(sine, cosine, signed - arm.a1, centre[2] - arm.c1)

@@ -297,10 +297,8 @@ def difference(curves: Curves, pose: Index, angle: Array, half: Array, side: Arr
     far_angle = angle + 2.0 * half
     constant, cos, sin = (curves.point[harmonic][:, pose] for harmonic in range(3))
     # of cosine and sine between both angles
-    by_cos, by_sin = (
-        -2.0 * np.sin(half) * np.sin(angle + half),
-        2.0 * np.sin(half) * np.cos(angle + half),
-    )
+    by_cos = -2.0 * np.sin(half) * np.sin(angle + half)
+    by_sin = 2.0 * np.sin(half) * np.cos(angle + half)
     squares = 2.0 * ((constant * cos).sum(axis=0) * by_cos + (constant * sin).sum(axis=0) * by_sin)
     rise = cos[2] * by_cos + sin[2] * by_sin
     near_point, far_point = (
@@ -411,16 +409,12 @@ def loops_of(curves: Curves) -> Loops:
     far_cosine = ((curves.upper - curves.fore) ** 2 - mean) / swing
     stretched, folded = near_cosine < 1.0, far_cosine > -1.0
     reached = (near_cosine > -1.0 - EDGE) & (far_cosine < 1.0 + EDGE)
-    near_at, far_at = (
-        np.arccos(np.clip(near_cosine, -1.0, 1.0)),
-        np.arccos(np.clip(far_cosine, -1.0, 1.0)),
-    )
+    near_at = np.arccos(np.clip(near_cosine, -1.0, 1.0))
+    far_at = np.arccos(np.clip(far_cosine, -1.0, 1.0))
     full_circle, two_arcs = reached & ~stretched & ~folded, reached & stretched & folded
-    none, middle_of, half_of = (
-        np.zeros(len(mean)),
-        0.5 * (near_at + far_at),
-        0.5 * (far_at - near_at),
-    )
+    none = np.zeros(len(mean))
+    middle_of = 0.5 * (near_at + far_at)
+    half_of = 0.5 * (far_at - near_at)
     kinds = [
         (full_circle, 1.0, out, none),
         (full_circle, -1.0, out, none),

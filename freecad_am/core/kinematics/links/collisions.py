@@ -147,10 +147,8 @@ def platform_collisions(cell: Cell, bodies: Sequence[Body]) -> list[Collision]:
     plate = plate_of(cell)
     if plate is None:
         return []
-    tip, axis = (
-        frames.transform_point(cell.poses.mount[None], plate.tip),
-        frames.rotate_vector(cell.poses.mount[None], plate.axis),
-    )
+    tip = frames.transform_point(cell.poses.mount[None], plate.tip)
+    axis = frames.rotate_vector(cell.poses.mount[None], plate.axis)
     return [
         Collision(PLATFORM, body.name, np.zeros(0, dtype=np.intp), True, True)
         for body in bodies

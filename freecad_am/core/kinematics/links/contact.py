@@ -378,10 +378,8 @@ class ArmContact:
 
     def _find_contacts(self, joints: Array, moment: Index) -> tuple[Index, Index]:
         links, seen_from = self.link_frames(joints)
-        link, what = (
-            np.full(len(joints), NONE, dtype=np.int64),
-            np.full(len(joints), NONE, dtype=np.int64),
-        )
+        link = np.full(len(joints), NONE, dtype=np.int64)
+        what = np.full(len(joints), NONE, dtype=np.int64)
         looked_at = sorted({number for group in self.groups for number in group.links})
         middles = {k: frames.transform_point(links[:, k], self.balls[k][0]) for k in looked_at}
         for object_number, group in enumerate(self.groups):
@@ -415,10 +413,8 @@ def _meets(group: Group, solids: Sequence[Solid], link_frame: Array, moment: Ind
     """Return whether (k,) solids of a link, with its frames (k, 4, 4), meet a group."""
     met = np.zeros(len(link_frame), dtype=bool)
     for solid in solids:
-        tip, axis = (
-            frames.transform_point(link_frame, solid.tip),
-            frames.rotate_vector(link_frame, solid.axis),
-        )
+        tip = frames.transform_point(link_frame, solid.tip)
+        axis = frames.rotate_vector(link_frame, solid.axis)
         # only solids near the ball are tested exactly
         low, high = float(np.min(solid.solid.low)), solid.solid.high
         off = tip - group.centre

@@ -144,10 +144,8 @@ class Gaps:
     def _near(self, pair: Pair, links: Array, seen_from: dict[str, Array], rows: Index) -> Mask:
         """Return whether (k,) balls around both are within reach."""
         if isinstance(pair.against, Group):
-            frame, other_ball = (
-                seen_from[pair.against.seen_from][rows],
-                (pair.against.centre, pair.against.radius),
-            )
+            frame = seen_from[pair.against.seen_from][rows]
+            other_ball = (pair.against.centre, pair.against.radius)
             ball, extra = self.contact.balls[pair.link], 0.0
         else:
             own_links = self.contact.own_links
@@ -248,10 +246,8 @@ def _penetration_gap(
 
 def _smallest_gap(candidates: Sequence[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:
     """Return, of several gaps (k,), directions and positions (k, 3), those of the smallest gap."""
-    best, row = (
-        np.argmin([gap for gap, _, _ in candidates], axis=0),
-        np.arange(len(candidates[0][0])),
-    )
+    best = np.argmin([gap for gap, _, _ in candidates], axis=0)
+    row = np.arange(len(candidates[0][0]))
     gap, normal, position = (np.stack(columns)[best, row] for columns in zip(*candidates))
     return gap, normal, position
 

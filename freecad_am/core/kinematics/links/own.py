@@ -46,10 +46,8 @@ class Solid:
 
 def round_solid(cylinder: Cylinder, growth: float) -> Solid:
     """Return a cylinder enlarged by `growth` mm on all sides."""
-    centre, axis = (
-        0.5 * (cylinder.start + cylinder.end),
-        (cylinder.end - cylinder.start) / cylinder.length,
-    )
+    centre = 0.5 * (cylinder.start + cylinder.end)
+    axis = (cylinder.end - cylinder.start) / cylinder.length
     solid = Frustum(cylinder.radius + growth, 0.0, -growth, cylinder.length + growth)
     return Solid(
         solid,

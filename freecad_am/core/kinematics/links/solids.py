@@ -59,11 +59,9 @@ def revolve(
     Solid
         Triangles with normals.
     """
-    shape, begin, stop = (
-        np.asarray(outline, float),
-        np.asarray(start, float),
-        np.asarray(end, float),
-    )
+    shape = np.asarray(outline, float)
+    begin = np.asarray(start, float)
+    stop = np.asarray(end, float)
     length = float(np.linalg.norm(stop - begin))
     shape = np.column_stack([shape[:, 0], shape[:, 1] * length])
     angle = np.linspace(0.0, 2.0 * np.pi, sides + 1)
@@ -257,10 +255,8 @@ def box(
     normals: list[Array] = []
     triangles: list[Integers] = []
     for axis in range(3):
-        u, v = (
-            axes[(axis + 1) % 3] * size[(axis + 1) % 3],
-            axes[(axis + 2) % 3] * size[(axis + 2) % 3],
-        )
+        u = axes[(axis + 1) % 3] * size[(axis + 1) % 3]
+        v = axes[(axis + 2) % 3] * size[(axis + 2) % 3]
         for sign in (-1.0, 1.0):
             base = 4 * len(normals)
             middle = np.asarray(centre, float) + 0.5 * sign * size[axis] * axes[axis]

@@ -118,10 +118,8 @@ def serial(display: Shown, chain: Chain, values: Array) -> Array:
 
 def _serial(displays: Sequence[Shown], chain: Chain, values: Array) -> Array:
     """Return the serial values (displays, n, axes) for displayed values (n, axes)."""
-    signs, zeros = (
-        np.array([display.signs for display in displays], float),
-        np.array([display.zeros for display in displays]),
-    )
+    signs = np.array([display.signs for display in displays], float)
+    zeros = np.array([display.zeros for display in displays])
     plain = (np.asarray(values, float) - zeros[:, None]) * signs[:, None]
     coupled = np.array([display.coupling == HORIZONTAL for display in displays])
     if coupled.any():
@@ -311,10 +309,8 @@ def _suspect_frames(chain: Chain, display: Shown, values: Array, poses: Array) -
         return []
     model_poses = chain.forward(serial(display, chain, values))
     frame_suspects = []
-    base, flange = (
-        model_poses[0] @ frames.inverse(poses[0]),
-        frames.inverse(model_poses[0]) @ poses[0],
-    )
+    base = model_poses[0] @ frames.inverse(poses[0])
+    flange = frames.inverse(model_poses[0]) @ poses[0]
     for kind, change, pose_pairs in (
         (BASE, base, (model_poses, base @ poses)),
         (FLANGE, flange, (model_poses @ flange, poses)),
@@ -336,10 +332,8 @@ def _pose_distances(actual: Array, expected: Array) -> Array:
         ],
         axis=-1,
     )
-    sine, cosine = (
-        0.5 * np.linalg.norm(across, axis=-1),
-        0.5 * (np.trace(turned, axis1=-2, axis2=-1) - 1.0),
-    )
+    sine = 0.5 * np.linalg.norm(across, axis=-1)
+    cosine = 0.5 * (np.trace(turned, axis1=-2, axis2=-1) - 1.0)
     distance = np.linalg.norm(actual[..., :3, 3] - expected[..., :3, 3], axis=-1)
     return np.stack((distance, np.degrees(np.arctan2(sine, cosine))), axis=-1)
 

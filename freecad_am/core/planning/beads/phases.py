@@ -161,10 +161,8 @@ def _shares(cell: Cell, path: BeadPath, segment: Index, lengths_in: Array) -> Ar
 
     The tip does not move evenly over a segment.
     """
-    start, offset = (
-        path.bead.points[segment],
-        path.bead.points[segment + 1] - path.bead.points[segment],
-    )
+    start = path.bead.points[segment]
+    offset = path.bead.points[segment + 1] - path.bead.points[segment]
     size = lengths(offset)
     share = lengths_in / size
     turned = path.joints[segment + 1] - path.joints[segment]

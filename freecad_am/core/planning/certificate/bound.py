@@ -349,10 +349,8 @@ def _through(
                 chunk, len(rows) - 1, next_lattice, 0, value, step_count, max_cost
             )
         value = least_ahead.ahead(chunk, value, np.diff(rows), max_cost)
-        next_lattice, step_count = (
-            chunk.first,
-            float(rows[0] - groups[max(0, end - chunk_size) - 1]),
-        )
+        next_lattice = chunk.first
+        step_count = float(rows[0] - groups[max(0, end - chunk_size) - 1])
     assert next_lattice is not None
     return value, next_lattice
 

@@ -197,10 +197,8 @@ def _parabolas(total: Array, low: Array, high: Array, available: Mask) -> tuple[
     """
     centre, next_total, previous_total = total[:, 1:-1], total[:, 2:], total[:, :-2]
     with np.errstate(invalid="ignore", over="ignore"):
-        slope, bend = (
-            0.5 * (next_total - previous_total),
-            next_total - 2.0 * centre + previous_total,
-        )
+        slope = 0.5 * (next_total - previous_total)
+        bend = next_total - 2.0 * centre + previous_total
         to = np.where(
             bend > 0.0, -slope / np.where(bend > 0.0, bend, 1.0), np.where(slope > 0.0, -1.0, 1.0)
         )

@@ -132,10 +132,8 @@ def added(
 
 def weight(toolpath: Toolpath, process: ProcessParameters) -> float:
     """Return the mass, kg, of the beads and of the closed bodies they grow on."""
-    volume, usual = (
-        enclosed_volume(toolpath.surroundings)[0],
-        toolpath.bead_width or process.bead_width,
-    )
+    volume = enclosed_volume(toolpath.surroundings)[0]
+    usual = toolpath.bead_width or process.bead_width
     for _, _, bead in toolpath:
         width = usual if bead.width is None else float(np.mean(bead.width))
         volume += (

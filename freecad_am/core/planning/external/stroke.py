@@ -131,10 +131,8 @@ def chosen(cell: Cell, courses: Sequence[Array], previous: Array) -> Array:
         Values of all external axes; the others keep their previous values.
     """
     rows, lower, upper = limits_of(cell)
-    speed, all_axes = (
-        cell.machine.max_speed[cell.robot.chain.axes + rows],
-        np.ones(len(rows), dtype=bool),
-    )
+    speed = cell.machine.max_speed[cell.robot.chain.axes + rows]
+    all_axes = np.ones(len(rows), dtype=bool)
     best = directed.chosen_course(
         courses, previous[rows], lower, upper, speed, all_axes, least_motion=True
     )
@@ -278,10 +276,8 @@ def _share(bead: Bead, last_point: int, section: Bead) -> float:
     if not bead.closed:
         return 1.0
     end = 1 + (last_point - 1) % (len(bead) - 1)
-    deposited, segment = (
-        section.points[-1] - section.points[-2],
-        bead.points[end] - bead.points[end - 1],
-    )
+    deposited = section.points[-1] - section.points[-2]
+    segment = bead.points[end] - bead.points[end - 1]
     return float(np.linalg.norm(deposited) / np.linalg.norm(segment))
 
 

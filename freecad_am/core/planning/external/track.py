@@ -104,10 +104,8 @@ def _follow_track(
     assert external is not None and external.slides is not None
     axis = cell.robot.chain.axes + external.slides
     lower, upper = cell.limits.lower[axis] + RESERVE, cell.limits.upper[axis] - RESERVE
-    low, high = (
-        min(float(positions.min()) for positions in track_positions),
-        max(float(positions.max()) for positions in track_positions),
-    )
+    low = min(float(positions.min()) for positions in track_positions)
+    high = max(float(positions.max()) for positions in track_positions)
     span = max(high - low, 1e-9)
     share = min(max(0.0, 1.0 - window / span), (upper - lower) / span)
     margin = 0.5 * share * span

@@ -200,10 +200,8 @@ def _add_other_turns(start: Array, candidates: search.Found) -> Array:
         return start[None]
     bead_rows = np.arange(len(start))
     best = candidates.best()
-    margin, max_objective = (
-        candidates.margin[best, bead_rows],
-        NOT_MUCH_WORSE * candidates.objective[best, bead_rows],
-    )
+    margin = candidates.margin[best, bead_rows]
+    max_objective = NOT_MUCH_WORSE * candidates.objective[best, bead_rows]
     alternatives = []
     for turns in OTHER_TURNS:
         turned_candidates = candidates.select_slope(turns)

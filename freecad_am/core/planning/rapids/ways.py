@@ -294,10 +294,8 @@ class RapidWays:
         if not touched.any.any():
             return None
         first_touch, path = int(np.argmax(touched.any)), self.place(k)
-        link, what = (
-            self.arm.links[touched.link[first_touch]],
-            self.arm.names[touched.what[first_touch]],
-        )
+        link = self.arm.links[touched.link[first_touch]]
+        what = self.arm.names[touched.what[first_touch]]
         return clearance_issue(self.cell, link, what, path.layer, path.index, on_way=True)
 
 

@@ -75,10 +75,8 @@ def paths(
     rows = np.zeros((len(numbers), max(map(len, fixed.values()))))
     for row, k in zip(rows, numbers):
         row[: len(fixed[k])] = fixed[k]
-    given_beads, points = (
-        [beads[k] for k in numbers],
-        gather([beads[k] for k in numbers], task.cell),
-    )
+    given_beads = [beads[k] for k in numbers]
+    points = gather([beads[k] for k in numbers], task.cell)
     count = len(numbers)
     none = refine.Refined(rows, np.zeros(count), (GIVEN,) * count, (0,) * count)
     bead_paths = evaluate_paths(

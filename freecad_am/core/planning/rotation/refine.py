@@ -84,10 +84,8 @@ def approached(constraints: Constraints, start: Array) -> Array:
         if solved.x is None or solved.x[-1] < worst + GAIN:
             return x
         trial = constraints(x + solved.x[:k])
-        hoped, got = (
-            solved.x[-1] - worst,
-            -np.inf if trial is None else float(trial[0].min()) - worst,
-        )
+        hoped = solved.x[-1] - worst
+        got = -np.inf if trial is None else float(trial[0].min()) - worst
         if got > 0.1 * hoped:
             x, current = x + solved.x[:k], trial
             reach *= 2.0 if got > 0.7 * hoped else 1.0
@@ -339,10 +337,8 @@ def _slsqp(bead: _Bead, start: Array, directions: Array) -> tuple[Array, str, in
         constraint_state = bead.constraints(start + directions @ x, directions)
         if constraint_state is None:
             break
-        previous_count, rows = (
-            len(rows),
-            np.union1d(rows, _tightest(constraint_state[0], len(bead.points))),
-        )
+        previous_count = len(rows)
+        rows = np.union1d(rows, _tightest(constraint_state[0], len(bead.points)))
         if len(rows) == previous_count:
             break
         result = _run(bead, start, directions, x, rows)

@@ -167,11 +167,9 @@ def add_conditions(
     (C, B) array
         Margins; exact for all candidates that matter.
     """
-    margin, is_known, bead_ids = (
-        candidates.margin.copy(),
-        candidates.margin < 0.0,
-        np.arange(points.beads),
-    )
+    margin = candidates.margin.copy()
+    is_known = candidates.margin < 0.0
+    bead_ids = np.arange(points.beads)
     for look in range(MAX_CONDITION_PASSES):
         new = select_needed(margin) & ~is_known
         if not new.any():
@@ -561,10 +559,8 @@ def find_rotations(
         task, between, task.thresholds(between), judged_candidates, CANDIDATES
     )
     best, bead_rows = judged_candidates.best(), np.arange(len(beads))
-    start, serves = (
-        judged_candidates.coefficients[best, bead_rows],
-        judged_candidates.margin[best, bead_rows] >= 0.0,
-    )
+    start = judged_candidates.coefficients[best, bead_rows]
+    serves = judged_candidates.margin[best, bead_rows] >= 0.0
     refined = refine.refine(task, points, thresholds, start[None], serves)
     as_found = dataclasses.replace(refined, coefficients=start)
     paths: list[BeadPath | None] = [None] * len(beads)

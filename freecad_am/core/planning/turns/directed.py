@@ -160,10 +160,8 @@ def in_turns(course: Array, before: Array, lower: Array, upper: Array) -> Array:
         The course; an axis without room is centred between its limits.
     """
     low, high = course.min(axis=0), course.max(axis=0)
-    fewest, greatest = (
-        np.ceil((lower - low) / TURN - 1e-12),
-        np.floor((upper - high) / TURN + 1e-12),
-    )
+    fewest = np.ceil((lower - low) / TURN - 1e-12)
+    greatest = np.floor((upper - high) / TURN + 1e-12)
     wanted = np.round((before - course[0]) / TURN)
     with np.errstate(invalid="ignore"):
         centred = np.round(np.nan_to_num(0.5 * (lower + upper) - 0.5 * (low + high)) / TURN)
@@ -340,10 +338,8 @@ def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock
     axis = 0 if parameters.lock == "first" else 1
     if not isinstance(parameters.lock_at, str):
         return Lock(axis, parameters.lock_at)
-    arm, tools = (
-        FiveAxis(cell.machine.chain),
-        [cell.poses.to_flange(bead.points, bead.tool)[1] for _, _, bead in toolpath],
-    )
+    arm = FiveAxis(cell.machine.chain)
+    tools = [cell.poses.to_flange(bead.points, bead.tool)[1] for _, _, bead in toolpath]
     directions: Array = np.unique(np.round(np.concatenate(tools), 5), axis=0)
     turning = arm.turning[axis]
     low = max(float(cell.limits.lower[turning]) + RESERVE, -math.pi)

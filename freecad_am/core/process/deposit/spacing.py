@@ -433,10 +433,8 @@ def _to_cubic(
         columns(column)[:, segment]
         for column in (curve.start, curve.end, curve.start_slope, curve.end_slope)
     )
-    low, high = (
-        np.where(nearest_chord, curve.low[segment], 0.0),
-        np.where(nearest_chord, curve.high[segment], 1.0),
-    )
+    low = np.where(nearest_chord, curve.low[segment], 0.0)
+    high = np.where(nearest_chord, curve.high[segment], 1.0)
     d = q - p
     square, cube = 3.0 * d - 2.0 * a - b, a + b - 2.0 * d
     u = _share(target - p, d)

@@ -226,10 +226,8 @@ class _Run:
 def _runs(pieces: Pieces, free: Mask, toolpath: Toolpath) -> Iterator[_Run]:
     """The unsupported runs of beads, without bridged gaps and ends that overhang by at most half a width."""
     marked = np.unique(pieces.bead[free])
-    low, high = (
-        np.searchsorted(pieces.bead, marked),
-        np.searchsorted(pieces.bead, marked, side="right"),
-    )
+    low = np.searchsorted(pieces.bead, marked)
+    high = np.searchsorted(pieces.bead, marked, side="right")
     beads = [(number, bead) for _, number, bead in toolpath]
     for k, a, b in zip(marked.tolist(), low.tolist(), high.tolist()):
         number, bead = beads[k]

@@ -359,10 +359,8 @@ def _find_rim_vertices(mesh: Mesh, vertices: Index, fine: Mesh) -> Index:
         .query(fine.vertices[border], k=min(4, len(edges)))[1]
         .reshape(len(border), -1)
     )
-    chord, offset = (
-        (end - start)[nearest_edges],
-        fine.vertices[border][:, None] - start[nearest_edges],
-    )
+    chord = (end - start)[nearest_edges]
+    offset = fine.vertices[border][:, None] - start[nearest_edges]
     share = np.clip((chord * offset).sum(-1) / (chord * chord).sum(-1), 0.0, 1.0)
     off = np.linalg.norm(offset - share[..., None] * chord, axis=-1).min(axis=1)
     on_edge: Index = border[off < ON_EDGE_MM]

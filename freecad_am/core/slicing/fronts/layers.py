@@ -135,10 +135,8 @@ def start_state(slicing: Slicing) -> State:
             dot(mesh.vertices[neighbours] - points[:, None], left_vectors[:, None]),
         )
         fronts.append(curve if ahead.sum() >= 0.0 else curve.reversed())
-    behind, neighbours = (
-        wall.behind.copy(),
-        points_near_fronts(mesh.tree, fronts, mesh.longest_edge),
-    )
+    behind = wall.behind.copy()
+    neighbours = points_near_fronts(mesh.tree, fronts, mesh.longest_edge)
     behind[neighbours] |= nearest_feet(fronts, mesh.vertices[neighbours]).distance < BEHIND_MM
     return State(fronts, behind, np.flatnonzero(behind))
 
@@ -183,10 +181,8 @@ def next_state(slicing: Slicing, state: State) -> State:
         low[doubtful] = _is_passed(
             slicing.wall, fronts, smooth, submesh.vertices[doubtful], low[doubtful], band
         )
-        fronts, weight = (
-            [smooth_front.curve for smooth_front in smooth],
-            max((smooth_front.weight for smooth_front in smooth), default=weight),
-        )
+        fronts = [smooth_front.curve for smooth_front in smooth]
+        weight = max((smooth_front.weight for smooth_front in smooth), default=weight)
     passed = nearby[low & ~behind]
     state.behind[passed] = True
     return State(fronts, state.behind, passed, weight)

@@ -437,10 +437,8 @@ class Rims:
         if front.closed or not any(self.end):
             return False
         ends = front.points[[0, -1]]
-        distance, end = (
-            np.stack([curve.nearest(ends)[0] for curve in self.curves]),
-            np.array(self.end),
-        )
+        distance = np.stack([curve.nearest(ends)[0] for curve in self.curves])
+        end = np.array(self.end)
         elsewhere = distance[~end].min(axis=0, initial=np.inf) < ON_RIM
         return bool(((distance[end].min(axis=0) < ON_RIM) & ~elsewhere).any())
 

@@ -160,10 +160,8 @@ class _Datum:
             next_points = np.vstack([points[1:], 2.0 * points[-1:] - points[-2:-1]])
         across = np.cross(normal, next_points - previous_points)
         across /= np.linalg.norm(across, axis=1, keepdims=True)
-        bend, sliding = (
-            dot(next_points - 2.0 * points + previous_points, across),
-            np.zeros(2, dtype=bool),
-        )
+        bend = dot(next_points - 2.0 * points + previous_points, across)
+        sliding = np.zeros(2, dtype=bool)
         if not front.closed:
             distance, _, along = slicing.rims.nearest(points[ENDS])
             rate = dot(along, across[ENDS])

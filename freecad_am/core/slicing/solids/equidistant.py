@@ -168,10 +168,8 @@ class Facets:
         start_rho, end_rho = rho.take(start), rho.take(end)
         rise = np.tan(self.surface.taper) * (z.take(end) - z.take(start))
         # rho times the slope at either end, over cos(a); its rounding error is tiny relative to its terms
-        begins, ends = (
-            across - start_rho * start_rho + rise * start_rho,
-            end_rho * end_rho - across + rise * end_rho,
-        )
+        begins = across - start_rho * start_rho + rise * start_rho
+        ends = end_rho * end_rho - across + rise * end_rho
         hair = ROUNDING * (start_rho + end_rho + np.abs(rise)) * (start_rho + end_rho)
         return np.flatnonzero((begins < hair) & (ends > -hair))
 

@@ -271,17 +271,13 @@ class Offset:
             point, along, around = self.surface.derivatives(u, v)
             reach = point - base
             residual, skew = 0.5 * (dot(reach, reach) - h * h), dot(reach, slope)
-            a, b, c, d = (
-                dot(reach, along),
-                dot(reach, around),
-                dot(along, slope),
-                dot(around, slope),
-            )
+            a = dot(reach, along)
+            b = dot(reach, around)
+            c = dot(along, slope)
+            d = dot(around, slope)
             determinant = a * d - b * c
-            du, dv = (
-                (d * residual - b * skew) / determinant,
-                (a * skew - c * residual) / determinant,
-            )
+            du = (d * residual - b * skew) / determinant
+            dv = (a * skew - c * residual) / determinant
             u, v = u - du, v - dv
             if np.abs(residual).max() < CONVERGED * h * h and np.abs(dv).max() < 1e-11:
                 break

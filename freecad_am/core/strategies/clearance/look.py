@@ -438,10 +438,8 @@ def nozzle_issues(
     if not bodies:
         return []
     beads = [bead for _, _, bead in toolpath]
-    points, tool = (
-        np.concatenate([bead.points for bead in beads]),
-        np.concatenate([bead.tool for bead in beads]),
-    )
+    points = np.concatenate([bead.points for bead in beads])
+    tool = np.concatenate([bead.tool for bead in beads])
     around = nozzle_of(nozzle).bodies
     scene_ = build_bodies(bodies, points, around.reach)
     hit = scene_.find_touching(around, points, tool) | scene_.find_touching(

@@ -223,11 +223,9 @@ def _ways(
     """Axes, tilts and stuck points of all points, and the fastest turn (rad/mm) of beads that turn faster than `max_rate` with their
     tilts but not without. Earlier tilts of a bead stay while clear.
     """
-    tool, tilt, lost = (
-        tool_before.copy(),
-        np.zeros(len(tool_before)),
-        np.zeros(len(tool_before), dtype=bool),
-    )
+    tool = tool_before.copy()
+    tilt = np.zeros(len(tool_before))
+    lost = np.zeros(len(tool_before), dtype=bool)
     kept_rows, new_rows = [], []
     for k in blocked:
         row, solution = np.arange(begin[k], begin[k + 1]), earlier[k]

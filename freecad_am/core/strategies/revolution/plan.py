@@ -198,10 +198,8 @@ def _spacing_issues(wall: RevolvedWall, layers: list[Array], layer_height: float
     gaps = [meridian_levels.spacing(wall.meridian, a, b) for a, b in pairwise(layers)]
     widest = np.array([gap.max() for gap in gaps])
     narrowest = np.array([gap.min() for gap in gaps])
-    over, under = (
-        (1.0 + SPACING_BAND + 1e-9) * layer_height,
-        (1.0 - SPACING_BAND - 1e-9) * layer_height,
-    )
+    over = (1.0 + SPACING_BAND + 1e-9) * layer_height
+    under = (1.0 - SPACING_BAND - 1e-9) * layer_height
     uneven = np.flatnonzero((widest > over) | (narrowest < under))
     if len(uneven) == 0:
         return []

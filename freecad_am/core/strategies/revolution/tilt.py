@@ -376,11 +376,9 @@ class Tilting:
         """Tilt-back (k,) rad that cases need at least, 0 if the present one suffices: for cases before one without a solution, and for
         cases next to deposit points at which the nozzle touches even so.
         """
-        max_angle, tips, deposit = (
-            directions.from_vertical(cases.build),
-            clearance.tips,
-            clearance.deposit,
-        )
+        max_angle = directions.from_vertical(cases.build)
+        tips = clearance.tips
+        deposit = clearance.deposit
         stuck = np.flatnonzero(np.isnan(angle))
         angle_ = np.where(np.isnan(angle), max_angle, angle)
         if len(stuck):
@@ -495,10 +493,8 @@ class Tilting:
                 )
             )
         elif (back > 1e-9).any():
-            worst, first_layer = (
-                int(case_layer[np.argmax(back)]),
-                int(case_layer[np.argmax(back > 1e-9)]),
-            )
+            worst = int(case_layer[np.argmax(back)])
+            first_layer = int(case_layer[np.argmax(back > 1e-9)])
             issues.append(
                 Issue(
                     NOTE,

@@ -140,11 +140,9 @@ def bead_of(
     MadeBead
         The bead in part coordinates, with its report.
     """
-    surface, base, name = (
-        layer.surface,
-        layer.base,
-        classes.fill_bead_class(curve.kind, layer.number),
-    )
+    surface = layer.surface
+    base = layer.base
+    name = classes.fill_bead_class(curve.kind, layer.number)
     build, process = classes.leaning(build, process, name), process.for_class(name)
     line, share = curve.closed_points(surface.period)
     error = WRAP_SHARE * strategy.chord_error

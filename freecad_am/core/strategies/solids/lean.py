@@ -135,10 +135,8 @@ class Zones:
         half = np.zeros(len(s))
         moved = np.array(self._copies())[:, None]
         low, high = self.low + moved, self.high + moved
-        start, end = (
-            np.searchsorted(s, low - 2.0 * self.half),
-            np.searchsorted(s, high + 2.0 * self.half),
-        )
+        start = np.searchsorted(s, low - 2.0 * self.half)
+        end = np.searchsorted(s, high + 2.0 * self.half)
         for copy, zone in np.argwhere(start < end).tolist():
             rows, zone_half = slice(start[copy, zone], end[copy, zone]), self.half[zone]
             local = s[rows]

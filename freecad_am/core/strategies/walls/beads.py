@@ -146,10 +146,8 @@ def directions(
             limit_turns(points, axes, closed, build.turn(), max_lean=build.max_tilt)
             for axes in axes_pair
         ]
-        axes_pair, spread = (
-            [axes for axes, _ in slower],
-            float(max(departure.max() for _, departure in slower)),
-        )
+        axes_pair = [axes for axes, _ in slower]
+        spread = float(max(departure.max() for _, departure in slower))
     return Directions(axes_pair[0], axes_pair[-1], back, spread)
 
 
@@ -327,10 +325,8 @@ def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[
     """The range of local distances (n,) of each layer after the first, with a warning if it is not as requested."""
     if not distances:
         return []
-    smallest, largest = (
-        min(layer.min() for layer in distances),
-        max(layer.max() for layer in distances),
-    )
+    smallest = min(layer.min() for layer in distances)
+    largest = max(layer.max() for layer in distances)
     height = strategy.layer_height
     exact = strategy.spacing == "constant-distance"
     # between the points, where arcs approximate the front, ten times the tolerance is allowed

@@ -111,10 +111,8 @@ def _measured(
         distance.append(np.where(is_deposited, distance_, np.nan)[order])
         step.append(np.where(is_deposited, rise, np.nan)[order])
     # nodes gather at corners: each node counts by its stretch
-    weight, values = (
-        np.concatenate([np.gradient(shares) for shares in around]),
-        np.concatenate(distance),
-    )
+    weight = np.concatenate([np.gradient(shares) for shares in around])
+    values = np.concatenate(distance)
     weight, values = weight[np.isfinite(values)], values[np.isfinite(values)]
     turn = corner = 0.0
     cornered = 0

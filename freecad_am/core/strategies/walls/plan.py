@@ -340,10 +340,8 @@ def trimmed(surface: Placed, front: WallLayer, end: float) -> list[Stretch]:
     order = np.r_[start:count, 0 : start + 1]
     w = w[order] + np.where(np.arange(count + 1) >= count - start, curve.period, 0.0)
     inside = inside[order]
-    enters, leaves = (
-        np.flatnonzero(~inside[:-1] & inside[1:]),
-        np.flatnonzero(inside[:-1] & ~inside[1:]),
-    )
+    enters = np.flatnonzero(~inside[:-1] & inside[1:])
+    leaves = np.flatnonzero(inside[:-1] & ~inside[1:])
     low = _crossing(surface, front, w[enters], w[enters + 1], end, True)
     high = _crossing(surface, front, w[leaves], w[leaves + 1], end, False)
     return [Stretch(front, float(a), float(b), False) for a, b in zip(low, high, strict=True)]
