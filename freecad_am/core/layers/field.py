@@ -91,16 +91,12 @@ def footprints(group: Group, chord_error: float) -> list[list[Array]]:
             [base.to_part(loop.points) for loop in cut(facets, 0.0, chord_error)]
             for facets in all_facets
         ]
-    cuts = [
-        AlongCuts(base, body)
-        if isinstance(surface, Guide)
-        else PlaneCuts(base.inside(body.vertices), body.triangles)
-        for body in group.bodies
-    ]
-    return [
-        [
-            base.to_part(PlaneLayer(0.0).wrap(loop).points)
-            for loop in next(cut_body.loops([chord_error]))
-        ]
-        for cut_body in cuts
-    ]
+    footprints_of_bodies = []
+    for body in group.bodies:
+        if isinstance(surface, Guide):
+            cut_body: PlaneCuts = AlongCuts(base, body)
+        else:
+            cut_body = PlaneCuts(base.inside(body.vertices), body.triangles)
+        curves = [PlaneLayer(0.0).wrap(loop).points for loop in next(cut_body.loops([chord_error]))]
+        footprints_of_bodies.append([base.to_part(points) for points in curves])
+    return footprints_of_bodies

@@ -223,9 +223,11 @@ def _neighbours(
     current = len(below) - 1
     neighbours = []
     for k in (k for step in range(1, thick + 1) for k in (-step, step)):
-        layer_loops = (
-            below[current + k] if -current <= k < 0 else ahead[k - 1] if 0 < k <= len(ahead) else []
-        )
+        layer_loops: list[Loop] = []
+        if -current <= k < 0:
+            layer_loops = below[current + k]
+        elif 0 < k <= len(ahead):
+            layer_loops = ahead[k - 1]
         neighbours.append((k, [loop for loop in layer_loops if not loop.turns]))
     return neighbours
 

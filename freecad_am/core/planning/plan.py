@@ -239,18 +239,13 @@ def _failed(
     """
     wrong = {(issue.layer, issue.bead) for issue in issues if issue.level == ERROR}
     if len(paths) != len(set(bead_ids)):
-        wrong = {bead_id for bead_id in bead_ids if bead_id[0] in {layer for layer, _ in wrong}}
+        wrong_layers = {layer for layer, _ in wrong}
+        wrong = {bead_id for bead_id in bead_ids if bead_id[0] in wrong_layers}
     failed = [k for k, bead_id in enumerate(bead_ids) if bead_id in wrong]
-    return (
-        [
-            failed[k]
-            for k in sorted(
-                {round(position) for position in np.linspace(0, len(failed) - 1, SCREENED)}
-            )
-        ]
-        if failed
-        else []
-    )
+    if not failed:
+        return []
+    positions = np.linspace(0, len(failed) - 1, SCREENED)
+    return [failed[k] for k in sorted({round(position) for position in positions})]
 
 
 def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, list[Issue]]:

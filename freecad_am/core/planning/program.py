@@ -106,8 +106,11 @@ def remarks_of(
         where = "Work offset" if parameters.motion == "cartesian" else "Platform on the table"
         frame = carried
     else:
-        where = "Deposition point" if cell.torch_stands else "User frame" if moved else "Platform"
-        where += " on the face" if cell.external is not None and cell.external.turning else ""
+        where = "User frame" if moved else "Platform"
+        if cell.torch_stands:
+            where = "Deposition point"
+        if cell.external is not None and cell.external.turning:
+            where += " on the face"
         frame = frames.inverse(cell.machine.base) @ station
     return (
         cell.machine.title,

@@ -131,28 +131,26 @@ def columns(beads: Sequence[Bead], cell: Cell, max_columns: int = MAX_COLUMNS) -
     counts = np.array([len(bead) for bead in beads])
     bead_numbers = list(range(len(beads)))
     if counts.sum() > max_columns and MIN_POINTS_PER_BEAD * len(beads) > max_columns:
-        bead_numbers = np.unique(
-            np.round(
-                np.linspace(0, len(beads) - 1, max(1, max_columns // MIN_POINTS_PER_BEAD))
-            ).astype(int)
-        ).tolist()
+        bead_count = max(1, max_columns // MIN_POINTS_PER_BEAD)
+        even_numbers = np.round(np.linspace(0, len(beads) - 1, bead_count))
+        bead_numbers = np.unique(even_numbers.astype(int)).tolist()
         share = np.full(len(bead_numbers), max_columns // len(bead_numbers))
     else:
         share = np.maximum(2, counts * max_columns // max(int(counts.sum()), max_columns))
-    point_indices = [
-        np.unique(
-            np.round(np.linspace(0, counts[k] - 1, min(int(number), int(counts[k])))).astype(
-                np.int64
-            )
-        )
-        for k, number in zip(bead_numbers, share)
-    ]
-    position, tool, parameter = (
-        np.concatenate(
-            [getattr(beads[k], name)[index] for k, index in zip(bead_numbers, point_indices)]
-        )
-        for name in ("points", "tool", "parameter")
-    )
+    point_indices = []
+    for k, number in zip(bead_numbers, share):
+        point_count = min(int(number), int(counts[k]))
+        even_points = np.round(np.linspace(0, counts[k] - 1, point_count))
+        point_indices.append(np.unique(even_points.astype(np.int64)))
+
+    def sampled(name: str) -> Array:
+        columns_of_beads = zip((getattr(beads[k], name) for k in bead_numbers), point_indices)
+        values: Array = np.concatenate([column[index] for column, index in columns_of_beads])
+        return values
+
+    position = sampled("points")
+    tool = sampled("tool")
+    parameter = sampled("parameter")
     return Columns(
         np.repeat(np.array(bead_numbers), [len(index) for index in point_indices]),
         np.concatenate(point_indices),

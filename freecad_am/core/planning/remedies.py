@@ -219,18 +219,14 @@ def _slower(job: Tried, path: JointPath) -> Iterator[Tried]:
     step = 10.0 ** (math.floor(math.log10(0.99 * speed)) - 1)
     speed = math.floor(0.99 * speed / step) * step  # two digits
     share = speed / job.process.travel_speed
-    layers = tuple(
-        layer
-        if job.own_speed and job.own_speed[layer.feature]
-        else dataclasses.replace(
-            layer,
-            beads=tuple(
-                dataclasses.replace(bead, speed=share * bead.speed) for bead in layer.beads
-            ),
-        )
-        for layer in toolpath.layers
-    )
-    slower = dataclasses.replace(toolpath, layers=layers)
+    layers = []
+    for layer in toolpath.layers:
+        if job.own_speed and job.own_speed[layer.feature]:
+            layers.append(layer)
+            continue
+        beads = [dataclasses.replace(bead, speed=share * bead.speed) for bead in layer.beads]
+        layers.append(dataclasses.replace(layer, beads=tuple(beads)))
+    slower = dataclasses.replace(toolpath, layers=tuple(layers))
     process = dataclasses.replace(job.process, travel_speed=speed)
     yield dataclasses.replace(
         job,

@@ -101,16 +101,12 @@ def sample_toolpath(toolpath: Toolpath, max_points: int, together: int = 1) -> S
         points = max(
             points, _one_in([bead for _, _, bead in kept_beads], max_points, FEWEST_PER_TURN)
         )
+    thinned_beads: list[list[Bead]] = [[] for _ in toolpath.layers]
+    for bead_layer, _, bead in kept_beads:
+        thinned_beads[bead_layer].append(bead.thinned(_select_points(bead, points)))
     layers = tuple(
-        replace(
-            layer,
-            beads=tuple(
-                bead.thinned(_select_points(bead, points))
-                for bead_layer, _, bead in kept_beads
-                if bead_layer == number
-            ),
-        )
-        for number, layer in enumerate(toolpath.layers)
+        replace(layer, beads=tuple(layer_beads))
+        for layer, layer_beads in zip(toolpath.layers, thinned_beads)
     )
     return Sampled(
         replace(toolpath, layers=layers, chord_error=toolpath.chord_error * points**2),

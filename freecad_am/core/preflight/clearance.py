@@ -277,7 +277,9 @@ def external_links(
             step,
             Word(met),
         )
-    ok = False if broken else True if is_complete else None
+    ok = None
+    if broken or is_complete:
+        ok = not broken
     return [
         Promise(
             what,

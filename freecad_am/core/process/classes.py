@@ -33,7 +33,9 @@ def fill_bead_class(kind: str, layer: int) -> str:
 
 def wall_bead_class(layer: int, closing: bool = False) -> str:
     """The class of a bead that is all of a wall's thickness, or a curve."""
-    return FIRST_LAYER if layer == 0 else CLOSING if closing else WALL
+    if layer == 0:
+        return FIRST_LAYER
+    return CLOSING if closing else WALL
 
 
 def leaning(

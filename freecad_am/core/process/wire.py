@@ -415,13 +415,9 @@ def read_table(name: str, folder: Path | None = None) -> Measured:
         )
     several = len(feed) > 0 and np.ptp(feed) > 1e-9 * feed.max()
     feeds = feed * 1000.0 / MINUTE
-    nominal = (
-        0.0
-        if not len(feed)
-        else float(feeds.mean())
-        if several
-        else float(feed[0]) * 1000.0 / MINUTE
-    )
+    nominal = 0.0
+    if len(feed):
+        nominal = float(feeds.mean()) if several else float(feed[0]) * 1000.0 / MINUTE
     return Measured(
         radius,
         speed / MINUTE,

@@ -10,7 +10,7 @@ import numpy as np
 
 from ..geometry.obstacles import Body
 from ..issues import InputError, Issue
-from ..toolpath import Layer, SequencedFeature, Toolpath
+from ..toolpath import Bead, Layer, SequencedFeature, Toolpath
 from ..types import Array, Index
 
 BY_FEATURE, BY_HEIGHT = "feature", "height"
@@ -221,20 +221,11 @@ def _add_bead_sizes(toolpath: Toolpath, first_path: Toolpath) -> Toolpath:
     ):
         return toolpath
     wide, high = toolpath.bead_width, toolpath.layer_height
-    return replace(
-        toolpath,
-        layers=tuple(
-            replace(
-                layer,
-                beads=tuple(
-                    replace(
-                        bead,
-                        width=np.full(len(bead), wide) if bead.width is None else bead.width,
-                        height=np.full(len(bead), high) if bead.height is None else bead.height,
-                    )
-                    for bead in layer.beads
-                ),
-            )
-            for layer in toolpath.layers
-        ),
-    )
+
+    def sized(bead: Bead) -> Bead:
+        width = np.full(len(bead), wide) if bead.width is None else bead.width
+        height = np.full(len(bead), high) if bead.height is None else bead.height
+        return replace(bead, width=width, height=height)
+
+    layers = [replace(layer, beads=tuple(map(sized, layer.beads))) for layer in toolpath.layers]
+    return replace(toolpath, layers=tuple(layers))

@@ -134,12 +134,11 @@ def link_bodies(
         return tuple(() if shape is None else (shape,) for shape in shapes)
     text = top["bodies"].only("source", *links)
     text["source"].text()
-    return tuple(
-        tuple(_piece(node, is_last=name == links[-1]) for node in text[name].items())
-        if text.has(name)
-        else ()
-        for name in links
-    )
+    bodies: list[Pieces] = []
+    for name in links:
+        nodes = text[name].items() if text.has(name) else []
+        bodies.append(tuple(_piece(node, is_last=name == links[-1]) for node in nodes))
+    return tuple(bodies)
 
 
 def _piece(node: Node, is_last: bool) -> LinkShape | Solid:

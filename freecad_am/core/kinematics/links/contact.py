@@ -204,17 +204,10 @@ class ArmContact:
             for external_link in self.cell.shapes.external_links
         ]
         names += [external_link.name for external_link in self.cell.shapes.external_links]
-        solids += [
-            [
-                round_solid(cylinder, growth)
-                for cylinder in (
-                    external_link.cylinders
-                    if self.cell.shapes.obstacles or external_link.carries == ROBOT
-                    else ()
-                )
-            ]
-            for external_link in self.cell.shapes.external_links
-        ]
+        for external_link in self.cell.shapes.external_links:
+            is_tested = self.cell.shapes.obstacles or external_link.carries == ROBOT
+            cylinders = external_link.cylinders if is_tested else ()
+            solids.append([round_solid(cylinder, growth) for cylinder in cylinders])
         object.__setattr__(
             self,
             "links",
@@ -287,13 +280,10 @@ class ArmContact:
         """
         axes, on_robot = self.cell.robot.chain.axes, external_link.carries == ROBOT
         on_track = self.cell.external is not None and self.cell.external.slides is not None
-        first_link = (
-            2 - external_link.axes_after
-            if on_robot
-            else 0
-            if on_track or external_link.axis != STANDS
-            else 1
-        )
+        if on_robot:
+            first_link = 2 - external_link.axes_after
+        else:
+            first_link = 0 if on_track or external_link.axis != STANDS else 1
         part_links = [] if on_robot or external_link.axes_after <= 1 else [axes + 1]
         track = [] if on_robot else self._track(external_link.axis != STANDS)
         return [*range(first_link, axes + 1), *part_links, axes + 2, *self._torch, *track]

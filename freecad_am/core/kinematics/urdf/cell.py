@@ -43,14 +43,12 @@ class UrdfCell:
         self.ways: dict[str, Way] = {link: self._way(link) for link in self.urdf.links}
         self.joints = {joint.text("name"): joint for joint in self.urdf.parent.values()}
         moved_chains = set(self.ways.values()) - {()}
-        self.farthest = sorted(
-            joint_names
-            for joint_names in moved_chains
-            if not any(
-                longer[: len(joint_names)] == joint_names and longer != joint_names
-                for longer in moved_chains
-            )
-        )
+
+        def is_farthest(joint_names: Way) -> bool:
+            longer_chains = (chain for chain in moved_chains if chain != joint_names)
+            return all(chain[: len(joint_names)] != joint_names for chain in longer_chains)
+
+        self.farthest = sorted(filter(is_farthest, moved_chains))
         robots = sorted(
             {robot for joint_names in self.farthest if (robot := self._robot(joint_names))}
         )

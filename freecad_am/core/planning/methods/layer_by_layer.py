@@ -152,15 +152,11 @@ def _searched(
             paths[k].margin < MIN_MARGIN or (task.kept is None and retried.get(k, paths[k]) is None)
         )
     ]
-    helped.update(
-        {
-            k: replacements
-            for k, replacements in zip(
-                late, unwrap.for_beads(task, [beads[k] for k in late], [bead_ids[k] for k in late])
-            )
-            if replacements is not None
-        }
-    )
+    late_beads = [beads[k] for k in late]
+    late_ids = [bead_ids[k] for k in late]
+    for k, replacements in zip(late, unwrap.for_beads(task, late_beads, late_ids)):
+        if replacements is not None:
+            helped[k] = replacements
     return paths, helped
 
 

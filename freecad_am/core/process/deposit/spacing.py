@@ -48,12 +48,12 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
         return between_turns(toolpath.layers[0].beads[0])
     heights = _planes(toolpath)
     if heights is not None:
-        return tuple(
-            np.full(count, above - below)
-            for below, above, layer in zip(heights, heights[1:], toolpath.layers[1:])
-            if not layer.first
-            and (count := sum(len(bead) for bead in layer.beads if not bead.role.closing))
-        )
+        spacings = []
+        for below, above, layer in zip(heights, heights[1:], toolpath.layers[1:]):
+            point_count = sum(len(bead) for bead in layer.beads if not bead.role.closing)
+            if point_count and not layer.first:
+                spacings.append(np.full(point_count, above - below))
+        return tuple(spacings)
     above = [
         [] if layer.first else [bead.points for bead in layer.beads if not bead.role.closing]
         for layer in toolpath.layers[1:]
@@ -158,15 +158,11 @@ def _planes(toolpath: Toolpath) -> Array | None:
     if not toolpath.traits.stacks_layers:
         return None
     up = toolpath.frame[:3, 2]
-    ends = np.array(
-        [
-            [
-                (heights := np.concatenate([bead.points for bead in layer.beads]) @ up).min(),
-                heights.max(),
-            ]
-            for layer in toolpath.layers
-        ]
-    )
+    rows = []
+    for layer in toolpath.layers:
+        heights = np.concatenate([bead.points for bead in layer.beads]) @ up
+        rows.append([heights.min(), heights.max()])
+    ends = np.array(rows)
     return ends.mean(axis=1) if (np.ptp(ends, axis=1) <= PLANE_TOLERANCE_MM).all() else None
 
 

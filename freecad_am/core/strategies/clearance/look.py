@@ -216,19 +216,14 @@ def touched_between(space: Space, beads: Sequence[Bead], tool: Array, free: Mask
 def halved(toolpath: Toolpath, between: Mask) -> Toolpath:
     """The toolpath with a point halfway after each marked point (n,)."""
     marks = iter(np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1]))
-    return dataclasses.replace(
-        toolpath,
-        layers=tuple(
-            dataclasses.replace(
-                layer,
-                beads=tuple(
-                    bead.halved(np.flatnonzero(mark)) if mark.any() else bead
-                    for bead, mark in zip(layer.beads, marks)
-                ),
-            )
-            for layer in toolpath.layers
-        ),
-    )
+    layers = []
+    for layer in toolpath.layers:
+        beads = [
+            bead.halved(np.flatnonzero(mark)) if mark.any() else bead
+            for bead, mark in zip(layer.beads, marks)
+        ]
+        layers.append(dataclasses.replace(layer, beads=tuple(beads)))
+    return dataclasses.replace(toolpath, layers=tuple(layers))
 
 
 CLEARANCE = "CLEARANCE"  # the nozzle touches something while it deposits

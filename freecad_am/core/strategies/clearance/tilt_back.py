@@ -195,17 +195,11 @@ def _tilted(
 def _set_tools(toolpath: Toolpath, tools: Sequence[Array], issues: tuple[Issue, ...]) -> Toolpath:
     """The toolpath with tool axes, bead by bead, and further issues."""
     axes = iter(tools)
-    return dataclasses.replace(
-        toolpath,
-        layers=tuple(
-            dataclasses.replace(
-                layer,
-                beads=tuple(dataclasses.replace(bead, tool=next(axes)) for bead in layer.beads),
-            )
-            for layer in toolpath.layers
-        ),
-        issues=(*toolpath.issues, *issues),
-    )
+    layers = []
+    for layer in toolpath.layers:
+        beads = [dataclasses.replace(bead, tool=next(axes)) for bead in layer.beads]
+        layers.append(dataclasses.replace(layer, beads=tuple(beads)))
+    return dataclasses.replace(toolpath, layers=tuple(layers), issues=(*toolpath.issues, *issues))
 
 
 def _ways(

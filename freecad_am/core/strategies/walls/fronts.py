@@ -373,12 +373,10 @@ def _turns(
     )
     if issues and strategy.spacing != "smooth":
         return issues
-    rates = [
-        np.inf
-        if any(len(front.corners) for front in layer)
-        else max(turn(wall, front) for front in layer)
-        for layer in fronts
-    ]
+    rates = []
+    for layer in fronts:
+        has_corners = any(len(front.corners) for front in layer)
+        rates.append(np.inf if has_corners else max(turn(wall, front) for front in layer))
     return issues + turn_notes(rates, strategy)
 
 
