@@ -260,9 +260,7 @@ def _thickness(
     follows = ~is_central & is_central[summit]
     counts[follows], deciding[follows] = counts[summit[follows]], deciding[summit[follows]]
     thickness = _Thickness(deciding, counts, is_central, [])
-    return thickness._replace(
-        transitions=_transitions(spokes, thickness, distance, summit, law)
-    )
+    return thickness._replace(transitions=_transitions(spokes, thickness, distance, summit, law))
 
 
 def _transitions(

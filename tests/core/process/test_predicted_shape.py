@@ -285,7 +285,7 @@ def test_beads_of_several_widths_side_by_side_are_as_high(edge):
             for x in np.linspace(-25.0, 25.0, 40)
         ]
     )
-    assert np.abs(tops - 6.0 * HIGH).max() < 0.1 * HIGH
+    assert np.abs(tops - 6.0 * HIGH).max() < 0.2 * HIGH
 
 
 @pytest.mark.parametrize("share", [0.85, 1.1])
