@@ -117,7 +117,7 @@ def test_beads_carry_their_kind_and_ring_through_documents():
             (b.role.kind, b.role.ring) for _, _, b in path
         ]
         floats, text = pack(path, "key")
-        old = re.sub(r',"kind":"[a-z]*","ring":\d+', "", text)
+        old = re.sub(r'"kind":"[a-z]*","ring":\d+,', "", text)
         assert old != text and {
             bead.role.kind for _, _, bead in unpack(floats, old, "key", "toolpath")
         } == {""}
