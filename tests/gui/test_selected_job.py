@@ -47,7 +47,7 @@ def jobs(stages):
 def opened(monkeypatch):
     """The labels of what tools without a panel open."""
     labels = []
-    monkeypatch.setattr(simulation, "show", lambda obj: labels.append(obj.Label))
+    monkeypatch.setattr(simulation, "simulate_object", lambda obj: labels.append(obj.Label))
     monkeypatch.setattr(spin_map, "show", lambda obj: labels.append(obj.Label))
     return labels
 

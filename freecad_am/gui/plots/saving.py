@@ -130,13 +130,11 @@ def save(picture: Picture, metric: Picture, obj: Any, canvas: Canvas) -> None:
     whatever the window's units are."""
     size, (across, up) = (canvas.width(), canvas.height()), canvas.ranges()
 
-    def content(ending: str) -> bytes:
-        # with matplotlib, whose import takes some time
-
+    def plot_content(ending: str) -> bytes:
         exported = metric if ending == CSV else picture
-        return content(exported, ending, size, across, up)
+        return file_content(exported, ending, size, across, up)
 
-    ask(tr("Save the plot"), obj, picture.name, content)
+    ask(tr("Save the plot"), obj, picture.name, plot_content)
 
 
 def ask(title: str, obj: Any, name: str, content: Callable[[str], bytes]) -> None:
@@ -157,12 +155,10 @@ def ask(title: str, obj: Any, name: str, content: Callable[[str], bytes]) -> Non
 
 
 def _write(content: Callable[[str], bytes], path: str, kind: str) -> None:
-    def write() -> str:
-        # with matplotlib, whose import takes some time
-
+    def write_target() -> str:
         ending = next((ending for ending in ENDINGS if f"*.{ending}" in kind), ENDINGS[0])
         target = path if path.rpartition(".")[2].lower() in ENDINGS else f"{path}.{ending}"
-        write(content(target.rpartition(".")[2].lower()), target)
+        write_file(content(target.rpartition(".")[2].lower()), target)
         return target
 
     def show_result(worker: Worker) -> None:
@@ -177,7 +173,7 @@ def _write(content: Callable[[str], bytes], path: str, kind: str) -> None:
 
     writing = Background(Gui.getMainWindow())
     _writing.append(writing)
-    writing.start(write, show_result)
+    writing.start(write_target, show_result)
 
 
 def _say(text: str, console: Any) -> None:
@@ -192,7 +188,7 @@ CSV = "csv"
 ENDINGS = (*KINDS, CSV)
 
 
-def content(
+def file_content(
     picture: Picture, ending: str, size: tuple[int, int], across: Ranges, up: Ranges
 ) -> bytes:
     """The file for an ending, one of ENDINGS: an image on white of the visible range
@@ -205,7 +201,7 @@ def content(
     )
 
 
-def write(content: bytes, path: str) -> None:
+def write_file(content: bytes, path: str) -> None:
     """Write a file, which appears whole or not at all. OSError where it cannot be written."""
     unfinished = f"{path}.unfinished"
     try:
