@@ -251,12 +251,12 @@ def body(setup):
     return Body("hub", vertices, np.concatenate([np.stack(corners, axis=1) for corners in sides]))
 
 
-@functools.cache
 def _with_ramps(bead, start=0.0, end=0.0):
     ends = dataclasses.replace(bead.ends, start_ramp=start, end_ramp=end)
     return dataclasses.replace(bead, ends=ends)
 
 
+@functools.cache
 def planned(name, lift=LIFT, retreat=0.0, ramps=()):
     """The cell, the beads and the motion of a set-up. Without a retract distance all beads are on one side, each on the one
     before: the straight way back to the next start leads through what was just laid."""

@@ -16,9 +16,9 @@ PROPERTIES = {"path_feed": "feed"}  # what a post reads in place of a parameter
 
 
 def read_in(folder, functions=None):
-    """Parameters read as `….nc.NAME` in the files of a folder, or in some of its functions and classes."""
+    """Parameters read as `….nc.NAME` in a file or the files of a folder, or in some of its functions and classes."""
     found = set()
-    for file in folder.glob("*.py"):
+    for file in [folder] if folder.is_file() else folder.glob("*.py"):
         tree = ast.parse(file.read_text(encoding="utf-8"))
         parts = (
             [tree]
@@ -36,7 +36,7 @@ def read_in(folder, functions=None):
 
 
 def called(folder):
-    """Names of functions and classes of posts/nc that the files of a folder call."""
+    """Names of functions and classes of posts/nc_numbers.py that the files of a folder call."""
     trees = (ast.parse(file.read_text(encoding="utf-8")) for file in folder.glob("*.py"))
     return {
         node.attr
@@ -44,14 +44,14 @@ def called(folder):
         for node in ast.walk(tree)
         if isinstance(node, ast.Attribute)
         and isinstance(node.value, ast.Name)
-        and node.value.id in ("numbers", "common")
+        and node.value.id == "nc_numbers"
     }
 
 
 @pytest.mark.parametrize("post", catalogue.NAMES)
 def test_the_table_names_what_a_post_reads(post):
     own = read_in(POSTS / post)
-    shared = read_in(POSTS / "nc", called(POSTS / post)) if own else set()
+    shared = read_in(POSTS / "nc_numbers.py", called(POSTS / post)) if own else set()
     assert own | shared == set(catalogue.NC_PARAMETERS.get(post, ()))
 
 
