@@ -23,7 +23,11 @@ DOCUMENTED = (
     "core/strategies",
     "posts",
 )
-NOT_YET = ("core/filling", "core/geometry/regions", "core/strategies/solids/filling.py")
+NOT_YET = (
+    "core/filling/adaptive.py",
+    "core/filling/centre.py",
+    "core/strategies/solids/filling.py",
+)
 SEVERAL = 3
 SECTIONS = re.compile(r"^(Parameters|Returns|Yields)\n-+$", re.MULTILINE)
 ENTRY = re.compile(r"^([*\w, ]+?)(?: : .*)?$")

@@ -39,8 +39,29 @@ class Levels:
 
 
 def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
-    """The contours of a region, each parallel to its border, not to the contour before, so that errors do not add. Short contours are
-    left out, for the beads in the middle. inner: allowed positions of bead middles.
+    """Return the contours of a region, level by level from outside in, with the gaps inside each.
+
+    Each contour is parallel to the border, not to the contour before, so that errors do not add.
+    Contours shorter than `beads.shortest` are left out, for the beads in the middle.
+
+    Parameters
+    ----------
+    region : Region
+        The region to fill, mm.
+    inner : tuple of Region
+        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+    beads : Beads
+        Spacing, width, gap and chord error, mm.
+
+    Returns
+    -------
+    Levels
+        Regions bounded by contours and open regions of each level, and beads in thin places.
+
+    Raises
+    ------
+    InfeasibleError
+        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
     """
     half, error = 0.5 * beads.spacing, beads.chord_error
     inner, thin = outermost(region, inner, beads)
@@ -58,8 +79,27 @@ def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
 
 
 def contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
-    """Closed contours from outside in, then the beads in their middle.
-    Raises InfeasibleError THIN_REGION, see `Beads`."""
+    """Return closed contours from outside in, then the beads in their middle.
+
+    Parameters
+    ----------
+    region : Region
+        The region to fill, mm.
+    inner : tuple of Region
+        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+    beads : Beads
+        Spacing, width, gap and chord error, mm.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Beads in the plane of the region; short ones included.
+
+    Raises
+    ------
+    InfeasibleError
+        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
+    """
     contour_levels = levels(region, inner, beads)
     return rounds(contour_levels, beads) + centres(contour_levels, beads)
 
@@ -149,8 +189,29 @@ class _Found(NamedTuple):
 
 
 def connect_contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
-    """One closed bead through all contours of a region; curves without a position for links stay separate beads, as does the only
-    bead of a region too narrow for contours. Raises InfeasibleError THIN_REGION, see `Beads`.
+    """Return one closed bead through the contours of a region.
+
+    Curves without a position for links stay separate beads, as does the only bead of a region too
+    narrow for contours.
+
+    Parameters
+    ----------
+    region : Region
+        The region to fill, mm.
+    inner : tuple of Region
+        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+    beads : Beads
+        Spacing, width, gap and chord error, mm.
+
+    Returns
+    -------
+    list of PlaneCurve
+        The connected bead first, if any, then separate ones; none is shorter than `beads.shortest`.
+
+    Raises
+    ------
+    InfeasibleError
+        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
     """
     contour_levels = levels(region, inner, beads)
     loose = centres(contour_levels, beads)

@@ -48,7 +48,24 @@ def total(covers: Sequence[Cover]) -> Cover:
 def measure_cover(
     region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads, density: float = 1.0
 ) -> Cover:
-    """The cover of a region by beads; areas left open on purpose, at a density below 1, do not count."""
+    """Measure how beads cover a region.
+
+    Parameters
+    ----------
+    region : Region or Strip
+        The region, mm; a strip is measured window by window.
+    curves : sequence of PlaneCurve
+        Middles of the beads in the plane of the region.
+    beads : Beads
+        The usual width and the chord error, mm.
+    density : float, optional
+        Share of the area to fill; below 1 open areas are intended and count as not missed.
+
+    Returns
+    -------
+    Cover
+        Areas of the region, missed, outside and covered, mm^2.
+    """
     if isinstance(
         region, Strip
     ):  # window by window; beads of regions round a hub are as wide as usual

@@ -41,8 +41,28 @@ AFRESH = 4  # contours made from the same borders; farther in, windows would get
 def strip_contours(
     strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads
 ) -> list[PlaneCurve]:
-    """Contours as in `contours`: from both borders and from the holes inwards, then beads in the gaps; one bead in the middle of a
-    strip narrower than a bead. Raises InfeasibleError THIN_REGION if beads refuse thin regions.
+    """Return contours as in `contours`: from borders and holes inwards, then beads in the gaps.
+
+    A strip narrower than a bead has one bead in its middle.
+
+    Parameters
+    ----------
+    strip : Strip
+        The region round the hub.
+    inner : tuple of Strip or Region
+        Allowed positions of bead middles: the strip shrunk by `beads.inset`.
+    beads : Beads
+        Spacing, width, gap and chord error, mm.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Beads on the unrolled plane.
+
+    Raises
+    ------
+    InfeasibleError
+        THIN_REGION if `beads.thin` is 'refuse' and the strip is narrower than a bead everywhere.
     """
     if not inner and beads.thin == "refuse":
         raise InfeasibleError(
@@ -101,8 +121,24 @@ EXACT = 1e-4  # of half a bead's width
 
 
 def balanced(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> list[PlaneCurve]:
-    """The curves that fill a region, or one ring instead of a single curve no farther from the middle than it is wide that feeds too
-    little; a dot if that ring is too short for a bead.
+    """Replace a single curve that feeds a small region too little by a ring or a dot.
+
+    Only a region without holes and no larger than a circle with a bead width as radius is changed.
+
+    Parameters
+    ----------
+    region : Region
+        The filled region, mm.
+    curves : sequence of PlaneCurve
+        Beads that fill it.
+    beads : Beads
+        Width and shortest length of beads, mm.
+
+    Returns
+    -------
+    list of PlaneCurve
+        The curves, or one ring that feeds the area of the region; a dot if that ring is shorter
+        than `beads.shortest`.
     """
     if len(curves) > 1 or any(curve.dot for curve in curves) or len(region.borders()) > 1:
         return list(curves)
@@ -161,19 +197,33 @@ def fill(
     longest_link: float = 0.0,
     infill: Infill = SOLID,
 ) -> tuple[PlaneCurve, ...]:
-    """The beads that fill a region in one of PATTERNS, from outside in.
+    """Return the beads that fill a region in one of PATTERNS, from outside in.
 
-    Grid, triangles, honeycomb and gyroid are lines if the whole is filled. Round a hub, lines run round it if the angle is nearer
-    to that and along it otherwise; spirals are contours there, and every other pattern is lines.
+    Grid, triangles, honeycomb and gyroid are lines if the whole is filled. Round a hub, lines run
+    round it if the angle is nearer to that and along it otherwise; spirals are contours there, and
+    every other pattern is lines.
 
     Parameters
     ----------
-    angle
-        rad, of lines and zigzags.
-    walls
+    region : Region or Strip
+        What to fill, mm; a strip goes round a hub.
+    beads : Beads
+        Spacing, width and gap of beads, mm, and how closed ones begin.
+    pattern : str, optional
+        One of PATTERNS.
+    angle : float, optional
+        Direction of lines and zigzags from x of the plane, rad.
+    walls : float, optional
         Number of contours round the others, infinity for contours only.
-    longest_link
-        mm, of lines and zigzags, by default 3 spacings.
+    longest_link : float, optional
+        Longest link of zigzags, mm; 0: 3 spacings.
+    infill : Infill, optional
+        How much of the area inside the walls is filled; all by default.
+
+    Returns
+    -------
+    tuple of PlaneCurve
+        Beads in the plane of the region, or on the unrolled plane of a strip.
 
     Raises
     ------
@@ -220,7 +270,22 @@ def fill(
 
 
 def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads) -> Gaps:
-    """Points (2,) left open within reach of the beads inside, and the width (mm) of each gap, more than the allowed one."""
+    """Find the gaps within reach of beads that are wider than the allowed one.
+
+    Parameters
+    ----------
+    region : Region or Strip
+        The filled region, mm.
+    curves : sequence of PlaneCurve
+        Beads that fill it.
+    beads : Beads
+        Spacing, width and allowed gap, mm.
+
+    Returns
+    -------
+    list of tuple of (2,) array and float
+        A point of each gap, mm, unrolled about 0 for a strip, and the width of the gap, mm.
+    """
     if isinstance(region, Strip):
         return [
             (region.moved_back(window, gap.inside()[None])[0][0], gap.width)

@@ -59,8 +59,23 @@ class _Edges(NamedTuple):
 def fit_beads(
     region: Region, beads: Beads, min_share: float, max_share: float
 ) -> tuple[Beads, float]:
-    """Beads of which a whole number fits into the thickest place of a region, and their share of the usual width, between min_share
-    and max_share and as near to 1 as possible; the usual beads if no number fits.
+    """Fit a whole number of beads into the thickest place of a region.
+
+    Parameters
+    ----------
+    region : Region
+        The region, mm.
+    beads : Beads
+        The usual beads.
+    min_share, max_share : float
+        Least and greatest share of the usual width; equal ones change nothing.
+
+    Returns
+    -------
+    beads : Beads
+        Beads with spacing, width and gap times the share; the usual ones if no number fits.
+    share : float
+        The share of the usual width, as near to 1 as possible.
     """
     if min_share == max_share:
         return beads, 1.0
@@ -93,8 +108,27 @@ def share_widths(
     min_share: float,
     max_share: float,
 ) -> Iterator[PlaneCurve]:
-    """The curves with the share of the usual width at each point: the fitted share, and for middle beads the room between their
-    neighbours, within min_share and max_share.
+    """Yield curves with their share of the usual width at each point.
+
+    It is the fitted share, for middle beads reduced to the room between their neighbours.
+
+    Parameters
+    ----------
+    region : Region
+        The filled region, mm.
+    curves : sequence of PlaneCurve
+        Beads that fill it.
+    beads : Beads
+        The fitted beads, see `fit_beads`.
+    share : float
+        Their share of the usual width.
+    min_share, max_share : float
+        Bounds of the shares of middle beads; equal ones change nothing.
+
+    Yields
+    ------
+    PlaneCurve
+        The curves in their order; middle beads have more points, at most PLACES spacings apart.
     """
     other_lines = [(curve.points, curve.closed) for curve in curves if curve.kind not in CENTRES]
     for curve in curves:
@@ -135,10 +169,28 @@ def _places(curve: PlaneCurve, step: float) -> Array:
 def narrow_beads(
     curves: Sequence[PlaneCurve], beads: Beads, angle: float, min_share: float
 ) -> tuple[PlaneCurve, ...]:
-    """The curves with the share of their usual width that they have room for: halfway to neighbours of their kind, and up to
-    neighbours of higher rank, contours before lines before middle beads.
+    """Narrow beads to the room between their neighbours.
 
-    Links of zigzags deposit the area beyond the ends of their lines. angle: of the lines, rad. min_share: least share of a bead.
+    A bead reaches halfway to neighbours of its kind and up to neighbours of higher rank: contours
+    before lines before middle beads. Links of zigzags deposit the area beyond the ends of their
+    lines.
+
+    Parameters
+    ----------
+    curves : sequence of PlaneCurve
+        Beads of one region, one or more.
+    beads : Beads
+        Spacing and width, mm.
+    angle : float
+        Direction of the lines of zigzags from x of the plane, rad.
+    min_share : float
+        Least share of the usual width.
+
+    Returns
+    -------
+    tuple of PlaneCurve
+        The curves with shares of at most 1 at their points, moved to the middle of their room
+        where nothing holds them; dots come last, unchanged.
     """
     dots = [curve for curve in curves if curve.dot]
     if dots:  # dots are isolated and already have their width

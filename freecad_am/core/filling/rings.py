@@ -34,22 +34,72 @@ class Ring:
         self._taken: list[tuple[float, float]] = []
 
     def points_at(self, arcs: Array) -> Array:
-        """Points (n, 2) at arc lengths (n,), any number of times round."""
+        """Return the points at arc lengths.
+
+        Parameters
+        ----------
+        arcs : (n,) array
+            Arc lengths from the first point, mm, any number of times round.
+
+        Returns
+        -------
+        (n, 2) array
+            Points, mm.
+        """
         arcs = np.remainder(arcs, self.length)
         return np.stack([np.interp(arcs, self.arc, self._whole[:, k]) for k in (0, 1)], axis=1)
 
     def way(self, arcs: Array, step: float) -> Array:
-        """Unit directions (n, 2) of the ring about arc lengths, over a step, mm."""
+        """Return the directions of the ring at arc lengths.
+
+        Parameters
+        ----------
+        arcs : (n,) array
+            Arc lengths, mm.
+        step : float
+            Length of ring that a direction is the mean of, mm.
+
+        Returns
+        -------
+        (n, 2) array
+            Unit vectors along the ring.
+        """
         ahead = self.points_at(arcs + 0.5 * step) - self.points_at(arcs - 0.5 * step)
         return np.asarray(ahead / np.maximum(np.hypot(*ahead.T), 1e-300)[:, None])
 
     def foot(self, points: Array) -> tuple[Array, Array]:
-        """Arc lengths (n,) of the places nearest to points (n, 2), and how far they are."""
+        """Find the places of the ring nearest to points.
+
+        Parameters
+        ----------
+        points : (n, 2) array
+            Points, mm.
+
+        Returns
+        -------
+        arcs : (n,) array
+            Arc lengths of the nearest places, mm.
+        distances : (n,) array
+            Distances of the points from them, mm.
+        """
         feet = nearest(self.points, points, closed=True)
         return self.arc[feet.edge] + feet.share * np.diff(self.arc)[feet.edge], feet.distance
 
     def piece(self, start: float, end: float, sense: int) -> Array:
-        """The points (m, 2) from one arc length to another, with the sense of the ring (1) or against it (-1)."""
+        """Return the points of the ring from one arc length to another.
+
+        Parameters
+        ----------
+        start, end : float
+            Arc lengths, mm, any number of times round.
+        sense : int
+            1 with the ring, -1 against it.
+
+        Returns
+        -------
+        (m, 2) array
+            Points in the order of travel, both ends included, mm.
+        """
         if sense < 0:
             return self.piece(end, start, 1)[::-1]
         span = (end - start) % self.length

@@ -33,14 +33,48 @@ ROUNDING = 3e-12  # of the largest coordinate
 def families(
     region: Region, pattern: str, spacing: float, density: float, angle: float
 ) -> Iterator[list[list[Array]]]:
-    """Family by family of the straight patterns, row by row the pieces (2, 2) of lines in a region, at an angle, rad."""
+    """Yield the lines of a straight pattern, family by family.
+
+    Parameters
+    ----------
+    region : Region
+        The region, mm.
+    pattern : str
+        One of FAMILIES.
+    spacing : float
+        Spacing of beads, mm.
+    density : float
+        Share of the area that the families fill together.
+    angle : float
+        Direction of the first family from x of the plane, rad.
+
+    Yields
+    ------
+    list of list of (2, 2) array
+        Row by row the pieces of lines in the region, mm.
+    """
     count = FAMILIES[pattern]
     for number in range(count):
         yield straight(region, count * spacing / density, angle + number * math.pi / count)
 
 
 def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
-    """Pieces (2, 2) of the lines at whole periods (mm) from the origin, at an angle, rad, in a region; row by row."""
+    """Return the pieces of parallel lines in a region.
+
+    Parameters
+    ----------
+    region : Region
+        The region, mm.
+    period : float
+        Distance between lines, mm; one passes through the origin.
+    angle : float
+        Direction of the lines from x of the plane, rad.
+
+    Returns
+    -------
+    list of list of (2, 2) array
+        Row by row the pieces in the direction of the lines, mm.
+    """
     borders = [rotate_points(border, -angle) for border in region.borders()]
     low, high = float(borders[0][:, 1].min()), float(borders[0][:, 1].max())
     rows_ = []
@@ -54,8 +88,22 @@ def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
 
 
 def crossings(borders: list[Array], level: float) -> Array:
-    """Where borders (n, 2) cross a height, ascending; an even number. Points at that height within rounding errors count as below
-    it, so that a border along it is on the same side whatever its last bits.
+    """Return where borders cross a height.
+
+    Points at that height within rounding errors count as below it, so that a border along it is on
+    the same side whatever its last bits.
+
+    Parameters
+    ----------
+    borders : list of (n, 2) array
+        Closed borders, mm, their first points not repeated.
+    level : float
+        The height y, mm.
+
+    Returns
+    -------
+    (m,) array
+        The x of the crossings, mm, ascending; an even number.
     """
     positions = []
     for border in borders:
@@ -69,9 +117,26 @@ def crossings(borders: list[Array], level: float) -> Array:
 
 
 def honeycomb(region: Region, spacing: float, density: float, angle: float) -> list[Array]:
-    """Lines (n, 2) that bound hexagons about the region: two lines along the same side are a spacing apart.
+    """Return lines that bound hexagons about the region.
 
-    A side of a mm, flat ones and slanted ones in turn: 4 a of bead on 3 a of line, lines a sqrt(3) / 2 + spacing apart.
+    Two lines along the same side are a spacing apart. A side of a mm, flat ones and slanted ones in
+    turn: 4 a of bead on 3 a of line, lines a sqrt(3) / 2 + spacing apart.
+
+    Parameters
+    ----------
+    region : Region
+        The region, mm; lines extend beyond its box.
+    spacing : float
+        Spacing of beads, mm.
+    density : float
+        Share of the area that the lines fill.
+    angle : float
+        Direction of the lines from x of the plane, rad.
+
+    Returns
+    -------
+    list of (n, 2) array
+        The lines, mm, not cut at the border.
     """
     side = (4.0 / (3.0 * density) - 1.0) * spacing * 2.0 / math.sqrt(3.0)
     slant = 0.5 * math.sqrt(3.0) * side
@@ -99,10 +164,31 @@ def gyroid_period(spacing: float, density: float) -> float:
 def gyroid(
     region: Region, spacing: float, density: float, angle: float, height: float, chord_error: float
 ) -> list[Array]:
-    """The section at a height (mm) of sin x cos y + sin y cos z + sin z cos x = 0 as lines (n, 2) about a region.
+    """Return the section at a height of sin x cos y + sin y cos z + sin z cos x = 0.
 
-    For a given z each line is a function of x, or of y, whichever its normal is nearer to: A cos y + B sin y = C is solved
-    for y, so that points are exactly on the surface. Lines meet only where z is an odd multiple of pi / 4.
+    For a given z each line is a function of x, or of y, whichever its normal is nearer to: A cos y
+    + B sin y = C is solved for y, so that points are exactly on the surface. Lines meet only where
+    z is an odd multiple of pi / 4.
+
+    Parameters
+    ----------
+    region : Region
+        The region, mm; lines extend beyond its box.
+    spacing : float
+        Spacing of beads, mm.
+    density : float
+        Share of the area that lines fill in the mean over the heights.
+    angle : float
+        Direction of x of the gyroid from x of the plane, rad.
+    height : float
+        Height of the layer above the origin of the gyroid, mm.
+    chord_error : float
+        Chord error of the lines, mm.
+
+    Returns
+    -------
+    list of (n, 2) array
+        The lines, mm, not cut at the border.
     """
     unit = gyroid_period(spacing, density) / (2.0 * math.pi)
     z = height / unit
@@ -157,8 +243,28 @@ class Frame(NamedTuple):
 
 
 def frame(region: Region, inner: tuple[Region, ...], beads: Beads, walls: int) -> Frame:
-    """The room for lines: half a bead inside the border, or a spacing inside of the last of `walls` contours deposited first, on
-    which they end. inner: allowed positions of bead middles.
+    """Return the room for lines: half a bead inside the border, or a spacing inside the last wall.
+
+    Parameters
+    ----------
+    region : Region
+        The region to fill, mm.
+    inner : tuple of Region
+        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+    beads : Beads
+        Spacing, width and chord error, mm.
+    walls : int
+        Number of contours deposited first; lines end on the last.
+
+    Returns
+    -------
+    Frame
+        Contours, regions for lines and their ends, and beads in thin places.
+
+    Raises
+    ------
+    InfeasibleError
+        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
     """
     half, error = 0.5 * beads.spacing, beads.chord_error
     inner, thin = outermost(region, inner, beads)
@@ -181,21 +287,55 @@ def frame(region: Region, inner: tuple[Region, ...], beads: Beads, walls: int) -
 def lines(
     framed: Frame, beads: Beads, angle: float, walls: int, longest_link: float | None
 ) -> list[PlaneCurve]:
-    """Lines at an angle (rad) within a frame of `walls` contours, every other one reversed.
+    """Return lines in a frame, every other one reversed, or linked to zigzags.
 
-    First and last line are half a bead inside the border (with walls: a spacing inside of the last), and the rest at the spacing
-    from these. If the breadth is not a multiple of the spacing the lines move evenly by at most MAX_NARROWING and MAX_WIDENING;
-    otherwise the remainder is in the middle and has its own line. With walls, lines end on the last.
+    First and last line are half a bead inside the border (with walls: a spacing inside of the
+    last), and the rest at the spacing from these. If the breadth is not a multiple of the spacing
+    the lines move evenly by at most MAX_NARROWING and MAX_WIDENING; otherwise the remainder is in
+    the middle and has its own line. With walls, lines end on the last.
 
-    longest_link: mm; lines are linked to zigzags along the border of the beads' room, so that no link is outside; next to contours
-    links are inside of their beads, to reduce over-deposition. None: no line is linked.
+    Links run along the border of the beads' room, so that no link is outside; next to contours
+    links are inside of their beads, to reduce over-deposition.
+
+    Parameters
+    ----------
+    framed : Frame
+        The room for lines, see `frame`.
+    beads : Beads
+        Spacing and shortest length of beads, mm.
+    angle : float
+        Direction of the lines from x of the plane, rad.
+    walls : int
+        Number of contours of the frame.
+    longest_link : float or None
+        Longest link, mm; None: no line is linked.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Lines or zigzags in the plane of the frame.
     """
     inside = LINK_INSET_SPACINGS * beads.spacing if walls else 0.0
     return in_rows(rows(framed, beads, angle), framed.ends, beads, walls, longest_link, inside)
 
 
 def rows(framed: Frame, beads: Beads, angle: float) -> list[list[Array]]:
-    """Level by level the segments (2, 2) of lines, all in the direction of the angle (rad)."""
+    """Return the segments of lines in a frame, level by level.
+
+    Parameters
+    ----------
+    framed : Frame
+        The room for lines, see `frame`.
+    beads : Beads
+        The spacing, mm.
+    angle : float
+        Direction of the lines from x of the plane, rad.
+
+    Returns
+    -------
+    list of list of (2, 2) array
+        Segments of each level in the direction of the lines, mm; empty if the frame has no room.
+    """
     if (
         not framed.regions or not framed.ends
     ):  # too narrow for lines; such regions get beads along their middle
@@ -217,7 +357,20 @@ def rows(framed: Frame, beads: Beads, angle: float) -> list[list[Array]]:
 
 
 def levels_between(low: float, high: float, beads: Beads) -> Array:
-    """Heights of lines from `low` to `high`, see `lines`."""
+    """Return the heights of lines between two borders, spread as `lines` says.
+
+    Parameters
+    ----------
+    low, high : float
+        Heights of the borders, mm, across the lines.
+    beads : Beads
+        The spacing, mm.
+
+    Returns
+    -------
+    (n,) array
+        Heights, mm, ascending; slightly inside the borders, or one halfway between close borders.
+    """
     spacing, breadth = beads.spacing, high - low
     hair = 1e-7 * spacing + 1e-12 * max(
         abs(low), abs(high)
@@ -271,10 +424,31 @@ def sparse(
     longest_link: float | None,
     infill: Infill,
 ) -> list[PlaneCurve]:
-    """The filling inside of walls, see `Infill`, and beads that close gaps between these.
+    """Return the filling inside of walls, see `Infill`, and beads that close gaps between walls.
 
-    inner: allowed positions of bead middles. angle (rad): of lines and zigzags, and of the lines of solid regions. longest_link:
-    as in `lines`.
+    Parameters
+    ----------
+    framed : Frame
+        Walls and the room for lines, see `frame`.
+    inner : sequence of Region
+        Allowed positions of bead middles, mm.
+    beads : Beads
+        Spacing, width, gap and chord error, mm.
+    pattern : str
+        One of the patterns of `fill`.
+    angle : float
+        Direction of lines, zigzags and the lines of solid regions from x of the plane, rad.
+    walls : int
+        Number of contours of the frame.
+    longest_link : float or None
+        Longest link of zigzags, mm, as in `lines`.
+    infill : Infill
+        Density, height, angle and buried regions.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Beads without the walls: those that close gaps, solid regions, then the pattern.
     """
     curves = (
         closing_beads(inner, framed.thin + framed.curves, beads, walls, framed.ends)

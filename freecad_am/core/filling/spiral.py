@@ -23,8 +23,31 @@ LINK = 3.0  # spacings; longest link
 
 
 def spiral(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
-    """One curve from each outer contour and from each hole as far as contours follow one another singly; where they split or
-    join, new ones begin. A contour of its own stays closed. What contours leave open is filled as theirs is."""
+    """Return spirals from each outer contour and each hole.
+
+    A spiral goes on while contours follow one another singly. Where contours split or join, new
+    curves begin. A contour without neighbours stays closed. Gaps of contours are filled as in
+    `contours`.
+
+    Parameters
+    ----------
+    region : Region
+        The region to fill, mm.
+    inner : tuple of Region
+        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+    beads : Beads
+        Spacing, width, gap and chord error, mm.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Spirals from outside in, then middle beads and beads that close gaps.
+
+    Raises
+    ------
+    InfeasibleError
+        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
+    """
     contour_levels = levels(region, inner, beads)
     rings = [
         [border for region in regions for border in region.borders()]

@@ -46,8 +46,29 @@ def _frame(inner: tuple[Strip | Region, ...], beads: Beads, walls: int) -> _Fram
 def lines_round(
     strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads, walls: int, density: float
 ) -> list[PlaneCurve]:
-    """Lines round the hub, half a bead inside the borders' farthest places and at the spacing between, see `lines`.
-    Closed where nothing interrupts them. density: below 1, lines are as much farther apart."""
+    """Return lines round the hub, spread as in `lines`.
+
+    The outermost are half a bead inside the borders' farthest places. Lines are closed where
+    nothing interrupts them.
+
+    Parameters
+    ----------
+    strip : Strip
+        The region round the hub.
+    inner : tuple of Strip or Region
+        Allowed positions of bead middles: the strip shrunk by `beads.inset`.
+    beads : Beads
+        Spacing, width, gap and chord error, mm.
+    walls : int
+        Number of contours round the lines.
+    density : float
+        Share of the area to fill; below 1 lines are a spacing divided by it apart.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Contours, lines and, at density 1, beads that close gaps, on the unrolled plane.
+    """
     framed = _frame(inner, beads, walls)
     low, high = strip.levels
     turn, within = strip.period.u_period, _Inside(strip, framed.ends)
@@ -74,8 +95,29 @@ def lines_round(
 def lines_along(
     strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads, walls: int, density: float
 ) -> list[PlaneCurve]:
-    """Lines along generatrices, evenly round the hub, no farther apart than the spacing; on a cone that is where they are
-    farthest from the apex, and they come nearer to each other towards it. Every other one runs the other way."""
+    """Return lines along generatrices, evenly round the hub and no farther apart than the spacing.
+
+    On a cone that is where they are farthest from the apex, and they come nearer to each other
+    towards it. Every other one runs the other way.
+
+    Parameters
+    ----------
+    strip : Strip
+        The region round the hub.
+    inner : tuple of Strip or Region
+        Allowed positions of bead middles: the strip shrunk by `beads.inset`.
+    beads : Beads
+        Spacing, width, gap and chord error, mm.
+    walls : int
+        Number of contours round the lines.
+    density : float
+        Share of the area to fill; below 1 lines are a spacing divided by it apart.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Contours, lines and, at density 1, beads that close gaps, on the unrolled plane.
+    """
     framed = _frame(inner, beads, walls)
     turn, interior = strip.period.u_period, _Inside(strip, framed.ends)
     pitch = beads.spacing / density

@@ -25,8 +25,27 @@ def in_rows(
     longest_link: float | None,
     inside: float = 0.0,
 ) -> list[PlaneCurve]:
-    """Beads of lines (2, 2), row by row, that end on the borders of regions: zigzags with links up to `longest_link`, mm; None:
-    separate lines, every other row reversed. inside: distance (mm) of links from a border square to the lines.
+    """Return beads of lines that end on the borders of regions: separate, or linked to zigzags.
+
+    Parameters
+    ----------
+    rows : sequence of sequence of (n, 2) array
+        Lines row by row, mm, all in one direction; of two points to link them.
+    ends : sequence of Region
+        Regions along whose borders links run.
+    beads : Beads
+        Spacing, chord error and shortest length of beads, mm.
+    ring : int
+        Number of the contour that the lines are at, stored in the curves.
+    longest_link : float or None
+        Longest link, mm; None: separate lines, every other row reversed.
+    inside : float, optional
+        Distance of links from a border square to the lines, mm.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Open beads of kind 'line' or 'zigzag', none shorter than `beads.shortest`.
     """
     if longest_link is None:
         return [

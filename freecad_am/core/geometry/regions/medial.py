@@ -40,12 +40,23 @@ class _Axis(NamedTuple):
 
 
 def spine(region: Region, min_clearance: float, step: float) -> tuple[Array, bool]:
-    """Return the longest path (n, 2) in the middle of a region where it is wider than 2
-    `min_clearance` mm.
+    """Return the longest path in the middle of a region where it is wide enough.
 
-    Also returns whether the path is closed: a region with one hole that the axis surrounds
-    has a closed path. The path is empty, (0, 2), if the region is nowhere that wide. step: mm
-    between points on the border.
+    Parameters
+    ----------
+    region : Region
+        The region, mm.
+    min_clearance : float
+        Least distance of the path from the border, mm.
+    step : float
+        Distance between samples of the border, mm.
+
+    Returns
+    -------
+    path : (n, 2) array
+        Points, mm; (0, 2) if the region is nowhere wide enough.
+    closed : bool
+        True in a region with one hole that the path surrounds.
     """
     axis = _axis(region, min_clearance, step)
     for spread in (MIN_WALL_SPREAD, MIN_SPREAD):
@@ -67,12 +78,25 @@ def spine(region: Region, min_clearance: float, step: float) -> tuple[Array, boo
 def spine_round(
     strip: Strip, min_clearance: float, step: float, chord_error: float, aside: float
 ) -> Array | None:
-    """Return the path (n, 2) once around in the middle of an unrolled strip, from half a turn
-    before 0 on.
+    """Return the path once around in the middle of an unrolled strip, from half a turn before 0 on.
 
-    Returns None if the strip is anywhere thinner than 2 `min_clearance` mm. step: as for
-    `spine`. chord_error: mm, for lines straight in (u, v) that become arcs when unrolled.
-    aside: mm considered beyond a turn, in addition to the width of the strip.
+    Parameters
+    ----------
+    strip : Strip
+        The strip.
+    min_clearance : float
+        Least distance of the path from the borders, mm.
+    step : float
+        Distance between samples of the border, mm.
+    chord_error : float
+        Chord error, mm, for lines straight in (u, v) that become arcs when unrolled.
+    aside : float
+        Length considered beyond a turn, mm, in addition to the width of the strip.
+
+    Returns
+    -------
+    (n, 2) array or None
+        Points on the unrolled plane, mm; None if the strip is too thin anywhere.
     """
     half = 0.5 * strip.period.u_period
     end = half + min(2.0 * (strip.levels[1] - strip.levels[0]) + aside, half)

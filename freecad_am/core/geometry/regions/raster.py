@@ -89,7 +89,22 @@ class Raster(NamedTuple):
 
     @classmethod
     def around(cls, points: Array, reach: float, pixel: float) -> Raster:
-        """Return a raster that holds what is within `reach` mm of points (n, 2), with an empty pixel around."""
+        """Return a raster that holds the surroundings of points, with an empty pixel around.
+
+        Parameters
+        ----------
+        points : (n, 2) array
+            Points of the plane, mm.
+        reach : float
+            Distance to hold around them, mm.
+        pixel : float
+            Size of a pixel, mm.
+
+        Returns
+        -------
+        Raster
+            The raster, turned by TURN_RAD.
+        """
         points, reach = turn_points(points), reach + pixel
         low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
         columns, rows = np.ceil((high - low) / pixel).astype(int) + 1
@@ -111,7 +126,18 @@ class Raster(NamedTuple):
         )
 
     def counts(self, strokes: Sequence[Stroke]) -> tuple[Integers, Integers]:
-        """(rows, columns) how many shapes of strokes cover each pixel, and how many times deposit is there."""
+        """Count shapes and deposit on each pixel.
+
+        Parameters
+        ----------
+        strokes : sequence of Stroke
+            The strokes, mm.
+
+        Returns
+        -------
+        shapes, deposits : (rows, columns) array
+            How many shapes of strokes cover each pixel, and how many times deposit is there.
+        """
         quadrangles, fans, discs, kites = outline(strokes)
         covering = np.hstack(
             [
@@ -124,12 +150,30 @@ class Raster(NamedTuple):
         return shapes, shapes - self._covered(np.asarray(self._polygon_spans(kites)))
 
     def to_plane(self, rows: Array, columns: Array) -> Array:
-        """Centres (n, 2) mm of pixels."""
+        """Return the centres of pixels.
+
+        Parameters
+        ----------
+        rows, columns : (n,) array
+            Numbers of the pixels, fractions allowed.
+
+        Returns
+        -------
+        (n, 2) array
+            Points of the plane, mm.
+        """
         places = self.low + self.pixel * np.column_stack([columns, rows])
         return np.asarray(places @ _TURN.T)
 
     def corners(self) -> Array:
-        """Corners (4, 2) mm of the raster: the first pixel's, the end of its row, the last pixel's, the start of the last row."""
+        """Return the corners of the raster.
+
+        Returns
+        -------
+        (4, 2) array
+            mm: at the first pixel, the end of its row, the last pixel and the start of the last
+            row.
+        """
         columns = np.array([-0.5, self.columns - 0.5, self.columns - 0.5, -0.5])
         rows = np.array([-0.5, -0.5, self.rows - 0.5, self.rows - 0.5])
         return self.to_plane(rows, columns)
@@ -296,10 +340,32 @@ def _pairs(first: Index, past: Index) -> tuple[Index, Index]:
 
 
 def lengths(points: Array) -> Array:
-    """(n - 1,) mm of the segments of a polyline (n, 2)."""
+    """Return the lengths of the segments of a polyline.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        The polyline, mm.
+
+    Returns
+    -------
+    (n - 1,) array
+        mm.
+    """
     return np.asarray(np.hypot(*np.diff(points, axis=0).T))
 
 
 def turn_points(points: Array) -> Array:
-    """Points (..., 2) in the coordinates of the raster."""
+    """Turn points into the coordinates of the raster.
+
+    Parameters
+    ----------
+    points : (..., 2) array
+        Points of the plane, mm.
+
+    Returns
+    -------
+    (..., 2) array
+        Along the columns and rows of the raster, mm.
+    """
     return np.asarray(points @ _TURN)

@@ -80,8 +80,13 @@ class Region:
         return (_ring(outer, 1.0), *sorted(holes, key=lambda ring: (ring[0, 0], ring[0, 1])))
 
     def borders(self) -> tuple[Array, ...]:
-        """Its borders (n, 2), material to the left, the outer one first; each begins at its leftmost point, not repeated at
-        its end, and the holes are in the order of these points."""
+        """Return the borders, the outer one first, then holes in the order of their first points.
+
+        Returns
+        -------
+        tuple of (n, 2) array
+            mm, material to the left; each begins at its leftmost point, not repeated at its end.
+        """
         return self._borders
 
     @property
@@ -91,12 +96,24 @@ class Region:
 
     @cached_property
     def middle(self) -> Array:
-        """Centre (2,) of its area, which may lie in a hole or beside it."""
+        """Return the centre of its area, which may be in a hole or outside.
+
+        Returns
+        -------
+        (2,) array
+            mm.
+        """
         point = self.shape.centroid
         return np.array([point.x, point.y])
 
     def axis(self) -> Array:
-        """Unit direction (2,) in which its area extends most; X where it extends as far in all, as of a circle or a square."""
+        """Return the direction in which its area extends most.
+
+        Returns
+        -------
+        (2,) array
+            Unit vector; x if it extends equally in all directions, as a circle or a square.
+        """
         tensor = np.zeros((2, 2))
         for border in self._borders:
             ahead, here = np.roll(border, -1, axis=0) - self.middle, border - self.middle
@@ -131,7 +148,20 @@ class Region:
         )
 
     def nearest(self, points: Array) -> tuple[Array, Array]:
-        """The places (n, 2) on the border nearest to points (n, 2), and how far they are (n,), mm."""
+        """Find the places on the border nearest to points.
+
+        Parameters
+        ----------
+        points : (n, 2) array
+            Points of the plane, mm.
+
+        Returns
+        -------
+        places : (n, 2) array
+            mm.
+        distances : (n,) array
+            mm.
+        """
         return nearest_on_rings(self._borders, self._boxes, points)
 
     @cached_property
@@ -161,9 +191,23 @@ class Region:
     def without(
         self, others: Sequence[Region], wide: float = 0.0, least_area: float = 0.0
     ) -> tuple[Region, ...]:
-        """What is left when others are taken away. wide: mm; of pieces too small for a circle of that diameter, which may be
-        very many, those are left out of which `grown` by minus half of it leaves nothing whatever its arcs. least_area: mm2;
-        smaller pieces are left out."""
+        """Subtract regions.
+
+        Parameters
+        ----------
+        others : sequence of Region
+            What to take away.
+        wide : float, optional
+            mm; pieces too small for a circle of that diameter, maybe very many, are dropped if
+            `grown` by minus half of it would leave nothing.
+        least_area : float, optional
+            mm^2; smaller pieces are dropped.
+
+        Returns
+        -------
+        tuple of Region
+            What remains, in the order of leftmost points.
+        """
         left = self.shape.difference(_union(others))
         if wide > 0.0:
             left = _cut_hairs(left, STRAIGHTNESS_TOLERANCE * self.extent)
@@ -179,7 +223,18 @@ class Region:
         )
 
     def pieces(self, line: Array) -> list[Array]:
-        """What of an open line (n, 2), which does not meet itself, lies inside: pieces (m, 2) in its order and sense."""
+        """Return the pieces of a line inside the region.
+
+        Parameters
+        ----------
+        line : (n, 2) array
+            An open line that does not meet itself, mm.
+
+        Returns
+        -------
+        list of (m, 2) array
+            Pieces in the order and sense of the line, mm.
+        """
         library = shapely()
         whole = library.geometry.LineString(line)
         cut = whole.intersection(self.shape)
@@ -215,7 +270,13 @@ class Region:
         return Region(geometry.Polygon(rings[0], rings[1:]), self.sheet)
 
     def inside(self) -> Array:
-        """A place (2,) inside, away from the border."""
+        """Return a place inside, away from the border.
+
+        Returns
+        -------
+        (2,) array
+            mm.
+        """
         point = self.shape.representative_point()
         return np.array([point.x, point.y])
 
@@ -250,16 +311,44 @@ class Mended(NamedTuple):
 def regions(
     loops: Sequence[Array], least_area: float | None = None, every_point: bool = False
 ) -> tuple[Region, ...]:
-    """The regions that closed loops (n, 2) bound, material to their left; islands in holes are regions of their own. In the
-    order of their leftmost points. Pieces below `least_area` mm^2 are dropped, by default SLIVER of the squared extent.
-    every_point: points on straight lines stay, as of lines in (u, v) that are bent when laid flat."""
+    """Return the regions that closed loops bound; islands in holes are separate regions.
+
+    Parameters
+    ----------
+    loops : sequence of (n, 2) array
+        Closed loops, mm, material to their left.
+    least_area : float, optional
+        mm^2; smaller pieces are dropped; by default SLIVER of the squared extent.
+    every_point : bool, optional
+        Keep points on straight lines, as of lines in (u, v) that bend when unrolled.
+
+    Returns
+    -------
+    tuple of Region
+        In the order of their leftmost points.
+    """
     return mended(loops, least_area, every_point).regions
 
 
 def mended(
     loops: Sequence[Array], least_area: float | None = None, every_point: bool = False
 ) -> Mended:
-    """As `regions`; where loops cross themselves or each other, inside is what they go round at least once."""
+    """Return regions as `regions`; where loops cross, inside is where they wind at least once.
+
+    Parameters
+    ----------
+    loops : sequence of (n, 2) array
+        Closed loops, mm, material to their left.
+    least_area : float, optional
+        mm^2; smaller pieces are dropped; by default SLIVER of the squared extent.
+    every_point : bool, optional
+        Keep points on straight lines.
+
+    Returns
+    -------
+    Mended
+        The regions, and the areas changed and dropped, mm^2.
+    """
     clean = [ring for loop in loops if len(ring := _distinct(np.asarray(loop, dtype=float))) > 2]
     if not clean:
         return Mended((), 0.0, 0.0)
@@ -277,7 +366,22 @@ def mended(
 def along(
     curves: Sequence[tuple[Array, bool]], half: float | Array, chord_error: float
 ) -> tuple[Region, ...]:
-    """What lies within `half` mm, or (k,) mm of each, of k curves (points (n, 2), whether closed)."""
+    """Return the regions within a distance of curves.
+
+    Parameters
+    ----------
+    curves : sequence of tuple of (n, 2) array and bool
+        Points of each of k curves, mm, and whether it is closed.
+    half : float or (k,) array
+        The distance, or one for each curve, mm.
+    chord_error : float
+        Chord error of arcs, mm; holes below its square are filled.
+
+    Returns
+    -------
+    tuple of Region
+        In the order of their leftmost points.
+    """
     bands = _fill_pinholes(_bands(curves, half, chord_error), chord_error**2)
     return _parts(bands, 0.0)
 
@@ -374,7 +478,22 @@ def _bends(line: Array) -> list[Array]:
 
 
 def simplified(points: Array, tolerance: float, closed: bool = False) -> Array:
-    """A curve (n, 2) with no more points than `tolerance` mm asks for; its first is kept, and the last of an open one."""
+    """Return a curve with no more points than a tolerance needs.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        The curve, mm.
+    tolerance : float
+        Greatest distance of dropped points from the result, mm.
+    closed : bool, optional
+        Whether the curve is closed, without its first point repeated.
+
+    Returns
+    -------
+    (m, 2) array
+        Points of the curve: the first, and the last of an open curve, are kept.
+    """
     whole = np.vstack([points, points[:1]]) if closed else points
     found: Array = whole[select_simplified(whole, tolerance)]
     return found[:-1] if closed else found
@@ -570,8 +689,21 @@ ASPECT = 1e-3  # slope of a curve of values, so that they count and their places
 
 
 def select_significant(positions: Array, values: Array, tolerance: float) -> Mask:
-    """Return which values (n,) at positions (n,), in order, are needed for linear interpolation
-    within the tolerance.
+    """Select the values that linear interpolation within a tolerance needs.
+
+    Parameters
+    ----------
+    positions : (n,) array
+        Positions in ascending order.
+    values : (n,) array
+        Values at them.
+    tolerance : float
+        Error of interpolated values, in their unit.
+
+    Returns
+    -------
+    (n,) array of bool
+        True for values to keep; the first and the last always are.
     """
     positions, values = np.round(positions, DIGITS), np.round(values, DIGITS)
     stretch = float(np.ptp(values)) / (ASPECT * max(float(np.ptp(positions)), 1e-300))

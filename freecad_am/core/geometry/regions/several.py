@@ -28,14 +28,44 @@ def grow_regions(
 def grow_regions(
     regions: Sequence[Strip | Region], distance: float, chord_error: float
 ) -> tuple[Strip | Region, ...]:
-    """As `Region.grown` and `Strip.grown`."""
+    """Grow regions, as `Region.grown` and `Strip.grown`.
+
+    Parameters
+    ----------
+    regions : sequence of Strip or Region
+        The regions.
+    distance : float
+        mm; negative to shrink.
+    chord_error : float
+        Chord error of arcs, mm.
+
+    Returns
+    -------
+    tuple of Strip or Region
+        The parts of each in turn; parts of neighbours may overlap.
+    """
     return tuple(part for region in regions for part in region.grown(distance, chord_error))
 
 
 def subtract_regions(
     regions: Sequence[Region], subtracted: Sequence[Region], wide: float = 0.0
 ) -> tuple[Region, ...]:
-    """Subtract regions, as `Region.without`; the same regions if there is nothing to subtract."""
+    """Subtract regions, as `Region.without`.
+
+    Parameters
+    ----------
+    regions : sequence of Region
+        The regions.
+    subtracted : sequence of Region
+        What to take away; if empty, the regions stay the same.
+    wide : float, optional
+        mm; pieces too small for a circle of that diameter may be dropped.
+
+    Returns
+    -------
+    tuple of Region
+        What remains of each in turn.
+    """
     return (
         tuple(result for region in regions for result in region.without(subtracted, wide))
         if subtracted
@@ -61,7 +91,22 @@ def halves(strip: Strip) -> list[Region]:
 
 
 def select_wider(regions: Sequence[Region], width: float, chord_error: float) -> list[Region]:
-    """Return the regions that hold a circle of a diameter (mm)."""
+    """Return the regions that hold a circle.
+
+    Parameters
+    ----------
+    regions : sequence of Region
+        The regions.
+    width : float
+        Diameter of the circle, mm.
+    chord_error : float
+        Chord error of arcs, mm.
+
+    Returns
+    -------
+    list of Region
+        In their order.
+    """
     return [region for region in regions if region.grown(-0.5 * width, chord_error)]
 
 
@@ -76,6 +121,20 @@ def shrink_region(region: Region, distance: float, chord_error: float) -> tuple[
     Where a region is exactly twice `distance` wide, rounding decides whether a neck of no
     width connects the result, and decides differently once the region is turned. Necks
     narrower than two HAIR_SHARE of the chord error are removed.
+
+    Parameters
+    ----------
+    region : Region
+        The region.
+    distance : float
+        mm.
+    chord_error : float
+        Chord error of arcs, mm.
+
+    Returns
+    -------
+    tuple of Region
+        The parts that remain.
     """
     shrunk_parts, hair = region.grown(-distance, chord_error), HAIR_SHARE * chord_error
     within = region.grown(-distance - hair, chord_error)

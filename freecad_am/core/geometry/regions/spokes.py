@@ -61,7 +61,13 @@ class Spokes:
 
     @property
     def middles(self) -> Array:
-        """Middles (n, 2) of the circles, mm: points of the medial axis."""
+        """Return the middles of the circles: points of the medial axis.
+
+        Returns
+        -------
+        (n, 2) array
+            mm.
+        """
         return self.feet + self.radii[:, None] * self.directions
 
 

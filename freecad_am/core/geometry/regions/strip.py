@@ -33,7 +33,19 @@ def chain_windows(
 ) -> tuple[list[tuple[Array, int]], list[Array]]:
     """Chain the rings of windows across the cuts between them.
 
-    Returns the rings that go around the hub, each with its sense, and the closed rings.
+    Parameters
+    ----------
+    window_rings : sequence of sequence of (n, 2) array
+        Closed rings in (u, v) of each window, mm, cut at its ends.
+    cuts : (k + 1,) array
+        The u of the ends of k windows, ascending over one turn, mm.
+
+    Returns
+    -------
+    rounds : list of tuple of (n, 2) array and int
+        Rings that go around the hub, in (u, v), and how many turns each makes, with its sense.
+    closed : list of (n, 2) array
+        Closed rings in (u, v), mm.
     """
     turn = float(cuts[-1] - cuts[0])
     tolerance, count = TOLERANCE_SHARE * turn, len(cuts) - 1
@@ -110,8 +122,17 @@ class Period:
         return self.turn if math.isinf(self.apex) else self.turn * abs(self.apex)
 
     def to_uv(self, flat: Array) -> Array:
-        """Return (u, v) (n, 2) of points (n, 2) of the plane, u within half a turn of the plane
-        about 0.
+        """Return (u, v) of points of the plane.
+
+        Parameters
+        ----------
+        flat : (n, 2) array
+            Points of the unrolled plane, mm.
+
+        Returns
+        -------
+        (n, 2) array
+            (u, v), mm; with an apex, u is within half a turn of the plane about 0.
         """
         if math.isinf(self.apex):
             return flat.copy()
@@ -127,11 +148,22 @@ class Period:
         return math.inf if math.isinf(self.apex) else 2.0 * math.pi * abs(self.apex)
 
     def unwrap_curve(self, flat: Array, sheet: float = 0.0, turns: int = 0) -> Array:
-        """Return (u, v) (n, 2) along a curve (n, 2) on the plane, with u unwrapped where the curve
-        passes behind the apex.
+        """Return (u, v) along a curve, with u unwrapped where the curve passes behind the apex.
 
-        The mean of u is within half a turn of the plane about `sheet`, mm. A curve that goes
-        around the hub ends where it begins again.
+        Parameters
+        ----------
+        flat : (n, 2) array
+            The curve on the unrolled plane, mm.
+        sheet : float, optional
+            u about which the mean of u is, within half a turn of the plane, mm.
+        turns : int, optional
+            How often the curve goes around the hub; its start is then repeated at the end, turned
+            on.
+
+        Returns
+        -------
+        (n, 2) or (n + 1, 2) array
+            (u, v), mm; one more if the curve goes around.
         """
         uv = self.to_uv(flat)
         if not math.isinf(self.apex):
@@ -140,7 +172,20 @@ class Period:
         return np.vstack([uv, uv[:1] + np.array([turns * self.u_period, 0.0])]) if turns else uv
 
     def from_uv(self, uv: Array, about: float = 0.0) -> Array:
-        """Return points (n, 2) of the plane for (u, v), turned back by `about` mm of u."""
+        """Return points of the plane for (u, v).
+
+        Parameters
+        ----------
+        uv : (n, 2) array
+            (u, v), mm.
+        about : float, optional
+            The u that is unrolled to x = 0, mm.
+
+        Returns
+        -------
+        (n, 2) array
+            Points of the unrolled plane, mm.
+        """
         if math.isinf(self.apex):
             return np.asarray(uv - np.array([about, 0.0]))
         phi, apex_distance = (uv[:, 0] - about) / abs(self.apex), self.apex - uv[:, 1]
@@ -149,7 +194,20 @@ class Period:
         )
 
     def move_turns(self, flat: Array, turns: int) -> Array:
-        """Move points (n, 2) of the plane by whole turns around the hub."""
+        """Move points of the plane by whole turns around the hub.
+
+        Parameters
+        ----------
+        flat : (n, 2) array
+            Points of the unrolled plane, mm.
+        turns : int
+            Turns, in the sense of u.
+
+        Returns
+        -------
+        (n, 2) array
+            The moved points, mm.
+        """
         if math.isinf(self.apex):
             return np.asarray(flat + np.array([turns * self.turn, 0.0]))
         angle, apex = turns * self.turn, np.array([0.0, self.apex])
@@ -162,15 +220,39 @@ class Period:
         return np.asarray(turned + apex)
 
     def points_round(self, v: float, chord_error: float, least_radius: float) -> int:
-        """Return the number of points of a line once around the hub at v that keeps within the chord
-        error (mm) on the plane.
+        """Return how many points a line once around the hub needs on the plane.
+
+        Parameters
+        ----------
+        v : float
+            Where the line is, mm.
+        chord_error : float
+            Chord error of the line, mm.
+        least_radius : float
+            Least radius to assume near the apex, mm.
+
+        Returns
+        -------
+        int
+            Number of points, at least 24.
         """
         radius = 1e6 if math.isinf(self.apex) else max(abs(self.apex - v), least_radius)
         return step_count(self.u_period, math.sqrt(8.0 * chord_error * radius), 24)
 
     def distance_past(self, flat: Array, u: float) -> Array:
-        """Return how far (n,) mm points of the plane are past the generatrix at u, |u| below a
-        quarter turn.
+        """Return how far points are past a generatrix.
+
+        Parameters
+        ----------
+        flat : (n, 2) array
+            Points of the unrolled plane, mm.
+        u : float
+            The generatrix, mm; less than a quarter turn from 0.
+
+        Returns
+        -------
+        (n,) array
+            Distances in the sense of u, mm.
         """
         if math.isinf(self.apex):
             return np.asarray(flat[:, 0] - u)
@@ -203,7 +285,13 @@ class Strip:
     holes: tuple[Array, ...] = ()
 
     def borders(self) -> tuple[tuple[Array, int], ...]:
-        """Return the unrolled borders (n, 2) and how often each goes around: 1, -1, and 0 for holes."""
+        """Return the unrolled borders and how often each goes around.
+
+        Returns
+        -------
+        tuple of tuple of (n, 2) array and int
+            Points of the unrolled plane, mm, and turns: 1, -1, and 0 for holes.
+        """
         loops = [(self.lower, 1), (self.upper, -1), *((hole, 0) for hole in self.holes)]
         return tuple((self.period.from_uv(points), turns) for points, turns in loops)
 
@@ -277,8 +365,21 @@ class Strip:
         ]
 
     def moved_back(self, window: Window, flat: Array) -> tuple[Array, float]:
-        """Return points (n, 2) unrolled about the middle of a window as unrolled about 0, and their
-        mean u, mm.
+        """Move points unrolled about the middle of a window to where they are unrolled about 0.
+
+        Parameters
+        ----------
+        window : Window
+            The window.
+        flat : (n, 2) array
+            Points unrolled about its middle, mm.
+
+        Returns
+        -------
+        points : (n, 2) array
+            Points unrolled about 0, mm.
+        sheet : float
+            Their mean u, mm.
         """
         uv = self.period.to_uv(flat) + np.array([window.about, 0.0])
         return self.period.from_uv(uv), float(uv[:, 0].mean())
@@ -343,11 +444,21 @@ class Strip:
         return regions([self.period.from_uv(np.vstack([below, above[::-1]]), window.about)])
 
     def near(self, window: Window, uv: Array, closed: bool) -> list[tuple[Array, bool]]:
-        """Return the stretches of a curve in (u, v), in all turns, in a window or its margin,
-        unrolled about its middle.
+        """Return the stretches of a curve in a window or its margin, from all turns.
 
-        Each has points (n, 2) and whether it is closed. closed: whether the curve is closed on
-        the plane.
+        Parameters
+        ----------
+        window : Window
+            The window.
+        uv : (n, 2) array
+            The curve in (u, v), mm.
+        closed : bool
+            Whether the curve is closed on the plane.
+
+        Returns
+        -------
+        list of tuple of (m, 2) array and bool
+            Points unrolled about the middle of the window, mm, and whether they are closed.
         """
         turn = self.period.u_period
         low, high = window.low - window.margin, window.high + window.margin
@@ -387,8 +498,21 @@ class Strip:
 def assemble_regions(
     rounds: Sequence[tuple[Array, int]], closed: Sequence[Array], period: Period
 ) -> tuple[Strip | Region, ...]:
-    """Assemble strips and plane regions from borders in (u, v): those that go around with their
-    sense, and closed ones.
+    """Assemble strips and plane regions from borders.
+
+    Parameters
+    ----------
+    rounds : sequence of tuple of (n, 2) array and int
+        Borders that go around, in (u, v), mm, and their sense: 1 or -1.
+    closed : sequence of (n, 2) array
+        Closed borders in (u, v), mm; clockwise ones are holes.
+    period : Period
+        Turn and apex of the hub.
+
+    Returns
+    -------
+    tuple of Strip or Region
+        Strips in (u, v) from low to high v, then regions on the unrolled plane.
     """
     borders = [_start_at_cut(ring, sense, period.u_period) for ring, sense in rounds]
     order = sorted(borders, key=lambda item: float(item[0][:, 1].mean()))
