@@ -52,8 +52,22 @@ def _from_bryant(angles: Array) -> Array:
 
 
 def about_fixed(rotation: Array, still: str) -> Array:
-    """(n, 3) rad about X, Y and Z of rotations Rz Ry Rx. Where that about Y is a right angle only the sum or difference of
-    the others counts, and that about the axis `still`, x or z, is 0."""
+    """Return the angles about the fixed X, Y and Z axes of rotations Rz Ry Rx.
+
+    If the angle about Y is a right angle, only the sum or difference of the others counts.
+
+    Parameters
+    ----------
+    rotation : (n, 3, 3) array
+        Rotation matrices.
+    still : str
+        'x' or 'z': the axis whose angle is then 0.
+
+    Returns
+    -------
+    (n, 3) array
+        Angles about X, Y and Z, rad.
+    """
     # entry by entry in memory: numpy's arc tangent of strided ones is not the same bits everywhere
     entry = np.array(rotation.transpose(1, 2, 0), order="C")
     across = np.hypot(entry[0, 0], entry[1, 0])
@@ -74,8 +88,20 @@ def _from_fixed(angles: Array) -> Array:
 
 
 def quaternions(rotation: Array) -> Array:
-    """(n, 4) of rotations (n, 3, 3), the cosine first and not negative; by the largest of the four, which is sound near half
-    turns too."""
+    """Return the unit quaternions of rotations.
+
+    Each is scaled from the largest of its four numbers, which is sound near half turns too.
+
+    Parameters
+    ----------
+    rotation : (n, 3, 3) array
+        Rotation matrices.
+
+    Returns
+    -------
+    (n, 4) array
+        The cosine of half the angle first, not negative.
+    """
     r = np.ascontiguousarray(rotation)
     trace = r[:, 0, 0] + r[:, 1, 1] + r[:, 2, 2]
     squares = np.stack([1.0 + trace, *(1.0 - trace + 2.0 * r[:, k, k] for k in range(3))], axis=1)

@@ -314,12 +314,25 @@ class Program:
 
 
 def slide_feeds(before: Array, joints: Array, duration: Array, kinds: tuple[str, ...]) -> Array:
-    """Return the speed (n,) of the linear axes, mm/s, on moves that take `duration` (n,) s: V_s = |P1'
-    P2''| V / |P1 P2| of Dai 2020,
-        section 3, for |P1 P2| / V is that time. It is 0 where only rotary axes move: such blocks need
-        an inverse-time feed.
+    """Return the speed of the linear axes on moves.
 
-        before: (axes,) where the first move starts. joints: (n, axes) where the moves end.
+    V_s = |P1' P2''| V / |P1 P2| of Dai 2020, section 3. The duration of a move is |P1 P2| / V.
+
+    Parameters
+    ----------
+    before : (axes,) array
+        Joint values where the first move starts, rad or mm.
+    joints : (n, axes) array
+        Joint values where the moves end, rad or mm.
+    duration : (n,) array
+        Times of the moves, s.
+    kinds : tuple of str
+        LINEAR or ROTARY for each axis.
+
+    Returns
+    -------
+    (n,) array
+        mm/s; 0 where only rotary axes move, so that the block needs an inverse-time feed.
     """
     linear = np.array([kind == LINEAR for kind in kinds])
     way = np.diff(np.concatenate([before[None], joints])[:, linear], axis=0)

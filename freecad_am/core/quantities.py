@@ -76,7 +76,22 @@ def _written_out(match: re.Match[str]) -> str:
 
 
 def significant(value: float, digits: int, rounding: str = ROUND_HALF_EVEN) -> str:
-    """A number rounded to significant digits, without an exponent or zeros at its end."""
+    """Return a number rounded to significant digits, without an exponent or zeros at its end.
+
+    Parameters
+    ----------
+    value : float
+        The number; not finite, very small and very large ones keep an exponent.
+    digits : int
+        Number of significant digits.
+    rounding : str, optional
+        A rounding mode of `decimal`.
+
+    Returns
+    -------
+    str
+        The text.
+    """
     if not math.isfinite(value) or value == 0.0:
         return f"{value:g}"
     if not SMALLEST_PLAIN <= abs(value) < LARGEST_PLAIN:

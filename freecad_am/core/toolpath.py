@@ -455,7 +455,13 @@ class Toolpath:
 
     @property
     def layer_heights(self) -> Array:
-        """(layers,) mm, the height of each layer."""
+        """Return the height of each layer.
+
+        Returns
+        -------
+        (layers,) array
+            mm.
+        """
         heights = [one.values.layer_height for one in self.features] or [self.layer_height]
         return np.array([heights[layer.feature if self.features else 0] for layer in self.layers])
 
@@ -476,9 +482,12 @@ class Toolpath:
 
     @property
     def widths(self) -> Array:
-        """Return the bead widths (n,) at all points, mm, in print order.
+        """Return the bead widths at all points in print order.
 
-        0 if unknown, as in old documents: such beads count as lines.
+        Returns
+        -------
+        (n,) array
+            mm; 0 if unknown, as in old documents: such beads count as lines.
         """
         known = [one.values.bead_width or 0.0 for one in self.features] or [self.bead_width or 0.0]
         return np.concatenate(
@@ -492,8 +501,13 @@ class Toolpath:
 
     @property
     def heights(self) -> Array:
-        """(n,) mm, how high beads are at all points in the order of deposit: the layer height where none is predicted, 0
-        where nothing is known of their width either."""
+        """Return the bead heights at all points in print order.
+
+        Returns
+        -------
+        (n,) array
+            mm: predicted, else the layer height; 0 if not even the bead width is known.
+        """
         known = self.layer_heights if self.bead_width else np.zeros(len(self.layers))
         return np.concatenate(
             [

@@ -82,7 +82,24 @@ class Spec:
 
 
 def parameter(default: Any, kind: str, help: str, **more: Any) -> Any:
-    """A dataclass field with its `Spec` in the metadata; `default` in inner units."""
+    """Return a dataclass field with its `Spec` in the metadata.
+
+    Parameters
+    ----------
+    default
+        Default value in inner units.
+    kind : str
+        One of the kinds of this module, such as LENGTH.
+    help : str
+        Help text.
+    **more
+        Further fields of `Spec`.
+
+    Returns
+    -------
+    dataclasses.Field
+        The field, for the body of a dataclass.
+    """
     return dataclasses.field(default=default, metadata={"spec": Spec(kind, help, **more)})
 
 
@@ -119,9 +136,21 @@ def percent(ratio: float) -> float:
 
 
 def check(owner: Any, prefix: str, skip: frozenset[str] = frozenset()) -> None:
-    """Check every field of a parameters dataclass against its `Spec`, except the names in `skip`.
+    """Check every field of a parameters dataclass against its `Spec`.
 
-    Raises InputError 'BAD_VALUE' naming `prefix.field`, the value and the allowed range.
+    Parameters
+    ----------
+    owner : dataclass instance
+        The parameters.
+    prefix : str
+        Name of their section, for messages.
+    skip : frozenset of str, optional
+        Names of fields not to check.
+
+    Raises
+    ------
+    InputError
+        BAD_VALUE with `prefix.field`, the value and the allowed range.
     """
     for field in dataclasses.fields(owner):
         if field.name not in skip:
@@ -129,14 +158,44 @@ def check(owner: Any, prefix: str, skip: frozenset[str] = frozenset()) -> None:
 
 
 def unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputError:
-    """The error for a word that is not one of `choices`."""
+    """Return the error for a word that is not one of `choices`.
+
+    Parameters
+    ----------
+    key : str
+        Name of the parameter, with its section.
+    value
+        The word.
+    choices : tuple of str
+        Allowed words.
+
+    Returns
+    -------
+    InputError
+        BAD_VALUE, not raised.
+    """
     return InputError(
         "BAD_VALUE", key, "{!r} is not a valid choice; use one of {}", value, ", ".join(choices)
     )
 
 
 def check_value(spec: Spec, value: Any, key: str) -> None:
-    """Check one value, in inner units, against its `Spec`. Raises InputError 'BAD_VALUE' naming `key`."""
+    """Check one value against its `Spec`.
+
+    Parameters
+    ----------
+    spec : Spec
+        Kind, bounds and choices.
+    value
+        The value in inner units.
+    key : str
+        Name of the parameter with its section, for messages.
+
+    Raises
+    ------
+    InputError
+        BAD_VALUE with the key.
+    """
     if (
         spec.kind == GROUP
         or (value is None and spec.optional)

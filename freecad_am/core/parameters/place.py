@@ -122,12 +122,27 @@ class PlaceParameters:
         return found
 
     def changes(self) -> Array:
-        """Return the offsets (P, 6) for the six numbers of a pose, mm and rad; the middle one is
-        zero.
+        """Return the offsets of all poses of the box.
+
+        Returns
+        -------
+        (P, 6) array
+            Offsets of x, y, z, mm, and the three angles, rad; the middle one is zero.
         """
         grids = np.meshgrid(*self._values(), indexing="ij")
         return np.stack([grid.ravel() for grid in grids], axis=1)
 
     def poses(self, about: Pose) -> Array:
-        """(P, 6) the poses of the box about one, mm and rad."""
+        """Return the poses of the box about a pose.
+
+        Parameters
+        ----------
+        about : Pose
+            x, y, z, mm, and three angles, rad.
+
+        Returns
+        -------
+        (P, 6) array
+            mm and rad.
+        """
         return np.asarray(np.array(about) + self.changes())

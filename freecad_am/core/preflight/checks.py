@@ -101,8 +101,21 @@ MAX_VOLUME_ERROR = 1e-6  # share of the fed volume by which a predicted deposit 
 def layers(
     toolpath: Toolpath, issues: Sequence[Issue], known_distances: Sequence[Array] | None = None
 ) -> Promise:
-    """Promise on the distance between layers, (n,) for each except the first; families state themselves
-    which distances they allow.
+    """Return the promise on the distance between layers; families state which distances they allow.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    issues : sequence of Issue
+        Issues of its planning; warnings SPACING break the promise.
+    known_distances : sequence of (n,) array, optional
+        Distances to the layer below, mm, for each layer except the first; measured if None.
+
+    Returns
+    -------
+    Promise
+        With the distance farthest from the layer height, mm.
     """
     what = "Layers are one layer height apart"
     how = "distance in space of each point to the layer below, against what the strategy allows"
@@ -325,8 +338,26 @@ def payload_promises(
     process: ProcessParameters,
     issues: Sequence[Issue],
 ) -> list[Promise]:
-    """Promise on the load of robot or positioner; empty if the part does not move, or is on a machine with
-    rotary axes.
+    """Return the promise on the load of robot or positioner.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    cell : Cell
+        The cell with its carriers.
+    toolpath : Toolpath
+        Beads and substrate.
+    process : ProcessParameters
+        The density.
+    issues : sequence of Issue
+        Issues of planning; PAYLOAD breaks the promise.
+
+    Returns
+    -------
+    list of Promise
+        One, with the mass of the part, kg; none if nothing carries the part, or the machine is a
+        five-axis machine.
     """
     if not cell.carriers or not cell.machine.free:
         return []

@@ -28,8 +28,24 @@ COMPUTED_MM = 1e-6  # mm by which two computations of one pose may differ
 def promises(
     motion: Motion, cell: Cell, condition: Array, threshold: Array, digits: float = 0.0
 ) -> list[Promise]:
-    """The promises about the joints of a motion. condition, threshold: (n,) of its rows, NaN where not known. digits: % of
-    the largest speed of an axis that digits of a text take."""
+    """Return the promises about the joints of a motion: limits, reach, speeds and singularities.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, n rows.
+    cell : Cell
+        The cell.
+    condition, threshold : (n,) array
+        Inverse condition number and the least one allowed; NaN if unknown.
+    digits : float, optional
+        % of the largest speed of an axis that rounded numbers of a text may add.
+
+    Returns
+    -------
+    list of Promise
+        Four.
+    """
     return [
         _limits(motion, cell),
         _reach(motion, cell),
@@ -184,8 +200,24 @@ def rapids(issues: Sequence[Issue], rapids_check: RapidsLooked) -> Promise:
 
 
 def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: bool) -> Promise:
-    """Whether the links keep clear. Links drawn from the kinematics only can neither keep the promise nor
-    break it.
+    """Return the promise that the links of the arm keep clear.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    cell : Cell
+        The cell, with the clearance of the arm.
+    touches : ArmTouches or None
+        Contacts; None if not checked.
+    true_shapes : bool
+        Whether the shapes are the manufacturer's; links drawn from the kinematics neither keep nor
+        break the promise.
+
+    Returns
+    -------
+    Promise
+        With the number of points in contact.
     """
     what = "The arm stays clear of part, deposit, platform, nozzle and itself"
     if touches is None:
@@ -226,8 +258,26 @@ def external_links(
     true_shapes: bool,
     issues: Sequence[Issue],
 ) -> list[Promise]:
-    """Whether positioner and track keep clear; empty for a cell without external axes. Links of the robot
-    that are drawn from the kinematics only can neither keep the promise nor break it.
+    """Return the promise that positioner and track keep clear.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    cell : Cell
+        The cell.
+    touches : ArmTouches or None
+        Contacts; None if not checked.
+    true_shapes : bool
+        Whether the shapes of the robot are the manufacturer's; links drawn from the kinematics
+        neither keep nor break the promise.
+    issues : sequence of Issue
+        Issues of planning; contacts of the nozzle with these links break the promise.
+
+    Returns
+    -------
+    list of Promise
+        One; none for a cell without external axes.
     """
     if cell.external is None:
         return []

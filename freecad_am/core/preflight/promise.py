@@ -72,8 +72,23 @@ class Promise:
 
 
 def amount(value: float, unit: str, formatted: Callable[[float], str] = number) -> str:
-    """A value with its unit; counts in the singular or plural of the language, which some also have for
-    0.
+    """Return a value with its unit.
+
+    Counts are singular or plural as the language wants, which some languages also have for 0.
+
+    Parameters
+    ----------
+    value : float
+        The value.
+    unit : str
+        Its unit, or 'points' or 'rapids' for counts; may be empty.
+    formatted : callable, optional
+        Text of a number.
+
+    Returns
+    -------
+    str
+        The text; counts can be translated.
     """
     if unit == "points":
         return Text(
@@ -108,5 +123,20 @@ def issue_place(issues: Sequence[Issue]) -> Place | None:
 def select_issues(
     issues: Sequence[Issue], codes: Collection[str], level: str = ERROR
 ) -> list[Issue]:
-    """The issues of a level that have one of the codes."""
+    """Return the issues of a level that have one of the codes.
+
+    Parameters
+    ----------
+    issues : sequence of Issue
+        The issues.
+    codes : collection of str
+        Codes to select.
+    level : str, optional
+        The level; errors by default.
+
+    Returns
+    -------
+    list of Issue
+        In their order.
+    """
     return [issue for issue in issues if issue.level == level and issue.code in codes]

@@ -18,11 +18,22 @@ from ..types import Array, ArrayLike, Index, Integers, Mask
 
 
 def speed_ratios(joints: Array, duration: Array, speed_limits: Array) -> Array:
-    """Return the mean joint speeds (n, a) of the segments that end at each row, as shares of the
-    axis maxima.
+    """Return the mean joint speeds of segments as shares of the axis maxima.
 
-    joints: (n, a) rad or mm. duration: (n,) s of the segment; if it is 0 the ratio is 0, or
-    infinite if an axis moves. speed_limits: (a,) rad/s or mm/s, infinite if unknown.
+    Parameters
+    ----------
+    joints : (n, a) array
+        Joint values of the rows, rad or mm.
+    duration : (n,) array
+        Time of the segment that ends at each row, s.
+    speed_limits : (a,) array
+        Maximum speeds, rad/s or mm/s; infinite if unknown.
+
+    Returns
+    -------
+    (n, a) array
+        Shares for the segment that ends at each row; without duration 0, or infinite if an axis
+        moves.
     """
     moved = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
     lasts = duration[:, None] > 0.0
@@ -38,15 +49,41 @@ def speed_ratios(joints: Array, duration: Array, speed_limits: Array) -> Array:
 
 
 def spread_to_deposit_rows(deposit: Mask, values: Array) -> Array:
-    """(n,) the values (k,) of the k rows that deposit, such as the condition of a joint path's beads; NaN on the others."""
+    """Spread values of the deposit rows over all rows.
+
+    Parameters
+    ----------
+    deposit : (n,) array of bool
+        Whether a row deposits.
+    values : (k,) array
+        Values of the k rows that deposit, such as the condition of a joint path's beads.
+
+    Returns
+    -------
+    (n,) array
+        The values; NaN on the other rows.
+    """
     all_rows = np.full(len(deposit), np.nan)
     all_rows[deposit] = values
     return all_rows
 
 
 def from_next(deposit: Mask, point: Integers, values: Array) -> Array:
-    """(n,) values of segments, where the first row of each bead, at which no segment ends, takes the
-    value of the next row. deposit, point: (n,) as in a motion.
+    """Give the first row of each bead, at which no segment ends, the value of the next row.
+
+    Parameters
+    ----------
+    deposit : (n,) array of bool
+        Whether a row deposits.
+    point : (n,) array of int
+        Number of the point in its bead.
+    values : (n,) array
+        Values of the segments that end at the rows.
+
+    Returns
+    -------
+    (n,) array
+        The values, a copy.
     """
     first_rows = np.flatnonzero(deposit & (point == 0))
     shifted = values.copy()
@@ -90,11 +127,24 @@ class AchievableFeed:
 def achievable_feed(
     motion: Motion, max_speed: ArrayLike, max_acceleration: ArrayLike = np.inf
 ) -> AchievableFeed:
-    """The pace a machine keeps of a motion.
+    """Return the speeds that a machine can keep along a motion.
 
-    max_speed, max_acceleration: (axes,) rad/s and rad/s^2, mm/s and mm/s^2 of axes that slide; infinite where not known.
-    Where accelerations are known the machine comes to rest where a program does: at both ends of every bead and of every
-    rapid. Rows without joint values are left as asked.
+    Where accelerations are known the machine comes to rest where a program does: at both ends of
+    every bead and of every rapid. Rows without joint values keep the requested speed.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, n rows.
+    max_speed : (axes,) array_like
+        Maximum speeds, rad/s, or mm/s of prismatic axes; infinite if unknown.
+    max_acceleration : (axes,) array_like or float, optional
+        Maximum accelerations, rad/s^2 or mm/s^2; infinite if unknown.
+
+    Returns
+    -------
+    AchievableFeed
+        Speeds, times and limiting axes of the segments that end at the rows.
     """
     speed_limits = np.asarray(max_speed, float)
     shares = np.nan_to_num(

@@ -30,8 +30,27 @@ REMEDY = "process.density sets its weight; the payload is in the machine file"
 def issues(
     motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters
 ) -> list[Issue]:
-    """At most one of each machine that carries the part and is overloaded, and one where the part is too far out, where
-    that begins."""
+    """Report when the growing part overloads what carries it.
+
+    The mass of each carrier is checked, and the moment of the part about the last axis.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, with the deposit in its order.
+    cell : Cell
+        The cell; its carriers state the payloads.
+    toolpath : Toolpath
+        Widths, heights and the bodies that the part grows on.
+    process : ProcessParameters
+        The density, g/cm^3, and the usual bead width, mm.
+
+    Returns
+    -------
+    list of Issue
+        Errors PAYLOAD at the row where each overload begins; one of each carrier at most, and one
+        of the distance from the axis.
+    """
     if all(
         np.isinf([carrier.payload.kg, carrier.payload.from_axis]).all() for carrier in cell.carriers
     ):
@@ -67,7 +86,24 @@ def issues(
 
 
 def finished(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters) -> float:
-    """Mass, kg, of the finished part, including the bodies that it grows on if they are closed."""
+    """Return the mass of the finished part, including closed bodies that it grows on.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    cell : Cell
+        Not used.
+    toolpath : Toolpath
+        Widths, heights and the bodies that the part grows on.
+    process : ProcessParameters
+        The density, g/cm^3, and the usual bead width, mm.
+
+    Returns
+    -------
+    float
+        kg.
+    """
     deposited = np.nan_to_num(volumes(motion, process, toolpath)).sum()
     return float(KG * process.density * (deposited + enclosed_volume(toolpath.surroundings)[0]))
 

@@ -47,9 +47,28 @@ def looked_at(
 ) -> RapidsLooked:
     """Check whether the nozzle hits bodies, the platform or printed beads on any rapid.
 
-    Rapids are straight in the joints. At most `max_places` positions are checked, evenly along all
-    rapids. beads: of the motion, in order. width, height: mm, for beads without their own. The way
-    to the first row and unreachable rows are unknown and not checked.
+    Rapids are straight in the joints. The way to the first row and unreachable rows are unknown and
+    not checked.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    beads : sequence of Bead
+        Beads of the motion in order, in the part.
+    cell : Cell
+        Machine, nozzle and platform.
+    bodies : sequence of Body
+        Obstacles in the part.
+    width, height : float
+        Width and height of beads without their own, mm.
+    max_places : int
+        Most positions to check, evenly along all rapids; both ends of each rapid always are.
+
+    Returns
+    -------
+    RapidsLooked
+        Numbers checked, spacing, mm, and rows with contact.
     """
     rows = 1 + np.flatnonzero(~motion.deposit[1:] & motion.reachable[1:] & motion.reachable[:-1])
     start, turned = motion.joints[rows - 1], motion.joints[rows] - motion.joints[rows - 1]

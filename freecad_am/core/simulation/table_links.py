@@ -25,11 +25,23 @@ MIN_HEIGHT_MM = 1e-3  # mm; what ends below its path is drawn as lying on it
 
 
 def heights(deposited: Array, position: Array, layer: Index) -> Array:
-    """Return the height (n,) of the deposit's surface above points (n, 3) of layers (n,), mm.
+    """Return the height of the deposit's surface above points.
 
-    It is the height of the nearest piece in the same layer, NaN in layers without pieces.
-    deposited: (m, 5) positions of pieces, their layers, and the height of the surface above them,
-    mm.
+    It is the height of the nearest piece in the same layer.
+
+    Parameters
+    ----------
+    deposited : (m, 5) array
+        Positions of pieces, mm, their layers, and the height of the surface above them, mm.
+    position : (n, 3) array
+        Points in the frame of the pieces, mm.
+    layer : (n,) array of int
+        Layers of the points.
+
+    Returns
+    -------
+    (n,) array
+        mm, at least MIN_HEIGHT_MM; NaN in layers without pieces.
     """
     surface_heights = np.full(len(position), np.nan)
     piece_layers = deposited[:, 3].astype(np.intp)
@@ -82,9 +94,21 @@ def standing_link(chain: Chain) -> int:
 
 
 def solids(chain: Chain, radius: float = RADIUS, torch: float = 60.0) -> list[list[Solid]]:
-    """Return the solids of each link (axes + 1), the torch's first, in the frame of the link.
+    """Return the solids of each link, the torch's first.
 
-    radius: of the table, mm. torch: mm from the tip of the nozzle to the head.
+    Parameters
+    ----------
+    chain : Chain
+        A chain with linear axes: head axes, linear axes, table axes.
+    radius : float, optional
+        Radius of the table, mm.
+    torch : float, optional
+        Distance from the tip of the nozzle to the head, mm.
+
+    Returns
+    -------
+    list of list of Solid
+        Solids of the axes + 1 links, mm, in the frame of each link.
     """
     solids_of_links: list[list[Solid]] = [[] for _ in range(chain.axes + 1)]
     first_slide, stands = int(np.flatnonzero(chain.sliding)[0]), standing_link(chain)
@@ -251,11 +275,20 @@ def placing(cell: Cell, joints: ArrayLike) -> Placing:
 
 
 def at_rest(cell: Cell, point: ArrayLike) -> Array:
-    """Return the joints (axes,) with which the nozzle is upright, by the platform, on a point (3,)
-    of the part.
+    """Return joints with which the nozzle is upright, by the platform, on a point of the part.
 
-    A robot takes the rotation and branch with the largest margin to its limits; all axes are 0 if
-    the point is out of reach. Rotary axes of a five-axis machine are at 0.
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    point : (3,) array_like
+        The point in the part, mm.
+
+    Returns
+    -------
+    (axes,) array
+        rad or mm. A robot takes the rotation and branch with the largest margin to its limits, or 0
+        if the point is out of reach. Rotary axes of a five-axis machine are at 0.
     """
     target, chain = np.asarray(point, float), cell.machine.chain
     if not cell.machine.free:

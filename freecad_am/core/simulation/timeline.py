@@ -22,12 +22,26 @@ from ..types import Array, ArrayLike, Integers, Mask
 
 
 def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> Array:
-    """Return the deposit volume (n,) of the segment that ends at each row, mm^3, 0 in rapids.
+    """Return the deposit volume of the segment that ends at each row.
 
     A bead's section is its width times the layer height: the solid deposit, not the volume of the
     wire. The width is the predicted one, or else the bead width of the toolpath. Layers fitted to a
     scan have their mean fitted height. Toolpaths of older documents have no bead width;
     `process.bead_width` replaces it.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, n rows.
+    process : ProcessParameters
+        The usual bead width, mm.
+    toolpath : Toolpath
+        Bead width and heights of the layers, mm.
+
+    Returns
+    -------
+    (n,) array
+        mm^3; 0 in rapids.
     """
     length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[
         : len(motion)
@@ -65,8 +79,21 @@ def _mean_heights(toolpath: Toolpath) -> Array:
 
 
 def fed_volume(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> float | None:
-    """mm^3 of wire fed while depositing, without lead times; None if the wire speed is not known or
-    there is no wire.
+    """Return the volume of wire fed while depositing, without lead times.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, with the wire speed of its rows if they have one.
+    process : ProcessParameters
+        The section of the wire.
+    toolpath : Toolpath
+        The usual wire speed, mm/s.
+
+    Returns
+    -------
+    float or None
+        mm^3; None if the wire speed is unknown or the process has no wire.
     """
     nominal = toolpath.wire_feed or np.nan
     feed = np.where(np.isfinite(motion.wire), motion.wire, nominal)
@@ -155,7 +182,13 @@ class Timeline:
 
     @property
     def waits(self) -> Array:
-        """(n,) s of waiting at each row."""
+        """Return the time of waiting at each row.
+
+        Returns
+        -------
+        (n,) array
+            s, with the deposit on and off.
+        """
         return np.asarray(self.leave - self.arrive)
 
     def state_at(self, time: ArrayLike) -> State:
@@ -192,12 +225,25 @@ class Timeline:
 
 
 def timeline(motion: Motion, process: ProcessParameters, waits: Sequence[float] = ()) -> Timeline:
-    """The times of a motion, run as a program does: with lead times at the ends of beads and waits
-    between layers.
+    """Return the times of a motion, with lead times at the ends of beads and waits between layers.
 
-    waits: s of waiting before each layer, by its number, none if left out; `between_layers.wait`
-    counts towards them. The time to the first row is not included: the start position of the machine
-    is unknown. Waits for inputs have no length.
+    The time to the first row is not included: the start position of the machine is unknown. Waits
+    for inputs have no length.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, n rows.
+    process : ProcessParameters
+        Lead times of bead classes and `between_layers.wait`, s.
+    waits : sequence of float, optional
+        Waiting before each layer by its number, s; the larger of it and `between_layers.wait`
+        counts.
+
+    Returns
+    -------
+    Timeline
+        When each row is reached and left, s from the first row.
     """
     n = len(motion)
     lit, dark = np.zeros(n), np.zeros(n)
@@ -302,7 +348,24 @@ class Totals:
 def totals(
     motion: Motion, times: Timeline, process: ProcessParameters, toolpath: Toolpath
 ) -> Totals:
-    """The totals of a motion: the volume by `deposit.volumes`, the mass by `process.density`."""
+    """Return the totals of a motion.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion.
+    times : Timeline
+        Its times.
+    process : ProcessParameters
+        Density, g/cm^3, wire and bead width.
+    toolpath : Toolpath
+        Widths and heights of beads, as for `volumes`.
+
+    Returns
+    -------
+    Totals
+        Times, lengths, volume, mass and wire.
+    """
     length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[
         : len(motion)
     ]

@@ -43,8 +43,21 @@ class ArmTouches:
 
 
 def deposit_obstacles(motion: Motion, width: float, height: float) -> Obstacles | None:
-    """Return the deposit of a motion as an obstacle for arms; width of beads where the motion does not
-    state it, and height, mm.
+    """Return the deposit of a motion as an obstacle for arms.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, positions in the part.
+    width : float
+        Width of beads where the motion does not state it, mm.
+    height : float
+        Height of beads, mm.
+
+    Returns
+    -------
+    Obstacles or None
+        The deposit in the part; None without any.
     """
     deposit_rows = motion.deposit
     if not deposit_rows.any():
@@ -61,8 +74,21 @@ def deposit_obstacles(motion: Motion, width: float, height: float) -> Obstacles 
 
 
 def arm_touches(motion: Motion, arm: ArmContact, max_places: int | None = None) -> ArmTouches:
-    """Return the contacts of the arm along the motion, checked at `max_places` positions at most. Rows
-    without joint values have none.
+    """Return the contacts of the arm along a motion.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, n rows; rows without joint values have no contacts.
+    arm : ArmContact
+        Links, bodies and deposit to check.
+    max_places : int, optional
+        Number of positions to check; by default MAX_LOOKS.
+
+    Returns
+    -------
+    ArmTouches
+        Link and body in contact at each row or on the segment that ends there.
     """
     n = len(motion)
     link, what = np.full(n, NONE, dtype=np.int64), np.full(n, NONE, dtype=np.int64)
@@ -94,10 +120,27 @@ def places(
 ) -> tuple[Array, Index, float]:
     """Sample a motion between its rows.
 
-    Returns joints (k, axes) along the motion (n, axes), the rows (k,) of their segments, rising, and
-    the step, rad. Samples are at even steps of the joint that moves most, SLIDE of the `sliding`
+    Samples are at even steps of the joint that moves most, SLIDE of the `sliding`
     axes counting as STEP, and at both ends of every run of rows with joint values, even of a single
     row; the unknown moves between two runs have none.
+
+    Parameters
+    ----------
+    joints : (n, axes) array
+        Joint values of the rows, rad or mm; NaN if unreachable.
+    max_places : int, optional
+        Number of steps; by default MAX_LOOKS.
+    sliding : (axes,) array of bool, optional
+        Axes in mm that count by SLIDE.
+
+    Returns
+    -------
+    joints : (k, axes) array
+        Joint values of the samples, rad or mm.
+    rows : (k,) array of int
+        Rows at which their segments end, rising.
+    step : float
+        Step between samples, rad, at least STEP.
     """
     n = len(joints)
     reachable: Mask = np.asarray(np.isfinite(joints).all(axis=1))
@@ -192,7 +235,20 @@ class Watch:
 
 
 def shown_margins(cell: Cell, joints: ArrayLike) -> Array:
-    """(..., limits) distances of joints (..., axes) to every limit in the units they are shown in: degrees, or mm."""
+    """Return the distances of joints to every limit in the units they are shown in.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell; its limits include those of coupled axes.
+    joints : (..., axes) array_like
+        Joint values, rad or mm.
+
+    Returns
+    -------
+    (..., limits) array
+        Degrees, or mm of prismatic axes; negative past a limit.
+    """
     units = cell.machine.unit_values
     coupled = np.full(len(cell.limits.labels) - len(units), np.radians(1.0))
     margins: Array = cell.limits.margin(joints) / np.concatenate([units, coupled])
@@ -207,11 +263,31 @@ def bad_links(
     reachable: bool,
     touching: int = NONE,
 ) -> Mask:
-    """(axes + 1,) links to mark, base first: those whose axis is at, past or near a limit, or asked to
-    exceed its maximum speed; the links of a coupled limit; the link that is `touching` something; all
-    moving links if the machine is near a singularity or does not reach.
+    """Return the links to mark.
 
-    margins: (limits,) as by `shown_margins`. ratios: (axes,) requested shares of the maximum speeds.
+    A link is marked if its axis is at, past or near a limit, or asked to exceed its maximum speed,
+    if a coupled limit of it is near, or if it touches something. All moving links are if the
+    machine is near a singularity or does not reach.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    margins : (limits,) array_like
+        Distances to limits, degrees or mm, as by `shown_margins`.
+    ratios : (axes,) array_like
+        Requested shares of the maximum speeds.
+    singular : bool
+        Whether the machine is near a singularity.
+    reachable : bool
+        Whether it reaches the point.
+    touching : int, optional
+        The link in contact, see `ArmTouches`.
+
+    Returns
+    -------
+    (axes + 1,) array of bool
+        Marks of the links, base first.
     """
     axes = len(cell.machine.axes)
     bad = np.zeros(axes + 1, dtype=bool)
@@ -241,8 +317,27 @@ def watch(
     issues: Sequence[Issue] = (),
     arm: ArmTouches | None = None,
 ) -> Watch:
-    """The findings of a motion; condition, threshold: (n,), NaN where not known. Notes are not findings.
-    arm: the contacts of the links, None if they were not checked.
+    """Return the points of interest of a motion.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, n rows.
+    cell : Cell
+        Limits and axes.
+    feed : AchievableFeed
+        The speeds that the machine can keep.
+    condition, threshold : (n,) array
+        Inverse condition number and the least one allowed; NaN if unknown.
+    issues : sequence of Issue, optional
+        Issues to list; notes and issues without a layer are not findings.
+    arm : ArmTouches, optional
+        Contacts of the links; None if they were not checked.
+
+    Returns
+    -------
+    Watch
+        Margins of the rows, and findings in their order.
     """
     margins = shown_margins(cell, motion.joints)
     limit = np.argmin(np.where(np.isnan(margins), np.inf, margins), axis=1)

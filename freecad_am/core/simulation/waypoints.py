@@ -23,9 +23,27 @@ _CLASS_NAMES = np.array([*CLASSES, ""])  # the last one for -1, an unknown class
 def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()) -> Iterator[str]:
     """Yield the file in pieces.
 
-    `axes` names the columns of `motion.joints`, `units` their units in the file: 'mm' for prismatic
-    axes, 'deg' for revolute ones and if left out. If the wire follows the travel speed, its speed is
-    the next column. The last column is the class of the bead, empty if not known.
+    If the wire follows the travel speed, its speed is the column after the axes. The last column is
+    the class of the bead, empty if unknown.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, positions in the part.
+    axes : tuple of str, optional
+        Names of the columns of `motion.joints`; none if empty.
+    units : tuple of str, optional
+        Their units in the file: 'mm' for prismatic axes, 'deg' for revolute ones; 'deg' by default.
+
+    Yields
+    ------
+    str
+        Whole lines; the first piece is the header.
+
+    Raises
+    ------
+    ValueError
+        If axes and units differ in number.
     """
     units = units or ("deg",) * len(axes)
     wire = has_wire(motion)
