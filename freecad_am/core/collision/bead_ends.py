@@ -186,11 +186,22 @@ class BeadEnds:
         return build(_Asked(beads, size))
 
     def nozzle(self, tip: Array, deposited: Index) -> Nozzle:
-        """Return the nozzle with tips (k, 3) when `deposited` points (k,) are printed: it leaves the last
-        printed point and approaches the next one.
+        """Return the nozzle on rapids, which leaves the last printed point and approaches the next.
 
-                Against deposit the part that stays in it is exempt there; against bodies the part below the
-                height at which the nozzle's side is one tip diameter from the point.
+        Against deposit the part that stays in it is exempt there; against bodies the part below the
+        height at which the nozzle's side is one tip diameter from the point.
+
+        Parameters
+        ----------
+        tip : (k, 3) array
+            Tips of the nozzle in the part, mm.
+        deposited : (k,) array of int
+            How many points are printed at each.
+
+        Returns
+        -------
+        Nozzle
+            The nozzle of each row, against bodies and against deposit.
         """
         radius, slope, _ = self._size
         about = side_height(radius, slope) + ABOVE_FACES

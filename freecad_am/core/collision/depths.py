@@ -108,8 +108,21 @@ def measured(
 
 
 def grain(corners: Array, smallest: float) -> float:
-    """Return the longest side, mm, at least `smallest`, that divides triangles (m, 3, 3) into at most
-    about MOST parts more: a face may be a million times as large as the wall to measure.
+    """Return the longest side that divides triangles into about MAX_PARTS more parts at most.
+
+    A face may be a million times as large as the wall to measure.
+
+    Parameters
+    ----------
+    corners : (m, 3, 3) array
+        Corners of the triangles, mm.
+    smallest : float
+        Least side to return, mm.
+
+    Returns
+    -------
+    float
+        mm.
     """
     sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2).max(axis=1, initial=0.0)
     across = np.linalg.norm(doubled_areas(corners), axis=1)

@@ -50,7 +50,18 @@ class Frustum:
         return float(np.hypot(self.high, self.radius + self.slope * self.high))
 
     def rows(self, index: Index) -> Frustum:
-        """The solids of some of the rows."""
+        """Return the solids of some of the rows.
+
+        Parameters
+        ----------
+        index : (r,) array of int
+            Rows.
+
+        Returns
+        -------
+        Frustum
+            The same solid if `low` is one value.
+        """
         if not isinstance(self.low, np.ndarray):
             return self
         return Frustum(self.radius, self.slope, self.low[index], self.high)
@@ -210,7 +221,20 @@ class Frustum:
         return cut
 
     def holds(self, offset: Array, axis: Array) -> Mask:
-        """Whether points are inside."""
+        """Return whether points are inside.
+
+        Parameters
+        ----------
+        offset : (k, 3) array
+            Points from the tip, mm.
+        axis : (k, 3) array
+            Unit tool axes, in the frame of the offsets.
+
+        Returns
+        -------
+        (k,) array of bool
+            False within ROUNDING of the surface.
+        """
         x = dots(offset, axis)
         margin = self.radius + self.slope * x - ROUNDING
         square = dots(offset, offset) - x * x
@@ -269,7 +293,20 @@ class Frustum:
         return meets
 
     def meets_triangles(self, corners: Array, axis: Array) -> Mask:
-        """Whether triangles, corners (k, 3, 3), reach into the solid."""
+        """Return whether triangles reach into the solid.
+
+        Parameters
+        ----------
+        corners : (k, 3, 3) array
+            Corners of the triangles from the tip, mm.
+        axis : (k, 3) array
+            Unit tool axes, in the frame of the corners.
+
+        Returns
+        -------
+        (k,) array of bool
+            Row by row.
+        """
         a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
         meets = self.meets_segments(a, b, axis)
         for start, end in ((b, c), (c, a)):
@@ -337,14 +374,38 @@ class Lines(NamedTuple):
     foot: Array
 
     def merge(self, starts: Index) -> Lines:
-        """Merge the nodes from each start to the next."""
+        """Merge nodes.
+
+        Parameters
+        ----------
+        starts : (r,) array of int
+            First node of each group, rising; a group ends before the next one.
+
+        Returns
+        -------
+        Lines
+            Bounds of the groups.
+        """
         low = np.minimum.reduceat(self.low, starts, axis=1)
         high = np.maximum.reduceat(self.high, starts, axis=1)
         return Lines(low, high, np.minimum.reduceat(self.foot, starts))
 
 
 def build_lines(line: Array, foot: Array) -> Lines:
-    """Lines (m, 2, 3) that count as such within `foot` (m,) mm of the tip, each for itself."""
+    """Return the bounds of lines, a node for each.
+
+    Parameters
+    ----------
+    line : (m, 2, 3) array
+        Ends of the lines, mm.
+    foot : (m,) array
+        Distance from the tip within which each counts as a line, mm.
+
+    Returns
+    -------
+    Lines
+        m nodes.
+    """
     begin, end = columns(line[:, 0]), columns(line[:, 1])
     return Lines(np.minimum(begin, end), np.maximum(begin, end), foot)
 

@@ -44,7 +44,18 @@ class Inside:
         return np.ascontiguousarray(low.T), np.ascontiguousarray(high.T)
 
     def holds(self, points: Array) -> Mask:
-        """Whether points (n, 3) are inside; on the surface itself it may be either."""
+        """Return whether points are inside.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points in the frame of the body, mm.
+
+        Returns
+        -------
+        (n,) array of bool
+            Either value on the surface.
+        """
         inside = np.zeros(len(points), dtype=bool)
         candidates = np.flatnonzero(self.may_hold(points))
         for rows in np.split(candidates, np.arange(QUERIES, len(candidates), QUERIES)):
@@ -52,7 +63,20 @@ class Inside:
         return inside
 
     def may_hold(self, points: Array) -> Mask:
-        """Whether points (n, 3) are in the box about it; axis by axis, in a fraction of the time of a reduction."""
+        """Return whether points are in the box about the body.
+
+        It is computed axis by axis, in a fraction of the time of a reduction.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points in the frame of the body, mm.
+
+        Returns
+        -------
+        (n,) array of bool
+            False on the faces of the box.
+        """
         in_box: Mask = np.ones(len(points), dtype=bool)
         for coordinate, low, high in zip(points.T, self.low, self.high):
             in_box &= (coordinate > low) & (coordinate < high)

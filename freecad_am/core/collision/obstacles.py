@@ -150,8 +150,19 @@ class Obstacles:
         self._lay(corners)
 
     def replace_corners(self, corners: Array) -> Obstacles:
-        """Return a copy with other corners (m, c, 3) close to the present ones: sorting takes most of the
-        time, and the order stays.
+        """Return a copy with other corners, close to the present ones.
+
+        The order stays, for sorting takes most of the time.
+
+        Parameters
+        ----------
+        corners : (m, c, 3) array
+            Points of the bodies, mm.
+
+        Returns
+        -------
+        Obstacles
+            The copy.
         """
         copied = copy.copy(self)
         for name in ("_rows", "_radii", "_slabs"):

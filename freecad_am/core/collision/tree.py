@@ -17,10 +17,20 @@ PAIRS = 50_000  # pairs of queries and nodes in one block: memory does not grow 
 
 
 def packed(points: Array) -> Index:
-    """Return an order of points (n, 3) in which every node of the tree holds neighbours.
+    """Return an order of points in which every node of the tree holds neighbours.
 
     Halves along the longest side of their box, repeatedly, cut between whole nodes; the lowest
     groups, whose nodes hold single points, are sorted into slices across the longest side.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        The points, mm.
+
+    Returns
+    -------
+    (n,) array of int
+        Numbers of the points in that order.
     """
     order = np.arange(len(points))
     if not len(points):
@@ -56,8 +66,19 @@ def packed(points: Array) -> Index:
 
 
 def chained(points: Array) -> Index:
-    """Return such an order of points (n, 3) whose successive points are close to each other: BRANCH
-    points in a row stay one node, which takes a fraction of the time.
+    """Return an order as `packed` for points whose successors are close.
+
+    BRANCH points in a row stay one node, which takes a fraction of the time.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        The points, mm.
+
+    Returns
+    -------
+    (n,) array of int
+        Numbers of the points in that order.
     """
     node_count = len(points) // BRANCH
     middle = (

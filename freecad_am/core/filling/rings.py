@@ -149,7 +149,20 @@ def side_by_side(rings: Sequence[Ring], reach: float) -> list[AdjacentRings]:
 
 
 def crossed(line: Array, polyline: Array) -> bool:
-    """Whether a straight line (2, 2) crosses a polyline (n, 2)."""
+    """Return whether a straight line crosses a polyline.
+
+    Parameters
+    ----------
+    line : (2, 2) array
+        Ends of the line, mm.
+    polyline : (n, 2) array
+        An open polyline, mm.
+
+    Returns
+    -------
+    bool
+        True if an edge crosses the line, its ends included.
+    """
     direction = line[1] - line[0]
     side = direction[0] * (polyline[:, 1] - line[0, 1]) - direction[1] * (
         polyline[:, 0] - line[0, 0]

@@ -92,7 +92,20 @@ class Round:
 
     @classmethod
     def sphere(cls, radius: float, centre: Array) -> Round:
-        """The ball of the radius (mm)."""
+        """Return a ball.
+
+        Parameters
+        ----------
+        radius : float
+            mm.
+        centre : (3,) array
+            mm.
+
+        Returns
+        -------
+        Round
+            The ball, in the frame of the centre.
+        """
         return cls(np.asarray(centre, float), np.array([0.0, 0.0, 1.0]), radius, 0.0, 1.0)
 
     def value(self, points: Array) -> tuple[Array, Array]:

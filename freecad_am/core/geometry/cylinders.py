@@ -44,8 +44,19 @@ class Cylinder:
 
 
 def enclosing_cylinder(points: Array) -> Cylinder:
-    """Return the cylinder about points (n, 3) with the least volume, with its axis along one of
-    their three main directions.
+    """Return the cylinder about points with the least volume among three.
+
+    Their axes are the main directions of the points.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        mm.
+
+    Returns
+    -------
+    Cylinder
+        In the frame of the points.
     """
     middle = points.mean(axis=0)
     offset = points - middle
@@ -66,9 +77,21 @@ def enclosing_cylinder(points: Array) -> Cylinder:
 
 
 def enclosing_row(points: Array, triangles: Integers) -> list[Cylinder]:
-    """Return cylinders in a row that together hold a shape of triangles (m, 3) of points (n, 3).
+    """Return cylinders in a row that together hold a shape of triangles.
 
     The shape is cut along its longest direction, and each piece has its cylinder.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        mm.
+    triangles : (m, 3) array of int
+        Numbers of the corners.
+
+    Returns
+    -------
+    list of Cylinder
+        In the frame of the points; a single one if a row has no less volume.
     """
     used = points[np.unique(triangles)]
     whole_cylinder = enclosing_cylinder(used)
@@ -101,8 +124,19 @@ def enclosing_row(points: Array, triangles: Integers) -> list[Cylinder]:
 
 
 def drop_redundant(cylinders: Sequence[Cylinder], points: Sequence[Array]) -> list[Cylinder]:
-    """Return the cylinders about points (each (n, 3)) without those whose points are all in
-    another remaining cylinder.
+    """Drop cylinders whose points are all in another remaining cylinder.
+
+    Parameters
+    ----------
+    cylinders : sequence of Cylinder
+        The cylinders.
+    points : sequence of (n, 3) array
+        Points that each is about, mm.
+
+    Returns
+    -------
+    list of Cylinder
+        In their order.
     """
     order = sorted(
         range(len(cylinders)), key=lambda k: cylinders[k].length * cylinders[k].radius ** 2

@@ -81,7 +81,18 @@ class Base:
         return in_part
 
     def where(self, point: Array) -> str:
-        """A point (3,) of the base's frame in the part, as text."""
+        """Return a point of the base's frame as text.
+
+        Parameters
+        ----------
+        point : (3,) array
+            The point in the frame of the base, mm.
+
+        Returns
+        -------
+        str
+            Its coordinates in the part.
+        """
         return place(self.to_part(point[None])[0])
 
 
@@ -206,8 +217,19 @@ class SolidsOnHub:
 
 
 def middle_azimuth(base: Base, points: Array) -> float:
-    """Return the azimuth (rad, from 0 to a turn) of the middle of the sector of points (n, 3) of
-    the part, opposite their widest gap.
+    """Return the azimuth of the middle of the sector of points, opposite their widest gap.
+
+    Parameters
+    ----------
+    base : Base
+        The base whose axis counts.
+    points : (n, 3) array
+        Points of the part, mm.
+
+    Returns
+    -------
+    float
+        rad about the axis, from 0 to a turn.
     """
     local = base.inside(points)
     start, span = sector(np.arctan2(local[:, 1], local[:, 0]))
@@ -238,7 +260,18 @@ def sector(azimuths: Array) -> tuple[float, float]:
 
 
 def downwards(z: Array) -> bool:
-    """Whether an axis (3,) points against the part's Z, or against its X or Y where it has no part along Z."""
+    """Return whether an axis points against the part's Z.
+
+    Parameters
+    ----------
+    z : (3,) array
+        Unit vector in the part; without a component along Z, its X or else Y counts.
+
+    Returns
+    -------
+    bool
+        True if that component is negative.
+    """
     for component in (2, 0, 1):
         if abs(z[component]) > 1e-9:
             return bool(z[component] < 0.0)

@@ -15,9 +15,19 @@ TIE_TOLERANCE, TIE_SHARE = 1e-9, 1e-14
 
 
 def is_tied(values: ArrayLike, best: ArrayLike) -> Mask:
-    """Return whether values are no greater than the best plus the tolerance.
+    """Return whether values tie with the best, or are less.
 
-    False for NaN; all True where the best is infinite.
+    Parameters
+    ----------
+    values : array_like
+        Values.
+    best : array_like
+        Least values, of a shape that broadcasts.
+
+    Returns
+    -------
+    array of bool
+        True up to the best plus the tolerance; False for NaN, all True where the best is infinite.
     """
     limit = np.asarray(best) + TIE_TOLERANCE + TIE_SHARE * np.abs(best)
     good: Mask = np.asarray(values) <= limit
@@ -25,8 +35,19 @@ def is_tied(values: ArrayLike, best: ArrayLike) -> Mask:
 
 
 def index_of_minimum(values: Array, axis: int = -1) -> Index:
-    """Return the index along the axis of the first value that ties with the smallest; NaN counts
-    as largest.
+    """Return the index of the first value that ties with the smallest.
+
+    Parameters
+    ----------
+    values : array
+        Values; NaN counts as largest.
+    axis : int, optional
+        The axis to search along.
+
+    Returns
+    -------
+    array of int
+        Of the shape of the values without that axis.
     """
     comparable = np.where(np.isnan(values), np.inf, values)
     with np.errstate(invalid="ignore"):
@@ -37,5 +58,18 @@ def index_of_minimum(values: Array, axis: int = -1) -> Index:
 
 
 def first_most(values: Array, axis: int = -1) -> Index:
-    """Index along the axis of the first of the values that are as large as the largest, NaN being smaller than any."""
+    """Return the index of the first value that ties with the largest.
+
+    Parameters
+    ----------
+    values : array
+        Values; NaN counts as smallest.
+    axis : int, optional
+        The axis to search along.
+
+    Returns
+    -------
+    array of int
+        Of the shape of the values without that axis.
+    """
     return index_of_minimum(-values, axis)

@@ -46,7 +46,20 @@ def bands(tolerance: float) -> tuple[Band, ...]:
 
 
 def band_of(deviation: Array, tolerance: float) -> Integers:
-    """The number in `bands` (n,) of deviations (n,)."""
+    """Return the bands of deviations.
+
+    Parameters
+    ----------
+    deviation : (n,) array
+        mm.
+    tolerance : float
+        mm.
+
+    Returns
+    -------
+    (n,) array of int
+        Numbers in `bands`.
+    """
     step = np.clip(np.ceil(np.abs(deviation) / tolerance - 1e-12) - 1.0, 0.0, STEPS)
     band: Integers = (STEPS + np.sign(deviation) * step).astype(np.int64)
     return band
@@ -80,5 +93,16 @@ def colours(deviation: Array, within: Mask, tolerance: float) -> Array:
 
 
 def step_of(deviation: Array) -> float:
-    """Width of the bands, mm, without a tolerance: a round figure, so that STEPS bands cover most of the deviations (n,)."""
+    """Return the width of the bands without a tolerance, so that STEPS bands hold most deviations.
+
+    Parameters
+    ----------
+    deviation : (n,) array
+        mm.
+
+    Returns
+    -------
+    float
+        mm, a round figure.
+    """
     return round_step(max(float(np.quantile(np.abs(deviation), IN_BANDS)), 1e-3) / STEPS, NICE)

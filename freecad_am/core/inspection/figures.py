@@ -42,8 +42,24 @@ class Round:
 
 
 def least_squares_round(points: Array, where: str) -> Round:
-    """The circle or sphere with the least sum of squared distances from points (n, d), d 2 or 3; InputError, naming `where`, if none
-    exists.
+    """Fit the circle or sphere with the least sum of squared distances.
+
+    Parameters
+    ----------
+    points : (n, d) array
+        Points, mm; d is 2 for a circle and 3 for a sphere.
+    where : str
+        Name for messages.
+
+    Returns
+    -------
+    Round
+        In the frame of the points.
+
+    Raises
+    ------
+    InputError
+        TOO_FEW_POINTS or FLAT_POINTS if none exists.
     """
     start, scale = _algebraic(points, where)
 
@@ -61,11 +77,28 @@ def least_squares_round(points: Array, where: str) -> Round:
 
 
 def narrowest(points: Array, where: str) -> Round:
-    """The centre about which the zone of points (n, d) is narrowest; the radius is the middle of the zone.
+    """Find the centre about which the zone of points is narrowest.
 
-    Found from the least-squares centre by linear programs for the change of the centre, each within a box about the last
-    centre that shrinks when the zone does not (Chebyshev approximation by trust region); the narrowest zone near it, which
-    is the global one for points all round.
+    Found from the least-squares centre by linear programs for the change of the centre, each within
+    a box about the last centre that shrinks when the zone does not (Chebyshev approximation by
+    trust region); the narrowest zone near it, which is the global one for points all round.
+
+    Parameters
+    ----------
+    points : (n, d) array
+        Points, mm; d is 2 or 3.
+    where : str
+        Name for messages.
+
+    Returns
+    -------
+    Round
+        Its radius is the middle of the zone.
+
+    Raises
+    ------
+    InputError
+        TOO_FEW_POINTS or FLAT_POINTS if no circle or sphere exists.
     """
     best = least_squares_round(points, where)
     reach = max(best.zone, STILL * best.radius)
@@ -202,7 +235,20 @@ class Thickness:
 
 
 def summarise(deviation: Array, tolerance: float) -> Spread:
-    """The figures of deviations (n,), n >= 1."""
+    """Return the figures of deviations.
+
+    Parameters
+    ----------
+    deviation : (n,) array
+        mm, n >= 1.
+    tolerance : float
+        mm.
+
+    Returns
+    -------
+    Spread
+        Figures and histogram.
+    """
     low, high = float(deviation.min()), float(deviation.max())
     step = _nice(
         max(high - low, 1e-9, 1e-12 * max(-low, high)) / BARS
@@ -384,8 +430,27 @@ def thickness(
 
 
 def zone_of(points: Array, where: str) -> Round:
-    """The narrowest zone of points (n, d) as in `narrowest`; for many points it is computed on a subset that grows until
-    its zone holds every point, which makes it the narrowest zone of the whole.
+    """Find the narrowest zone of points as `narrowest`, on a subset of many.
+
+    The subset grows until its zone holds every point, which makes it the narrowest zone of the
+    whole.
+
+    Parameters
+    ----------
+    points : (n, d) array
+        Points, mm; d is 2 or 3.
+    where : str
+        Name for messages.
+
+    Returns
+    -------
+    Round
+        Its inner and outer radii are over all points.
+
+    Raises
+    ------
+    InputError
+        TOO_FEW_POINTS or FLAT_POINTS if no circle or sphere exists.
     """
     if len(points) <= 4 * ZONE_SIZE:
         return narrowest(points, where)

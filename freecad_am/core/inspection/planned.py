@@ -46,7 +46,18 @@ class Planned:
     free: float = 1e-5
 
     def within_edges(self, points: Array) -> Mask:
-        """Which of points (n, 3) are not past its edges."""
+        """Return which points are not past the edges.
+
+        Parameters
+        ----------
+        points : (n, 3) array
+            Points in the part, mm.
+
+        Returns
+        -------
+        (n,) array of bool
+            True up to PAST mm past an edge.
+        """
         return np.asarray(self.past(points) <= PAST)
 
 
@@ -446,7 +457,20 @@ def _turn(rotation: Array) -> float:
 
 
 def as_pairs(motion: Array, size: float) -> str:
-    """A motion (4, 4) as the pairs of points that start an inspection, about `size` mm apart."""
+    """Return a motion as the pairs of points that start an inspection.
+
+    Parameters
+    ----------
+    motion : (4, 4) array
+        Pose that moves measured points into the part, mm.
+    size : float
+        Distance of the points from the origin, mm.
+
+    Returns
+    -------
+    str
+        Four pairs of a measured point and a point of the part.
+    """
     points = size * np.vstack([np.zeros(3), np.eye(3)])
     moved_points = points @ motion[:3, :3].T + motion[:3, 3]
     return "; ".join(

@@ -90,7 +90,20 @@ class Registration:
 
 
 def refuse_too_few(points: Array, where: str) -> None:
-    """InputError TOO_FEW_POINTS, naming `where`, when points (n, 3) are fewer than hold a part in its place."""
+    """Reject points that are too few to locate a part.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Measured points, mm.
+    where : str
+        Name for messages.
+
+    Raises
+    ------
+    InputError
+        TOO_FEW_POINTS for fewer than LEAST_POINTS.
+    """
     if len(points) < LEAST_POINTS:
         raise InputError(
             "TOO_FEW_POINTS",

@@ -144,7 +144,18 @@ def _distances(points: Array, body: Body) -> Array:
 
 
 def extent(points: Array) -> float:
-    """Diagonal of points (n, 3), mm, without the outermost percent on each side."""
+    """Return the diagonal of points, of many without the outermost percent on each side.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        mm.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     low, high = (
         np.quantile(points, (0.01, 0.99), axis=0)
         if len(points) > 500

@@ -99,8 +99,18 @@ class Chain:
         return flange.reshape(angles.shape[:-1] + (4, 4))
 
     def frames(self, q: ArrayLike) -> JointFrames:
-        """The axes and the flange in base_link for joint values `q` (..., axes), rad and mm; axes in the order of the
-        values."""
+        """Return the axes and the flange in base_link.
+
+        Parameters
+        ----------
+        q : (..., axes) array_like
+            Joint values, rad and mm.
+
+        Returns
+        -------
+        JointFrames
+            Directions and origins of the axes in the order of the values, and the flange, mm.
+        """
         angles = np.asarray(q, float)
         lead = angles.shape[:-1]
         by_joint = self._by_joint(angles)
@@ -321,8 +331,19 @@ class Piece(NamedTuple):
 
 
 def join_chains(sections: Sequence[Piece], end: Array) -> Chain:
-    """Return one chain of consecutive pieces; `end` (4, 4) is its flange as seen from the flange
-    of the last piece.
+    """Join consecutive pieces to one chain.
+
+    Parameters
+    ----------
+    sections : sequence of Piece
+        The pieces, from the base on.
+    end : (4, 4) array
+        The flange of the chain, seen from the flange of the last piece, mm.
+
+    Returns
+    -------
+    Chain
+        The chain, with its values in the order that the pieces state.
     """
     origins: list[Array] = []
     flange = np.eye(4)

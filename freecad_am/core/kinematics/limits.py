@@ -206,13 +206,37 @@ class Limits:
         return smallest
 
     def smallest(self, q: ArrayLike) -> Smallest:
-        """The smallest margin (...) of each joint vector (..., axes) and which limit it is to; NaN where q is."""
+        """Return the smallest margin of joint vectors.
+
+        Parameters
+        ----------
+        q : (..., axes) array_like
+            Joint values, rad or mm.
+
+        Returns
+        -------
+        Smallest
+            The margin (...), rad or mm, NaN where q is, and the number of its limit (...).
+        """
         margins = self.margin(q)
         index = np.argmin(margins, axis=-1)
         return Smallest(np.take_along_axis(margins, index[..., None], axis=-1)[..., 0], index)
 
     def exceeded(self, q: ArrayLike, tolerance: float = 0.0) -> Mask:
-        """Which limits (..., axes + m) the joint vectors (..., axes) exceed by more than `tolerance`, rad."""
+        """Return which limits joint vectors exceed.
+
+        Parameters
+        ----------
+        q : (..., axes) array_like
+            Joint values, rad or mm.
+        tolerance : float, optional
+            Excess that is allowed, rad or mm.
+
+        Returns
+        -------
+        (..., axes + m) array of bool
+            Axes first, then the coupled limits.
+        """
         result: Mask = self.margin(q) < -tolerance
         return result
 

@@ -91,7 +91,18 @@ class Chart:
         return heading
 
     def find(self, points: Array) -> Place:
-        """Return the triangles of points (n, 2), and the positions in them."""
+        """Find the triangles of points of the plane.
+
+        Parameters
+        ----------
+        points : (n, 2) array
+            Points of the plane, mm.
+
+        Returns
+        -------
+        Place
+            The triangle of each point, the nearest one outside the picture, and the position in it.
+        """
         square, is_covered = self._squares.find_square(points)
         count = self._squares.count[square]
         point_number = np.repeat(np.arange(len(points)), count)

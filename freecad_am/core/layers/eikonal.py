@@ -160,8 +160,19 @@ class Links(NamedTuple):
     neighbours: Index
 
     def second_neighbours(self, side: int, nodes: Index) -> Index:
-        """Return the second neighbours (k,) of nodes (k,) on one of the six sides; n where none
-        exists.
+        """Return the second neighbours of nodes on one side.
+
+        Parameters
+        ----------
+        side : int
+            Row of `neighbours`: behind or ahead along x, y or z.
+        nodes : (k,) array of int
+            Numbers of the nodes.
+
+        Returns
+        -------
+        (k,) array of int
+            Numbers of the second neighbours; n where none exists.
         """
         column = np.append(self.neighbours[side], len(self.nodes))
         second: Index = column[column[nodes]]

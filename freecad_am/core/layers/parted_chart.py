@@ -242,8 +242,21 @@ SNAP_SHARE, MIN_OFFSET_SHARE = (
 
 
 def stretch_of(flat: Flattened, weight: Array) -> float:
-    """Return the stretch or squeeze that all triangles keep below, except for IGNORED_SHARE of
-    their weight (m,).
+    """Return the stretch or squeeze that most triangles keep below.
+
+    Triangles with IGNORED_SHARE of the weight may exceed it.
+
+    Parameters
+    ----------
+    flat : Flattened
+        The flattened triangles.
+    weight : (m,) array
+        Weights of the triangles, such as areas.
+
+    Returns
+    -------
+    float
+        Relative change of length; 0 without stretch.
     """
     stretch = np.maximum(flat.max_stretch - 1.0, 1.0 - flat.min_stretch)
     order = np.argsort(stretch, kind="stable")
@@ -405,7 +418,18 @@ def _is_flattenable(mesh: Mesh, max_stretch: float) -> bool:
 
 
 def borders(mesh: Mesh) -> list[Index]:
-    """The vertices (k,) of each loop of the border, the mesh on the left."""
+    """Return the loops of the border of a mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        The mesh.
+
+    Returns
+    -------
+    list of (k,) array of int
+        Vertices of each loop, the mesh on the left.
+    """
     edges = mesh.border_edges
     following = np.full(len(mesh.vertices), -1, dtype=np.intp)
     following[edges[:, 0]] = edges[:, 1]

@@ -78,7 +78,20 @@ class LayerSurface(Protocol):
         """
 
     def for_sheet(self, flat: Array, sheet: float) -> LayerSurface:
-        """Return the surface for a curve (n, 2) about u = `sheet` mm (`strip.Period`)."""
+        """Return the surface for a curve about a sheet.
+
+        Parameters
+        ----------
+        flat : (n, 2) array
+            The curve on the plane, mm.
+        sheet : float
+            u of its middle (`strip.Period`), mm.
+
+        Returns
+        -------
+        LayerSurface
+            The same surface, unless it overlaps itself on the plane.
+        """
 
     def plane_rotation(self, azimuth: float) -> float:
         """Return the rotation, rad, of the plane from its orientation about another azimuth, rad."""
@@ -153,7 +166,18 @@ class Slice(NamedTuple):
         return curves
 
     def where(self, point: Array) -> str:
-        """A point (2,) of the plane in the part, as text."""
+        """Return a point of the plane as text.
+
+        Parameters
+        ----------
+        point : (2,) array
+            The point on the unrolled plane, mm.
+
+        Returns
+        -------
+        str
+            Its coordinates in the part.
+        """
         return self.base.where(self.surface.wrap(point[None]).points[0])
 
 

@@ -61,7 +61,20 @@ class Outline:
 
 
 def outline(points: Array, tangents: Array) -> Outline:
-    """The outline of points (n, 3) with unit tangents (n, 2, 3): arriving and leaving."""
+    """Return the outline of points with tangents.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        mm.
+    tangents : (n, 2, 3) array
+        Unit vectors at each point: arriving and leaving.
+
+    Returns
+    -------
+    Outline
+        The curve of n - 1 segments.
+    """
     return Outline(points, *derivatives(points, tangents[:-1, 1], tangents[1:, 0]))
 
 
@@ -90,12 +103,23 @@ def derivatives(points: Array, leaving: Array, arriving: Array) -> tuple[Array, 
 
 
 def estimate_outline(points: Array, closed: bool) -> Outline:
-    """Estimate the outline from points (n, 3): the tangent at a point is that of the circle
-    through it and its neighbours.
+    """Estimate the outline of points.
 
-    A segment next to a corner is straight, and so is one much longer than its neighbour, as
-    where an arc meets a line: points of a curve are roughly evenly spaced. closed: the last
-    point is the first.
+    A tangent is that of the circle through a point and its neighbours. A segment next to a corner
+    is straight, and so is one much longer than its neighbour, as where an arc meets a line: points
+    of a curve are roughly evenly spaced.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        mm.
+    closed : bool
+        Whether the last point is the first.
+
+    Returns
+    -------
+    Outline
+        The curve of n - 1 segments.
     """
     along = np.diff(points, axis=0)
     length = lengths(along)[:, None]

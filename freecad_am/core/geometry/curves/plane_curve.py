@@ -24,7 +24,18 @@ class Nearest(NamedTuple):
 
 
 def doubled_area(ring: Array) -> float:
-    """Twice the area (mm^2) a ring (n, 2) encloses, positive when it runs counter-clockwise."""
+    """Return twice the area that a ring encloses.
+
+    Parameters
+    ----------
+    ring : (n, 2) array
+        Points, mm, the first not repeated.
+
+    Returns
+    -------
+    float
+        mm^2, positive if the ring runs counter-clockwise.
+    """
     x, y = (
         ring - ring[0]
     ).T.copy()  # the first point is the origin: the edge back to it adds nothing
@@ -32,7 +43,20 @@ def doubled_area(ring: Array) -> float:
 
 
 def length(points: Array, closed: bool) -> float:
-    """mm."""
+    """Return the length of a polyline.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        mm.
+    closed : bool
+        Whether it is closed, without its first point repeated.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     return float(np.hypot(*steps(points, closed).T).sum())
 
 
@@ -90,7 +114,20 @@ def sines(vectors: Array, references: Array) -> Array:
 
 
 def winding(rings: Sequence[Array], points: Array) -> Index:
-    """Return the winding number of rings (n, 2) about each of points (k, 2)."""
+    """Return the winding number of rings about points.
+
+    Parameters
+    ----------
+    rings : sequence of (n, 2) array
+        Rings, mm, their first points not repeated.
+    points : (k, 2) array
+        mm.
+
+    Returns
+    -------
+    (k,) array of int
+        Sum over the rings; a counter-clockwise turn counts 1.
+    """
     count = np.zeros(len(points), dtype=np.intp)
     for ring in rings:
         low, high = ring.min(axis=0), ring.max(axis=0)

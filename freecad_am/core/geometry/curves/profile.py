@@ -99,10 +99,20 @@ class Meridian:
 
     @classmethod
     def chained(cls, segments: Sequence[tuple[Array, Array]]) -> Meridian:
-        """Return the chain of the segments (points (n, 2), unit tangents (n, 2)).
+        """Chain segments to a meridian.
 
         A straight step bridges a gap between two segments and counts in the arc length; a gap of
         at most STEP is skipped.
+
+        Parameters
+        ----------
+        segments : sequence of tuple of (n, 2) array and (n, 2) array
+            Points (radius, height), mm, and unit tangents of each segment.
+
+        Returns
+        -------
+        Meridian
+            The chain; radii below ON_AXIS become 0.
         """
         points: list[Array] = []
         tangents: list[Array] = []

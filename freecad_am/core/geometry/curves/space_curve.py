@@ -104,7 +104,18 @@ class SpaceCurve:
         return SpaceCurve(w, self.points[::-1], -self.out[::-1], -self.into[::-1], self.closed)
 
     def arcs(self, w: Array) -> Index:
-        """Return the arc (n,) that holds each parameter; at a node the arc that leaves it."""
+        """Return the arcs that hold parameters.
+
+        Parameters
+        ----------
+        w : (n,) array
+            Parameters.
+
+        Returns
+        -------
+        (n,) array of int
+            Numbers of the arcs; at a node the arc that leaves it.
+        """
         index = np.searchsorted(self.w, self.wrap(w), side="right") - 1
         arcs: Index = np.clip(index, 0, len(self.span) - 1)
         return arcs

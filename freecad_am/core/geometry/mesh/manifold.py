@@ -55,6 +55,18 @@ def separate_vertices(vertices: Array, triangles: Index) -> Manifold:
 
     That is across edges shared by more than two triangles, or followed by two in the same
     sense.
+
+    Parameters
+    ----------
+    vertices : (n, 3) array
+        mm.
+    triangles : (m, 3) array of int
+        Numbers of their vertices.
+
+    Returns
+    -------
+    Manifold
+        The same triangles with at most two at each edge.
     """
     edges = Edges(triangles)
     mates = _mates(vertices, triangles, edges)

@@ -15,12 +15,23 @@ BLOCK = 2_000_000  # pairs held at a time
 
 
 def near_pairs(middle: Array, reach: Array) -> Iterator[Index]:
-    """Yield all pairs (k, 2), lower number first, of balls that may touch, in blocks of about
-    BLOCK.
+    """Yield all pairs of balls that may touch, in blocks of about BLOCK.
 
-    Balls have middles (n, 3) and radii (n,). Each size class searches among itself and the
+    Each size class searches among itself and the
     smaller classes, so that one long needle does not become a neighbour of all the small
     balls around it.
+
+    Parameters
+    ----------
+    middle : (n, 3) array
+        Middles of the balls, mm.
+    reach : (n,) array
+        Radii, mm.
+
+    Yields
+    ------
+    (k, 2) array of int
+        Pairs, the lower number first.
     """
     sizes = np.floor(np.log(np.maximum(reach, 1e-12)) / np.log(CLASS_RATIO)).astype(np.intp)
     for size in np.unique(sizes)[::-1]:
@@ -42,11 +53,20 @@ def near_pairs(middle: Array, reach: Array) -> Iterator[Index]:
 
 
 def triangulate(corners: Array) -> Index:
-    """Divide a polygon (n, 3), n >= 3, into triangles (n - 2, 3) of corner numbers, in the sense
-    of the polygon.
+    """Divide a polygon into triangles.
 
     Ear clipping in the plane of the mean normal, the least elongated ear first. A polygon
     that crosses itself is divided too.
+
+    Parameters
+    ----------
+    corners : (n, 3) array
+        Corners, mm, n >= 3.
+
+    Returns
+    -------
+    (n - 2, 3) array of int
+        Numbers of the corners of the triangles, in the sense of the polygon.
     """
     next_corner = np.roll(corners, -1, axis=0)
     normal = np.cross(corners, next_corner).sum(axis=0)  # Newell's

@@ -210,8 +210,19 @@ def _first_cut(
 
 
 def count_halved(corners: Array, longest: float) -> float:
-    """Estimate the number of triangles after halving triangles (m, 3, 3) until no edge is longer
-    than `longest` mm.
+    """Estimate the number of triangles after halving until no edge is too long.
+
+    Parameters
+    ----------
+    corners : (m, 3, 3) array
+        Corners of the triangles, mm.
+    longest : float
+        Longest edge allowed, mm.
+
+    Returns
+    -------
+    float
+        The number.
     """
     square = np.sort(((np.roll(corners, -1, axis=1) - corners) ** 2).sum(axis=2), axis=1)
     weight: Array = np.ones(len(square))

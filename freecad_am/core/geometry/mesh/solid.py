@@ -385,7 +385,18 @@ MIN_VOLUME_SHARE = 1e-9  # of the cube of its size; a closed piece of less volum
 
 
 def connected_pieces(corners: Index) -> Index:
-    """Return the connected component (m,) of each triangle."""
+    """Return the connected component of each triangle.
+
+    Parameters
+    ----------
+    corners : (m, 3) array of int
+        Numbers of the vertices of the triangles.
+
+    Returns
+    -------
+    (m,) array of int
+        Numbers of the components, from 0; edges of two triangles connect.
+    """
     edges = Edges(corners)
     a, b = edges.faces[edges.count == 2].T
     links = coo_matrix((np.ones(len(a)), (a, b)), shape=(len(corners), len(corners)))

@@ -218,7 +218,18 @@ class Mesh:
         return (order // 3).astype(np.intp), np.r_[0, np.cumsum(counts)].astype(np.intp)
 
     def faces_at(self, vertices: Index) -> Index:
-        """Return the faces (k,) that touch the vertices."""
+        """Return the faces that touch vertices.
+
+        Parameters
+        ----------
+        vertices : (v,) array of int
+            Numbers of the vertices.
+
+        Returns
+        -------
+        (k,) array of int
+            Numbers of the faces, rising.
+        """
         faces, begin = self._faces_of
         count = begin[vertices + 1] - begin[vertices]
         index = np.repeat(begin[vertices] - np.r_[0, np.cumsum(count)[:-1]], count) + np.arange(
@@ -228,8 +239,19 @@ class Mesh:
         return touched
 
     def connected_members(self, members: Mask, seeds: Mask) -> Mask:
-        """Return the members (n,) that edges link to a seed through members only; seeds count as
-        members.
+        """Return the vertices that edges link to a seed through members only.
+
+        Parameters
+        ----------
+        members : (n,) array of bool
+            Vertices to pass through.
+        seeds : (n,) array of bool
+            Vertices to begin at; they count as members.
+
+        Returns
+        -------
+        (n,) array of bool
+            The linked ones, seeds included.
         """
         inside = members | seeds
         pairs = self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
@@ -274,11 +296,24 @@ class Mesh:
         return Mesh(points[representative], np.ravel(same)[corners].astype(np.intp))
 
     def level_lines(self, values: Array, faces: Index) -> list[LevelLine]:
-        """Return the lines on the faces (k,) along which the values (n,) are zero, interpolated
-        along edges.
+        """Return the lines along which values are zero, interpolated along edges.
 
-        Raises InputError MESH if neighbouring faces have opposite orientations, so that lines
-        have no sides.
+        Parameters
+        ----------
+        values : (n,) array
+            Values of the vertices.
+        faces : (k,) array of int
+            Numbers of the faces to search.
+
+        Returns
+        -------
+        list of LevelLine
+            Chains, the lower side on their left, mm.
+
+        Raises
+        ------
+        InputError
+            MESH if neighbouring faces have opposite orientations, so that lines have no sides.
         """
         corners = self.faces[faces]
         low = values[corners] < 0.0

@@ -135,7 +135,18 @@ class Region:
         return float(np.hypot(*np.ptp(self._borders[0], axis=0)))
 
     def contains(self, points: Array) -> Mask:
-        """Whether points (..., 2) lie inside; on the border either may be said."""
+        """Return whether points are inside.
+
+        Parameters
+        ----------
+        points : (..., 2) array
+            Points of the plane, mm.
+
+        Returns
+        -------
+        (...) array of bool
+            Either value on the border.
+        """
         return np.reshape(
             winding(self._borders, np.reshape(points, (-1, 2))) > 0, np.shape(points)[:-1]
         )
@@ -500,7 +511,20 @@ def simplified(points: Array, tolerance: float, closed: bool = False) -> Array:
 
 
 def select_simplified(points: Array, tolerance: float) -> Index:
-    """Numbers of the points that remain of an open curve (n, 2) in `simplified`."""
+    """Select the points that `simplified` keeps of an open curve.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        The curve, mm.
+    tolerance : float
+        Greatest distance of dropped points from the result, mm.
+
+    Returns
+    -------
+    (m,) array of int
+        Numbers of the points, rising.
+    """
     numbered = np.column_stack([np.round(points, DIGITS), np.arange(len(points))])
     line = shapely().geometry.LineString(numbered).simplify(tolerance, preserve_topology=False)
     return np.array(line.coords, dtype=float)[:, 2].astype(np.intp)

@@ -540,7 +540,17 @@ def assemble_regions(
 def strips(loops: Sequence[tuple[Array, int]], period: Period) -> tuple[Strip | Region, ...]:
     """Return strips and regions of the loops of a layer.
 
-    loops: points (n, 2) unrolled within one turn, and how often each goes around.
+    Parameters
+    ----------
+    loops : sequence of tuple of (n, 2) array and int
+        Points unrolled within one turn, mm, and how often each loop goes around.
+    period : Period
+        Turn and apex of the hub.
+
+    Returns
+    -------
+    tuple of Strip or Region
+        As `assemble_regions`.
     """
     rounds, closed, turn = [], [], period.u_period
     for flat, turns in loops:

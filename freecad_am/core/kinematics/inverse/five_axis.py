@@ -23,8 +23,17 @@ SLIDING, TURNING = 3, 2  # axes
 
 
 def is_five_axis(sliding: Mask) -> bool:
-    """Return whether axes, prismatic where `sliding` (n,) is True, are those of a five-axis
-    machine, in any order.
+    """Return whether axes are those of a five-axis machine, in any order.
+
+    Parameters
+    ----------
+    sliding : (n,) array of bool
+        Which axes are prismatic.
+
+    Returns
+    -------
+    bool
+        True for three prismatic and two revolute axes.
     """
     return (int(sliding.sum()), len(sliding)) == (SLIDING, SLIDING + TURNING)
 

@@ -89,7 +89,23 @@ class ByVertical(NamedTuple):
 
 
 def by_vertical(source: Array, target: Array) -> ByVertical:
-    """Solution 2 of section 3.2, corrected (ERRATA): gamma = atan2(X, Y), alpha = acos(Z), and the same way back."""
+    """Turn a direction to another by way of the vertical.
+
+    Solution 2 of section 3.2 of Dai 2020, corrected (ERRATA): gamma = atan2(X, Y), alpha = acos(Z),
+    and the same way back.
+
+    Parameters
+    ----------
+    source : (n, 3) array
+        Unit vectors to turn.
+    target : (n, 3) or (3,) array
+        Unit vectors to turn them to.
+
+    Returns
+    -------
+    ByVertical
+        Angles to the vertical and on to the target, rad.
+    """
     target = np.broadcast_to(target, source.shape)
     gamma, back = (np.arctan2(v[0], v[1]) for v in (columns(source), columns(target)))
     up, down = (np.arctan2(np.hypot(v[0], v[1]), v[2]) for v in (columns(source), columns(target)))

@@ -87,7 +87,18 @@ class SerialArm(Protocol):
         """
 
     def branch_of(self, q: ArrayLike) -> Index:
-        """The configuration (...) of joint angles `q` (..., 6)."""
+        """Return the configuration of joint angles.
+
+        Parameters
+        ----------
+        q : (..., 6) array_like
+            Joint angles, rad.
+
+        Returns
+        -------
+        (...) array of int
+            Numbers of the configurations, 0 to 7.
+        """
 
     def bend(self, q: ArrayLike) -> Array:
         """Return how far the arm is from a stretched elbow or wrist.

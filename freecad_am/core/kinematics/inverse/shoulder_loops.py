@@ -395,7 +395,18 @@ class Loops(NamedTuple):
     swing: Array
 
     def select(self, rows: Index) -> Loops:
-        """Return selected loops."""
+        """Return selected loops.
+
+        Parameters
+        ----------
+        rows : (r,) array of int
+            Numbers of the loops.
+
+        Returns
+        -------
+        Loops
+            Their rows.
+        """
         columns: tuple[Any, ...] = self
         return Loops(*(column[rows] for column in columns))
 

@@ -124,8 +124,17 @@ def _grid(degree: int) -> Array:
 
 
 def isolate_zeros(coefficients: Array) -> Parted:
-    """Isolate the zeros of polynomials given by their coefficients (2 degree + 1, n), in the
-    order of `harmonics`.
+    """Isolate the zeros of trigonometric polynomials.
+
+    Parameters
+    ----------
+    coefficients : (2 degree + 1, n) array
+        Coefficients of n polynomials in the order of `harmonics`.
+
+    Returns
+    -------
+    Parted
+        Steps with one zero each, rad, and polynomials with zeros too close to separate.
     """
     degree = len(coefficients) // 2
     amplitudes = np.hypot(coefficients[1 : degree + 1], coefficients[degree + 1 :])

@@ -157,7 +157,20 @@ def _piece(node: Node, is_last: bool) -> LinkShape | Solid:
 
 
 def box(size: Array, tone: str = BODY) -> Primitive:
-    """A box of `size` (3,) mm about the origin."""
+    """Return a box about the origin.
+
+    Parameters
+    ----------
+    size : (3,) array
+        Lengths along x, y and z, mm.
+    tone : str, optional
+        Kind of surface.
+
+    Returns
+    -------
+    Primitive
+        The box.
+    """
     x, y, z = size.tolist()
     return _primitive(
         solids.box(np.zeros(3), np.eye(3)[0], np.eye(3)[1], (x, y, z), tone), "box", size
@@ -165,7 +178,20 @@ def box(size: Array, tone: str = BODY) -> Primitive:
 
 
 def cylinder(size: Array, tone: str = BODY) -> Primitive:
-    """A cylinder of a diameter and a length, `size` (2,) mm, along Z about the origin, as a polygon that holds it."""
+    """Return a cylinder along Z about the origin, as a polygon that holds it.
+
+    Parameters
+    ----------
+    size : (2,) array
+        Diameter and length, mm.
+    tone : str, optional
+        Kind of surface.
+
+    Returns
+    -------
+    Primitive
+        The cylinder.
+    """
     radius, half = 0.5 * float(size[0]) / np.cos(np.pi / solids.SIDES), 0.5 * float(size[1])
     outline = [(0.0, 0.0), (radius, 0.0), (radius, 1.0), (0.0, 1.0)]
     return _primitive(

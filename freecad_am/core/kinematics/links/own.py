@@ -316,7 +316,20 @@ def positions(limits: Limits, axes: int) -> Array:
 
 
 def place_cylinder(solid: Solid, frame: Array) -> PlacedCylinders:
-    """Return the cylinder of a solid with frames (k, 4, 4) of its link."""
+    """Place the cylinder of a solid.
+
+    Parameters
+    ----------
+    solid : Solid
+        The solid, in the frame of its link.
+    frame : (k, 4, 4) array
+        Poses of the link, mm.
+
+    Returns
+    -------
+    PlacedCylinders
+        The cylinder at each pose.
+    """
     turn = frame[:, :3, :3]
     return PlacedCylinders(
         turn @ solid.tip + frame[:, :3, 3], turn @ solid.axis, solid.solid.high, solid.solid.radius

@@ -28,7 +28,18 @@ class Solid:
     tone: str = BODY
 
     def move(self, pose: Array) -> Solid:
-        """Return the solid moved by a pose (4, 4)."""
+        """Return the solid moved by a pose.
+
+        Parameters
+        ----------
+        pose : (4, 4) array
+            The pose, mm.
+
+        Returns
+        -------
+        Solid
+            Of the same kind.
+        """
         turn = pose[:3, :3].T
         return Solid(
             self.points @ turn + pose[:3, 3], self.normals @ turn, self.triangles, self.tone
