@@ -206,8 +206,21 @@ class Bead:
         )
 
     def halved(self, segments: Index) -> Bead:
-        """The bead with a point in the middle of each of the segments (k,), rising: on the curve that the points outline,
-        not on its chords, and with directions halfway between its neighbours'."""
+        """Return the bead with a point in the middle of segments.
+
+        It is on the curve that the points outline, not on its chords, with directions halfway
+        between its neighbours'.
+
+        Parameters
+        ----------
+        segments : (k,) array of int
+            Numbers of the segments, rising.
+
+        Returns
+        -------
+        Bead
+            k points more.
+        """
         at = segments + 1
 
         def middle(column: Array) -> Array:
@@ -287,8 +300,17 @@ class Bead:
         return dataclasses.replace(self, **self._rows(rows), closed=False, role=role)
 
     def thinned(self, index: Index) -> Bead:
-        """Return the bead with only these points, given by rising numbers that include the first
-        and the last.
+        """Return the bead with some of its points.
+
+        Parameters
+        ----------
+        index : (k,) array of int
+            Numbers of the points, rising, the first and the last included.
+
+        Returns
+        -------
+        Bead
+            k points.
         """
         return dataclasses.replace(self, **self._rows(index))
 
@@ -313,7 +335,20 @@ class SpeedLaw:
     acceleration: float
 
     def applied(self, bead: Bead, speed: Array) -> Bead:
-        """The bead at other speeds (n,) of its segments, as wide and as high as it gets there."""
+        """Return the bead at other speeds, as wide and as high as it gets there.
+
+        Parameters
+        ----------
+        bead : Bead
+            The bead, n points.
+        speed : (n,) array
+            Speeds of the segments that end at the points, mm/s.
+
+        Returns
+        -------
+        Bead
+            Width and height change only if both are predicted.
+        """
         root = np.cbrt(1.0 / speed[1:]) - np.cbrt(1.0 / bead.speed[1:])
         more = 0.5 * (np.r_[root[:1], root] + np.r_[root, root[-1:]])
         if bead.width is None or bead.height is None:
@@ -441,8 +476,13 @@ class Toolpath:
 
     @property
     def parts(self) -> tuple[tuple[Toolpath, Index], ...]:
-        """Return the toolpath of each feature with the numbers (n,) of its layers; for one feature,
-        this toolpath.
+        """Return the toolpath of each feature with its layers.
+
+        Returns
+        -------
+        tuple of tuple of Toolpath and (n,) array of int
+            Toolpaths, and numbers of their layers in this one; this toolpath itself for one
+            feature.
         """
         if not self.features:
             return ((self, np.arange(len(self.layers))),)

@@ -173,7 +173,20 @@ def controller_values(joints: Array, kinds: Sequence[str]) -> Array:
 
 
 def rows(template: str, values: Array) -> list[str]:
-    """One text per row of the values (n, columns)."""
+    """Return one text per row of values.
+
+    Parameters
+    ----------
+    template : str
+        A format with a place for each column.
+    values : (n, columns) array
+        Values in the units of the text.
+
+    Returns
+    -------
+    list of str
+        n texts.
+    """
     return [template % row for row in zip(*values.T.tolist(), strict=True)]
 
 

@@ -30,7 +30,15 @@ class Lines:
         self._line.extend([int(line)] * times)
 
     def extend(self, file: str, lines: Index) -> None:
-        """Add moves from lines (n,) of a file."""
+        """Add moves.
+
+        Parameters
+        ----------
+        file : str
+            Name of the file they are in.
+        lines : (n,) array of int
+            Lines of the moves.
+        """
         self._file.extend([self._files.setdefault(file, len(self._files))] * len(lines))
         self._line.extend(lines.tolist())
 

@@ -64,7 +64,18 @@ class Points:
         return starts
 
     def select_points(self, index: Integers) -> Points:
-        """Return the selected points, each as a bead of one point."""
+        """Return selected points, each as a bead of one point.
+
+        Parameters
+        ----------
+        index : (n,) array of int
+            Numbers of the points.
+
+        Returns
+        -------
+        Points
+            n points of n beads, none closed.
+        """
         numbers = np.arange(len(index))
         return Points(
             self.position[index],
@@ -261,8 +272,19 @@ def _frames_of(cell: Cell, position: Array, tool: Array, external: Array | None)
 
 
 def thinned(bead: Bead, max_points: int | None) -> Integers:
-    """Return the sampled points of a bead, `max_points` per turn about the axis; all points for
-    None.
+    """Return the sampled points of a bead.
+
+    Parameters
+    ----------
+    bead : Bead
+        The bead.
+    max_points : int or None
+        Most points per turn about the axis; None: all points.
+
+    Returns
+    -------
+    (k,) array of int
+        Numbers of the points, evenly spread.
     """
     if max_points is None:
         return np.arange(len(bead))

@@ -76,6 +76,18 @@ def frames_of(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:
 
 
 def six_of(pose: Array) -> Six:
+    """Return a pose as six numbers.
+
+    Parameters
+    ----------
+    pose : (4, 4) array
+        The pose, mm.
+
+    Returns
+    -------
+    tuple of float
+        x, y, z, mm, and the Bryant angles rx, ry, rz, rad.
+    """
     x, y, z = pose[:3, 3].tolist()
     rx, ry, rz = frames.to_bryant(pose[:3, :3]).tolist()
     return (x, y, z, rx, ry, rz)
@@ -340,7 +352,25 @@ def carried_pose(cell: Cell, parameters: ProgramParameters) -> Six | None:
 
 
 def rows_from(motion: Motion, start: StartParameters) -> Mask:
-    """(n,) bool: the rows run when a job resumes at a bead; its retract from the bead before is left out."""
+    """Return the rows that run when a job resumes at a bead.
+
+    Parameters
+    ----------
+    motion : Motion
+        The motion, n rows.
+    start : StartParameters
+        Layer and bead to resume at.
+
+    Returns
+    -------
+    (n,) array of bool
+        True from the rapids to the bead on, without the retract from the bead before.
+
+    Raises
+    ------
+    InputError
+        START_AT if the bead does not exist.
+    """
     run = (motion.layer > start.layer) | (motion.layer == start.layer) & (motion.bead >= start.bead)
     if (
         not (run & motion.deposit).any()

@@ -170,7 +170,20 @@ class BeadModel:
         return section / widths
 
     def speed_for(self, width: float | Array, radius: Array) -> Asked:
-        """The travel speed that keeps `width` mm, one or (n,), at radii of curvature (n,) mm, within the speeds of the table."""
+        """Return the travel speed that keeps a width, within the speeds of the table.
+
+        Parameters
+        ----------
+        width : float or (n,) array
+            Width to keep, mm.
+        radius : (n,) array
+            Radii of curvature, mm; infinite where straight.
+
+        Returns
+        -------
+        Asked
+            Speeds, mm/s, and where width or radius is outside the table.
+        """
         straight_only = np.isinf(self.radii[0])  # such a table says nothing of bends
         tight = (radius < self.radii[0] * (1.0 - 1e-9)) & (not straight_only)
         speed_term = width - self.width.p / np.maximum(radius, self.radii[0]) - self.width.t

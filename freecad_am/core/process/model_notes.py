@@ -62,10 +62,23 @@ def segments(beads: Sequence[Bead]) -> Segments:
 def beads(
     toolpath: Toolpath, numbers: Sequence[int] | Index | None = None
 ) -> dict[str, Any] | None:
-    """The key `beads` of a report; None without a bead model, and for several features.
+    """Return the key `beads` of a report.
 
-    numbers: of the layers of one feature among the layers of several. `drift_mm` of a layer is the sum of the differences of
-    predicted mean heights from layer heights, up to it within its solid.
+    `drift_mm` of a layer is the sum of the differences of predicted mean heights from layer
+    heights, up to it within its solid.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    numbers : sequence of int, optional
+        Numbers of the layers of one feature among the layers of several.
+
+    Returns
+    -------
+    dict or None
+        Speeds, widths, heights and wire feed in the units of their keys; None without a bead model,
+        and for several features.
     """
     total = segments([] if toolpath.features else [bead for _, _, bead in toolpath])
     if not len(total.length):

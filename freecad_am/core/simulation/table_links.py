@@ -249,7 +249,20 @@ class Placing:
 
 
 def placing(cell: Cell, joints: ArrayLike) -> Placing:
-    """Return the poses of links, part and nozzle for a joint vector (axes,)."""
+    """Return the poses of links, part and nozzle.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+    joints : (axes,) array_like
+        Joint values, rad or mm.
+
+    Returns
+    -------
+    Placing
+        Poses in the world, mm; without external axes the world is the fixed link.
+    """
     chain, values = cell.robot.chain, np.asarray(joints, float)
     links = cell.links(values)
     flange = links[-1] @ chain.flange

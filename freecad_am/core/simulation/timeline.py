@@ -192,8 +192,17 @@ class Timeline:
         return np.asarray(self.leave - self.arrive)
 
     def state_at(self, time: ArrayLike) -> State:
-        """Return the state at times (...,) s; before the start and after the end the state of the first and
-        last row.
+        """Return the state at times.
+
+        Parameters
+        ----------
+        time : (...) array_like
+            s; before the start and after the end the first and last row count.
+
+        Returns
+        -------
+        State
+            Arrays of the shape of the times.
         """
         motion, when = self.motion, np.clip(np.asarray(time, float), 0.0, self.total)
         row = np.minimum(np.searchsorted(self.leave, when, side="left"), len(self.leave) - 1)

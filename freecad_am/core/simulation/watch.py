@@ -109,7 +109,18 @@ def arm_touches(motion: Motion, arm: ArmContact, max_places: int | None = None) 
 
 
 def tracks_of(cell: Cell) -> Mask:
-    """Return which axes (axes,) of a cell belong to a track."""
+    """Return which axes of a cell belong to a track.
+
+    Parameters
+    ----------
+    cell : Cell
+        The cell.
+
+    Returns
+    -------
+    (axes,) array of bool
+        True for prismatic external axes.
+    """
     tracks: Mask = cell.machine.chain.sliding.copy()
     tracks[: cell.robot.chain.axes] = False
     return tracks

@@ -76,7 +76,18 @@ class Listing:
         return len(set(self.records.frames)) == 1
 
     def rows(self, points: Index) -> Index:
-        """Rows of the positions numbered (k,), -1 for missing ones."""
+        """Return the rows of positions.
+
+        Parameters
+        ----------
+        points : (k,) array of int
+            Numbers of the positions in the file.
+
+        Returns
+        -------
+        (k,) array of int
+            Rows of `records`; -1 for missing positions.
+        """
         points_recorded = self.records.point
         if not len(points_recorded):
             return np.full(len(points), -1)

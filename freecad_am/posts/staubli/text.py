@@ -103,13 +103,35 @@ def _file(body: str) -> bytes:
 
 
 def joints(values: Array) -> list[str]:
-    """Attributes of joint values (n, 6), degrees."""
+    """Return the attributes of joint values.
+
+    Parameters
+    ----------
+    values : (n, 6) array
+        Joint values, degrees.
+
+    Returns
+    -------
+    list of str
+        n texts.
+    """
     return _rows(_JOINTS, values)
 
 
 def frames(values: Array, attributes: str) -> list[str]:
-    """Attributes of points, frames or tools (n, 6), mm and degrees, with further `attributes`
-    behind each.
+    """Return the attributes of points, frames or tools.
+
+    Parameters
+    ----------
+    values : (n, 6) array
+        Coordinates, mm, and angles, degrees.
+    attributes : str
+        Further attributes to add to each.
+
+    Returns
+    -------
+    list of str
+        n texts.
     """
     return _rows(f"{_FRAME} {attributes}", values)
 

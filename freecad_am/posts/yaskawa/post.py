@@ -59,7 +59,20 @@ END_OF_LINE = "\r\n"
 
 
 def pulses(program: Program, joints: Array) -> Integers:
-    """(n, axes) whole pulses of controller joint values (n, axes), rad, and mm of a track."""
+    """Return joint values as whole pulses.
+
+    Parameters
+    ----------
+    program : Program
+        The program, with the pulses per degree, or per mm of a track.
+    joints : (n, axes) array
+        Controller joint values, rad, and mm of a track.
+
+    Returns
+    -------
+    (n, axes) array of int
+        Pulses.
+    """
     values = np.where(program.slides, joints, np.degrees(joints))
     counts: Integers = np.rint(values * np.array(program.pulses_per_degree)).astype(np.int64)
     return counts

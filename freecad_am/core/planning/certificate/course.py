@@ -31,7 +31,20 @@ Broken = Callable[[Array, Array], Mask]
 
 
 def none_broken(phi: Array, joints: Array) -> Mask:
-    """(n,) no point."""
+    """Return that no rotation is broken.
+
+    Parameters
+    ----------
+    phi : (n,) array
+        Tool rotations, rad.
+    joints : (n, axes) array
+        Joint values, not used.
+
+    Returns
+    -------
+    (n,) array of bool
+        False.
+    """
     return np.zeros(len(phi), dtype=bool)
 
 

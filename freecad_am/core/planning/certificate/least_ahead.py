@@ -105,7 +105,20 @@ def before(
 
 
 def least_of(value: Array, lattice: Lattice) -> float:
-    """The least of sums (N,) at the rotations of the first point of a lattice, between them too."""
+    """Return the least of sums at the rotations of the first point of a lattice, between them too.
+
+    Parameters
+    ----------
+    value : (N,) array
+        Sums at the rotations of the lattice.
+    lattice : Lattice
+        The lattice, N rotations.
+
+    Returns
+    -------
+    float
+        The least.
+    """
     columns = np.arange(-1, lattice.count + 1)[None] % lattice.count
     return float(
         _least(

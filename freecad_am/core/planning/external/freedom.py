@@ -119,7 +119,18 @@ class Freedom:
         ].T * self.unit
 
     def look(self, x: Array) -> Bound | None:
-        """Evaluate objective and constraints for changes x (v,); None if a point is out of reach."""
+        """Evaluate objective and constraints.
+
+        Parameters
+        ----------
+        x : (v,) array
+            Changes of the free coordinates.
+
+        Returns
+        -------
+        Bound or None
+            Values with slopes; None if a point is out of reach.
+        """
         task = self.task
         coefficients, values = self.values(x)
         points = set_external_values(self.points, task.cell, values)
@@ -336,7 +347,18 @@ class Seen:
         self.found: Bound | None = None
 
     def bound_at(self, x: Array) -> Bound | None:
-        """Return objective and constraints for changes x (v,)."""
+        """Return objective and constraints, computed once for the last changes.
+
+        Parameters
+        ----------
+        x : (v,) array
+            Changes of the free coordinates.
+
+        Returns
+        -------
+        Bound or None
+            As `Freedom.look`.
+        """
         if x.tobytes() != self.key:
             self.key, self.found = x.tobytes(), self.freedom.look(x)
         return self.found

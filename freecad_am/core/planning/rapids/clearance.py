@@ -87,8 +87,17 @@ class RapidObstacles:
         self._bodies = scene((), deposit.points, 0.0).bodies
 
     def find_collisions(self, moves: Moves) -> Mask:
-        """Return whether (k,) the nozzle meets an obstacle on each of the moves; False for moves whose joints
-        are NaN.
+        """Return on which moves the nozzle meets an obstacle.
+
+        Parameters
+        ----------
+        moves : Moves
+            k moves.
+
+        Returns
+        -------
+        (k,) array of bool
+            False for moves whose joints are NaN.
         """
         collides = np.zeros(len(moves.start), dtype=bool)
         reachable = np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1))

@@ -345,7 +345,20 @@ class Retracts:
         return legs, failures
 
     def asked(self, end_numbers: Index, height: Array) -> list[Leg]:
-        """The requested retracts, possible or not; NaN out of reach."""
+        """Return the requested retracts, possible or not.
+
+        Parameters
+        ----------
+        end_numbers : (k,) array of int
+            Numbers of the ends of beads.
+        height : (k,) array
+            Heights of the retracts, mm.
+
+        Returns
+        -------
+        list of Leg
+            Their joints are NaN out of reach.
+        """
         joints, position = self._courses(self._ways(end_numbers, height, (DEFAULT_CHOICE,)), 1)
         return [
             Leg(joints[k], position[k], float(height[k]), DEFAULT_CHOICE)
@@ -480,10 +493,19 @@ class Retracts:
         return deviation
 
     def fits(self, joints: Array, reserved: Array) -> Mask:
-        """Return whether all rows of the retracts (k, m, axes) are reachable and keep reserve and
-        condition.
+        """Return which retracts are reachable and keep reserve and condition in all rows.
 
-        reserved: free distance to every limit, rad. The condition must not be below the least one.
+        Parameters
+        ----------
+        joints : (k, m, axes) array
+            Joint values of the m rows of k retracts, rad or mm.
+        reserved : (limits,) array
+            Free distance to keep to every limit, rad.
+
+        Returns
+        -------
+        (k,) array of bool
+            False if the condition is below the least one allowed, too.
         """
         with np.errstate(invalid="ignore"):
             fits: Mask = (self.cell.limits.margin(joints) >= reserved - ROUNDING_RAD).all(

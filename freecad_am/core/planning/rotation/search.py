@@ -65,7 +65,18 @@ class Found:
         )
 
     def select_beads(self, beads: Index) -> Found:
-        """Return only the candidates of some beads (k,)."""
+        """Return the candidates of some beads.
+
+        Parameters
+        ----------
+        beads : (k,) array of int
+            Numbers of the beads.
+
+        Returns
+        -------
+        Found
+            Their candidates.
+        """
         return Found(self.coefficients[:, beads], self.objective[:, beads], self.margin[:, beads])
 
     def best(self) -> Integers:
@@ -73,7 +84,18 @@ class Found:
         return self._best(self.margin)
 
     def is_best(self, margin: Array) -> Mask:
-        """(C, B) which candidates are the best ones if their margins are these, (C, B)."""
+        """Return which candidates are the best ones with other margins.
+
+        Parameters
+        ----------
+        margin : (C, B) array
+            Margins of the candidates.
+
+        Returns
+        -------
+        (C, B) array of bool
+            True for one candidate of each bead.
+        """
         best_mask: Mask = np.arange(len(margin))[:, None] == self._best(margin)
         return best_mask
 

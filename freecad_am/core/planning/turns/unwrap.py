@@ -147,7 +147,20 @@ def _come_round(bead: Bead) -> bool:
 
 
 def turning_axis(task: Task, joints: Array) -> int | None:
-    """Return the limited axis that ends a whole turn or more from its start, None without one."""
+    """Return the limited axis that ends a whole turn or more from its start.
+
+    Parameters
+    ----------
+    task : Task
+        The task, with the axes without limits.
+    joints : (n, axes) array
+        Joint values of a path, rad or mm.
+
+    Returns
+    -------
+    int or None
+        The axis that turns most; None without one, or if a value is not finite.
+    """
     if not np.isfinite(joints).all():
         return None
     turns = np.where(task.unturned, 0.0, np.abs(np.round((joints[-1] - joints[0]) / TURN)))

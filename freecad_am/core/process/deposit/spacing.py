@@ -167,7 +167,18 @@ def _planes(toolpath: Toolpath) -> Array | None:
 
 
 def turns_of(bead: Bead) -> Index:
-    """The number (n,) of the turn that each point of a spiral is in, from 0."""
+    """Return the turn that each point of a spiral is in.
+
+    Parameters
+    ----------
+    bead : Bead
+        The spiral, n points, with angles as parameter.
+
+    Returns
+    -------
+    (n,) array of int
+        Numbers of the turns from 0.
+    """
     turned = np.abs(bead.parameter - bead.parameter[0]) / (2.0 * np.pi)
     last_turn = max(int(np.ceil(turned[-1] - 1e-6)) - 1, 0)
     turns: Index = np.minimum((turned + 1e-9).astype(np.intp), last_turn)

@@ -31,8 +31,19 @@ ROUND = 0.8  # of the height; standard deviation of the mean that rounds a bead
 
 
 def gap_middle(slicing: Slicing, borders: list[Array]) -> SpaceCurve | None:
-    """Return the curve midway between the sides of a gap with the borders (k, 3): open for one
-    border, closed within a ring.
+    """Return the curve midway between the sides of a gap.
+
+    Parameters
+    ----------
+    slicing : Slicing
+        The wall and its tolerances.
+    borders : list of (k, 3) array
+        Borders of the gap, mm: one, or two of a ring.
+
+    Returns
+    -------
+    SpaceCurve or None
+        Open for one border, closed within a ring; None if the border has no extent.
     """
     longest = max(borders, key=len)
     if len(borders) == 2:

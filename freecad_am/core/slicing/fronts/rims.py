@@ -147,10 +147,22 @@ class Feet(NamedTuple):
 
 
 def nearest_feet(fronts: list[SpaceCurve], points: Array) -> Feet:
-    """Return the nearest point on any of the fronts for each point (n, 3).
+    """Return the nearest point on any of the fronts for each point.
 
     A front is searched only for points whose distance from its box is smaller than their best
     distance: with a layer in many pieces, few of them are candidates for a point.
+
+    Parameters
+    ----------
+    fronts : list of SpaceCurve
+        The fronts.
+    points : (n, 3) array
+        Points, mm, in the frame of the fronts.
+
+    Returns
+    -------
+    Feet
+        Of equal distances the first front counts.
     """
     low = np.stack([front.beyond_box(points) for front in fronts])
     front = np.argmin(low, axis=0)  # the likely fronts

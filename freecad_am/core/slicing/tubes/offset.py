@@ -74,7 +74,18 @@ class Offset:
         self.runs = self._runs(u)
 
     def evaluate(self, v: Array) -> Places:
-        """Return the uppermost branch at each v (n,), in any order."""
+        """Return the uppermost branch of the offset curve.
+
+        Parameters
+        ----------
+        v : (n,) array
+            Values of v, in any order.
+
+        Returns
+        -------
+        Places
+            u, slope, w and run at each v; u is -inf and the run -1 without a branch.
+        """
         target, run, u, w = self._candidates(v)
         u, w, sound = self._solve(v[target], u, w, run)
         result = Places(

@@ -136,7 +136,20 @@ def space_of(
 
 
 def beads_of(toolpath: Toolpath, feature: int | None) -> Mask:
-    """(beads,) which beads are of a feature, where a toolpath has several; all where None is asked about."""
+    """Return which beads are of a feature.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    feature : int or None
+        Number of the feature.
+
+    Returns
+    -------
+    (beads,) array of bool
+        All True for None, or if the toolpath has a single feature.
+    """
     mask: Mask = np.array(
         [
             feature is None or not toolpath.features or toolpath.layers[i].feature == feature
@@ -214,7 +227,20 @@ def touched_between(space: Space, beads: Sequence[Bead], tool: Array, free: Mask
 
 
 def halved(toolpath: Toolpath, between: Mask) -> Toolpath:
-    """The toolpath with a point halfway after each marked point (n,)."""
+    """Return a toolpath with more points.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath, n points.
+    between : (n,) array of bool
+        Points after which a point halfway to the next is added.
+
+    Returns
+    -------
+    Toolpath
+        The same beads.
+    """
     marks = iter(np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1]))
     layers = []
     for layer in toolpath.layers:

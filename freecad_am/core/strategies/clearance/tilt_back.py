@@ -378,7 +378,18 @@ MAX_POINTS = 2500  # points of a bead at which tilts are searched
 
 
 def knots_along(row: Index) -> Index:
-    """The points of a bead, of its points `row` in order, at which tilts are searched: evenly many, both ends among them."""
+    """Return the points of a bead at which tilts are searched.
+
+    Parameters
+    ----------
+    row : (n,) array of int
+        Numbers of the points of the bead, in order.
+
+    Returns
+    -------
+    (k,) array of int
+        MAX_POINTS of them at most, evenly spread, both ends included.
+    """
     if len(row) <= MAX_POINTS:
         return row
     knots: Index = row[

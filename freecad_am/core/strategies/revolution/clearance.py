@@ -282,8 +282,19 @@ class Clearance:
     between: Tips | None = None  # the points of the deposit, if the tips do not represent it
 
     def standing(self, build: Array, like: Scene | None = None) -> Scene:
-        """The scene with beads along directions (k, 3), in components, at the points of the deposit; like: the scene with other
-        directions.
+        """Return the scene with the deposit of beads in given directions.
+
+        Parameters
+        ----------
+        build : (k, 3) array
+            Build directions at the points of the deposit, along radius, azimuth and axis.
+        like : Scene, optional
+            The scene with other directions, whose order is used again.
+
+        Returns
+        -------
+        Scene
+            Bodies and deposit, mm.
         """
         deposit_ = self.deposit
         width, tall = deposit_.size
@@ -320,7 +331,20 @@ class Clearance:
         return self._clear(among, self.tips, case, tool)
 
     def clear_between(self, among: Scene, tool: Array) -> Mask:
-        """The same at the points between, with tool axes (k, 3)."""
+        """Return where the nozzle is clear at the points between.
+
+        Parameters
+        ----------
+        among : Scene
+            Bodies and deposit.
+        tool : (k, 3) array
+            Unit tool axes along radius, azimuth and axis.
+
+        Returns
+        -------
+        (k,) array of bool
+            True where it touches nothing.
+        """
         assert self.between is not None
         return self._clear(among, self.between, np.arange(len(tool)), tool)
 

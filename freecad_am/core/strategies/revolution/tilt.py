@@ -44,7 +44,18 @@ class Cases:
     chained: bool = False
 
     def before(self, mask: Mask) -> Mask:
-        """(k,) the cases of beads that are deposited before the beads of some cases, (k,) with at least one."""
+        """Return the cases of earlier beads.
+
+        Parameters
+        ----------
+        mask : (k,) array of bool
+            Some cases, at least one.
+
+        Returns
+        -------
+        (k,) array of bool
+            True for cases of beads deposited before the bead of the first marked case.
+        """
         earlier: Mask = self.bead < self.bead[mask.argmax()]
         return earlier
 

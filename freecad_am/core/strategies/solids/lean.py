@@ -189,7 +189,20 @@ class Zones:
         return free
 
     def widened(self, positions: Array, factor: float) -> Zones:
-        """With longer stretches at the zones next to places (n,); a place that none reaches becomes one."""
+        """Return zones with longer stretches next to places.
+
+        Parameters
+        ----------
+        positions : (n,) array
+            Places, mm.
+        factor : float
+            By which half the length of a zone near a place is multiplied.
+
+        Returns
+        -------
+        Zones
+            A place out of reach of all zones becomes one.
+        """
         low, high, half, unreached = self.low, self.high, self.half.copy(), positions
         if len(low):
             best, distance = self._nearest(positions)

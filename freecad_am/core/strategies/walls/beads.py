@@ -322,7 +322,20 @@ class BeadSettings(NamedTuple):
 
 
 def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[Issue]:
-    """The range of local distances (n,) of each layer after the first, with a warning if it is not as requested."""
+    """Report the range of local distances between layers.
+
+    Parameters
+    ----------
+    distances : list of (n,) array
+        Distances of each layer after the first, mm.
+    strategy : SurfaceParameters
+        Layer height, spacing and tolerances, mm.
+
+    Returns
+    -------
+    list of Issue
+        A note SPACING, a warning if the range is not as requested; empty for one layer.
+    """
     if not distances:
         return []
     smallest = min(layer.min() for layer in distances)
@@ -351,8 +364,17 @@ def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[
 
 
 def corner_notes(turns: list[Array]) -> list[Issue]:
-    """A note about corners that the fronts of each layer have formed, for a robot slows down there; empty without corners. turns:
-    rad at the corners of each layer.
+    """Report corners that the fronts of layers have formed, for a robot slows down there.
+
+    Parameters
+    ----------
+    turns : list of (n,) array
+        Turns at the corners of each layer, rad.
+
+    Returns
+    -------
+    list of Issue
+        A note CORNERS at the sharpest; empty without corners.
     """
     cornered = [index for index, layer in enumerate(turns) if len(layer)]
     if not cornered:
