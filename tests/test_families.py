@@ -2,6 +2,7 @@
 """Modules ask a family of features for facts and do not compare its kind: `core/families` says what follows from it."""
 
 import ast
+import functools
 import re
 from pathlib import Path
 
@@ -31,12 +32,15 @@ OTHER_WORDS = {  # files in which a word is no kind
 }
 
 
+@functools.cache
 def modules():
-    """(name below the package, syntax tree) of every module."""
-    for path in sorted(PACKAGE.rglob("*.py")):
-        name = path.relative_to(PACKAGE).as_posix()
-        if name not in OTHER_WORDS:
-            yield name, ast.parse(path.read_text(encoding="utf-8"))
+    """(name below the package, nodes of the syntax tree) of every module."""
+    names = {path.relative_to(PACKAGE).as_posix(): path for path in sorted(PACKAGE.rglob("*.py"))}
+    return [
+        (name, list(ast.walk(ast.parse(path.read_text(encoding="utf-8")))))
+        for name, path in names.items()
+        if name not in OTHER_WORDS
+    ]
 
 
 def kinds_in(tree):
@@ -95,8 +99,8 @@ def compares(node, words):
 def test_comparisons_with_layers_and_fills_are_few(words, most):
     found = [
         f"{name}:{node.lineno}"
-        for name, tree in modules()
-        for node in ast.walk(tree)
+        for name, nodes in modules()
+        for node in nodes
         if compares(node, words)
     ]
     assert 0 < len(found) <= most, found
@@ -108,17 +112,18 @@ def test_fills_that_replace_others_are_fills():
 
 def test_switches_on_the_kind_of_a_feature_are_few():
     found = [
-        f"{name}:{node.lineno}"
-        for name, tree in modules()
-        for node in ast.walk(tree)
-        if is_switch(node)
+        f"{name}:{node.lineno}" for name, nodes in modules() for node in nodes if is_switch(node)
     ]
     assert len(found) <= MAX_SWITCHES, found
 
 
 @pytest.mark.parametrize("kind", sorted(KINDS))
 def test_a_family_is_named_in_few_modules(kind):
-    named = [name for name, tree in modules() if kind in kinds_in(tree)]
+    named = [
+        name
+        for name, nodes in modules()
+        if any(isinstance(node, ast.Constant) and node.value == kind for node in nodes)
+    ]
     assert 0 < len(named) <= MAX_FILES_OF_A_FAMILY, named
 
 
