@@ -108,12 +108,12 @@ class SpaceCurve:
 
         Parameters
         ----------
-        w : (n,) array
+        w : (...) array
             Parameters.
 
         Returns
         -------
-        (n,) array of int
+        (...) array of int
             Numbers of the arcs; at a node the arc that leaves it.
         """
         index = np.searchsorted(self.w, self.wrap(w), side="right") - 1
