@@ -22,12 +22,11 @@ def listing() -> str:
 
 
 def chosen(maker: str | None, reach: str | None, payload: str | None, post: str | None) -> str:
-    """The lines of `listing` for the machines that `machine_catalogue.chosen` finds, each with the
+    """The lines of `listing` for the machines that `machine.select_machines` finds, each with the
     reach, payload and posts of its file. `reach` is a length and `payload` a mass as users write
     them; raises InputError for others.
     """
     require_freecad()
-    from freecad_am.core.kinematics.machines import catalogue as machine_catalogue
     from freecad_am.core.parameters import field
     from freecad_am.objects import user_machines
     from freecad_am.posts import catalogue
@@ -35,8 +34,8 @@ def chosen(maker: str | None, reach: str | None, payload: str | None, post: str 
     if post is not None:
         catalogue.load(post)
     min_reach = 0.0 if reach is None else fields.read(reach, field.LENGTH, "--reach")
-    entries = machine_catalogue.select_machines(
-        machine_catalogue.entries(user_machines.folders()),
+    entries = machine.select_machines(
+        machine.entries(user_machines.folders()),
         maker,
         min_reach,
         0.0 if payload is None else _mass(payload),

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics.machines import catalogue as machine_catalogue
 from freecad_am.core.kinematics.machines import machine
 
 kdl = pytest.importorskip("PyKDL")
@@ -150,13 +149,13 @@ def test_the_catalogue_tells_what_files_tell_and_leaves_out_what_they_do_not(tmp
     }
     (tmp_path / "mine.json").write_text(json.dumps(content), encoding="utf-8")
     (tmp_path / "broken.json").write_text("{", encoding="utf-8")
-    known = machine_catalogue.entries([tmp_path])
+    known = machine.entries([tmp_path])
     assert {entry.id for entry in known} == {*FILES, "mine"}
     mine = next(entry for entry in known if entry.id == "mine")
     assert (mine.reach, mine.payload, mine.posts) == (2050.0, 50.0, None)
-    assert mine in machine_catalogue.select_machines(known, post="kuka", payload=50.0, reach=2050.0)
-    assert mine not in machine_catalogue.select_machines(known, payload=50.1)
-    heavy = machine_catalogue.select_machines(known, payload=1e-3)
+    assert mine in machine.select_machines(known, post="kuka", payload=50.0, reach=2050.0)
+    assert mine not in machine.select_machines(known, payload=50.1)
+    heavy = machine.select_machines(known, payload=1e-3)
     assert heavy and all(entry.payload is not None for entry in heavy)
     with pytest.raises(InputError, match="'Acme'"):
-        machine_catalogue.select_machines(known, maker="Acme")
+        machine.select_machines(known, maker="Acme")
