@@ -143,8 +143,8 @@ def test_switches_are_recognised():
 
 @pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.kind)
 def test_the_files_of_a_family_are_complete(family):
+    from freecad_am.macro.features import proxy_of
     from freecad_am.objects.families.registry import planner_of, stage_family
-    from freecad_am.objects.planned.feature_kinds import proxy_of
 
     planner, proxy = planner_of(family), proxy_of(family.kind)
     assert proxy.__name__ == planner.proxy[1] == f"{type(family).__name__}Feature"

@@ -3,13 +3,16 @@
 
 from __future__ import annotations
 
+import importlib
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ..core.families.registry import KINDS
+from ..core.issues import InputError, Text
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters, DevelopableParameters, SolidParameters
 from ..core.parameters.strategy import CurvesParameters, RevolutionParameters, SurfaceParameters
-from ..objects.planned.feature_kinds import proxy_of
+from ..objects.families.registry import planner_of
 from .arguments import (
     checked_document,
     checked_keywords,
@@ -19,6 +22,23 @@ from .arguments import (
     owned,
     with_faces,
 )
+
+# ---- The feature object of each family, imported when one is made
+
+
+def proxy_of(kind: str) -> type[Any]:
+    """The class of the features of a family. Raises InputError BAD_VALUE for an unknown kind."""
+    if kind not in KINDS:
+        raise InputError(
+            "BAD_VALUE",
+            "kind",
+            "{!r} is not one of {}; choose one",
+            kind,
+            Text.joined(", ", KINDS),
+        )
+    module, name = planner_of(KINDS[kind]).proxy
+    proxy_class: type[Any] = getattr(importlib.import_module(f"freecad_am.objects.{module}"), name)
+    return proxy_class
 
 
 def make_feature(

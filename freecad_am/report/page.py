@@ -13,14 +13,8 @@ from ..core.process.deposit.spacing import local_distances
 from ..core.strategies.walls.comparison import Compared
 from ..core.toolpath import Toolpath
 from ..plots.source import Source
-from . import (
-    hub_figures,
-    places,
-    predicted_figures,
-    scan_figures,
-    units,
-    wall_figures,
-)
+from . import places, predicted_figures, scan_figures, units
+from .charts import deposit_chart, distance_charts, layer_charts, path_charts, step_chart
 from .of_feature import OfFeature
 from .pictures import FULL_WIDTH, HALF, MISSING, TALLEST, Pictures, draw_charts, plotting_modules
 from .tables import (
@@ -221,7 +215,7 @@ def _hub_layers(content: Content, pictures: Pictures) -> str:
     """Draw unrolled layers of solids on a hub, and the charts of the bead model."""
     if content.solids is None:
         return ""
-    layers = hub_figures.layer_charts(content.solids, content.toolpath)
+    layers = layer_charts(content.solids, content.toolpath)
     plots = [plot for chart, height in layers for plot in draw_charts([chart], HALF, height)]
     plots += pictures.beads()
     return f"<h2>Layers laid flat</h2>{grid_of(plots)}"
@@ -232,18 +226,16 @@ def _spacings(wall: OfFeature) -> str:
     rows, toolpath = wall.rows, wall.toolpath
     compared = [result for result in wall.compared if isinstance(result, Compared)]
     height = toolpath.layer_height
-    charts = wall_figures.distance_charts(compared, height) if compared else []
+    charts = distance_charts(compared, height) if compared else []
     charts += [
-        wall_figures.step_chart(result, height)
-        for result in compared
-        if result.method == "constant-distance"
+        step_chart(result, height) for result in compared if result.method == "constant-distance"
     ]
-    charts.append(wall_figures.deposit_chart(toolpath, local_distances(toolpath)))
+    charts.append(deposit_chart(toolpath, local_distances(toolpath)))
     plots = draw_charts(charts, HALF)
     overlay = "".join(
         f'<figure class="wide">{picture}<figcaption>Both paths: along the lines up the wall, and at a '
         "constant distance from the layer below.</figcaption></figure>"
-        for picture in draw_charts(wall_figures.path_charts(compared), FULL_WIDTH, TALLEST)
+        for picture in draw_charts(path_charts(compared), FULL_WIDTH, TALLEST)
     )
     cut = [row for row in rows if row["layers"] is not None]
     names = [row["method"] + (" (planned)" if row["planned"] else "") for row in cut]

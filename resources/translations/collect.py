@@ -29,13 +29,13 @@ from freecad_am.core import issues  # noqa: E402
 from freecad_am.core.families.registry import KINDS  # noqa: E402
 from freecad_am.core.parameters import field  # noqa: E402
 from freecad_am.core.parameters.place import PlaceParameters  # noqa: E402
+from freecad_am.macro.features import proxy_of  # noqa: E402
 from freecad_am.objects import staleness  # noqa: E402
 from freecad_am.objects.cell import Cell  # noqa: E402
 from freecad_am.objects.fields import preferences, properties  # noqa: E402
 from freecad_am.objects.fields.rows import Row, group_of, rows  # noqa: E402
 from freecad_am.objects.inspection import Inspection  # noqa: E402
 from freecad_am.objects.joint_path import JointPath  # noqa: E402
-from freecad_am.objects.planned.feature_kinds import proxy_of  # noqa: E402
 from freecad_am.objects.program import Program  # noqa: E402
 from freecad_am.objects.toolpath import Toolpath  # noqa: E402
 

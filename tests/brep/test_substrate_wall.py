@@ -6,7 +6,7 @@ import Part
 import pytest
 from FreeCAD import Placement, Rotation, Vector
 
-from freecad_am.brep.walls.first_layer import find_wall
+from freecad_am.brep.walls.wall_on import find_wall
 from freecad_am.core.issues import InputError
 
 BEND, TUBE, PIPE = 60.0, 15.0, 32.0

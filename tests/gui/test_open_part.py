@@ -112,11 +112,11 @@ def test_a_file_that_crashes_the_kernel_is_refused_and_the_window_goes_on(
 
 def test_a_table_of_points_is_opened_and_laid_as_beads(person, chosen, tmp_path):
     # not above: the other process imports this file, and its memory is measured
-    from freecad_am.gui.tools import openers
+    from freecad_am.gui.tools import commands
 
     (tmp_path / "beads.csv").write_text("x,y,z\n0,0,0\n40,0,0\n40,30,0\n", encoding="utf-8")
     chosen(tmp_path / "beads.csv")
-    assert ".csv" in openers.ENDINGS  # of the files that the dialog shows
+    assert ".csv" in commands.ENDINGS  # of the files that the dialog shows
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     person.until(

@@ -3,7 +3,7 @@
 
 from types import SimpleNamespace
 
-from freecad_am.report.hub_figures import layer_charts
+from freecad_am.report.charts import layer_charts
 
 
 def test_a_layer_without_beads_has_no_picture():

@@ -3,11 +3,180 @@
 
 from __future__ import annotations
 
+import os
+from typing import Any
+
+import FreeCAD as App
+import FreeCADGui as Gui
+from PySide import QtGui
+
+from ...core.issues import AmError
+from ...objects.shapes.part_file import PART_FILES
+from ...objects.work.progress import Cancelled
+from .. import recorded
 from ..families.registry import feature_windows
-from ..in_language import marked
-from . import openers, whats_this
+from ..in_language import error_line, marked, tr, translated_error
+from . import whats_this
 from .freecad_am import add_command
 from .tool import PREFIX, Tool
+
+# ---- What each tool opens. Panels and docks are imported when they are first opened: the workbench
+# starts the sooner
+
+ENDINGS = PART_FILES
+
+
+def ask() -> None:
+    """Let a file be chosen, and open it."""
+    document = App.ActiveDocument
+    folder = (
+        os.path.dirname(document.FileName) if document is not None and document.FileName else ""
+    )
+    endings = " ".join(f"*{ending} *{ending.upper()}" for ending in ENDINGS)
+    kinds = tr("Parts, meshes and tables of points ({})").format(endings)
+    path, _ = QtGui.QFileDialog.getOpenFileName(Gui.getMainWindow(), tr("Open part"), folder, kinds)
+    if path:
+        opened(path)
+
+
+def opened(path: str) -> Any:
+    """Open a part in the active or a new document, select and show it; None if it is rejected, which is reported,
+    or cancelled."""
+    is_new = App.ActiveDocument is None
+    if is_new:
+        Gui.doCommand("App.newDocument()")
+    document = App.ActiveDocument
+    old_names = {obj.Name for obj in document.Objects}
+    try:
+        recorded.make(document, "open_part", {"path": repr(path)})
+    except (AmError, Cancelled) as error:
+        if is_new:
+            App.closeDocument(document.Name)
+        if isinstance(error, AmError):
+            App.Console.PrintError(error_line(error))
+            QtGui.QMessageBox.warning(Gui.getMainWindow(), tr("Open part"), translated_error(error))
+        return None
+    opened_part = next(obj for obj in document.Objects if obj.Name not in old_names)
+    Gui.Selection.clearSelection()
+    Gui.Selection.addSelection(document.Name, opened_part.Name)
+    view = Gui.activeDocument().activeView()
+    if is_new and hasattr(view, "viewIsometric"):
+        view.viewIsometric()
+    Gui.SendMsgToActiveView("ViewFit")
+    return opened_part
+
+
+def open_part() -> None:
+    """Ask for a part file."""
+
+    ask()
+
+
+def new_job() -> None:
+    """The panel of a new job."""
+    from ..panels.new_job import JobPanel
+    from ..panels.stage import show
+
+    show(JobPanel())
+
+
+def export_path() -> None:
+    """The panel that exports a path."""
+    from ..panels.stage import show
+    from .export_path import ExportPanel
+
+    show(ExportPanel())
+
+
+def cell() -> None:
+    """The panel of a new cell."""
+    from ..panels.cell import CellPanel
+    from ..panels.stage import show
+
+    show(CellPanel())
+
+
+def toolpath() -> None:
+    """The panel of a new toolpath."""
+    from ..panels.stage import show
+    from ..panels.toolpath import ToolpathPanel
+
+    show(ToolpathPanel())
+
+
+def joint_path() -> None:
+    """The panel of a new joint path."""
+    from ..panels.joint_path import JointPathPanel
+    from ..panels.stage import show
+
+    show(JointPathPanel())
+
+
+def redundancy_map() -> None:
+    """The map of a joint path."""
+    from ..redundancy_map import dock
+
+    dock.redundancy_map()
+
+
+def placement() -> None:
+    """The dock of placements."""
+    from ..placement import dock
+
+    dock.placement()
+
+
+def path() -> None:
+    """The dock of paths."""
+    from ..path import dock
+
+    dock.show()
+
+
+def infill() -> None:
+    """The dock of infill."""
+    from ..path import infill_dock
+
+    infill_dock.show()
+
+
+def simulate() -> None:
+    """The dock of a simulation."""
+    from ..simulation import dock
+
+    dock.simulate()
+
+
+def program() -> None:
+    """The panel of a new program."""
+    from ..panels.program import ProgramPanel
+    from ..panels.stage import show
+
+    show(ProgramPanel())
+
+
+def new_machine() -> None:
+    """The wizard of a new machine."""
+    from ..machine_wizard import wizard
+
+    wizard.show()
+
+
+def inspect() -> None:
+    """The panel of an inspection."""
+    from ..inspection import panel
+
+    panel.inspect()
+
+
+def plots() -> None:
+    """The dock of plots."""
+    from ..plots import dock
+
+    dock.show()
+
+
+# ---- All tools
 
 # In workflow order, with a separator between groups. Other tools come last.
 GROUPS = (
@@ -23,42 +192,42 @@ TOOLS = {
         "open_part",
         marked("Open Part…"),
         marked("Opens a part or mesh from a file in a separate process, even if it is damaged"),
-        openers.open_part,
+        open_part,
         whats_this.nothing,
     ),
     "NewJob": Tool(
         "new_job",
         marked("New Job…"),
         marked("Creates all stages for the selected shape, from cell to program"),
-        openers.new_job,
+        new_job,
         whats_this.part,
     ),
     "Cell": Tool(
         "cell",
         marked("Cell…"),
         marked("Adds a cell: machine, setup, platform and nozzle"),
-        openers.cell,
+        cell,
     ),
     **{name: tool for window in feature_windows() for name, tool in window.tools().items()},
     "Toolpath": Tool(
         "toolpath",
         marked("Toolpath…"),
         marked("Cuts a feature into layers and beads"),
-        openers.toolpath,
+        toolpath,
         whats_this.feature,
     ),
     "JointPath": Tool(
         "joint_path",
         marked("Joint Path…"),
         marked("Plans the joint values of a toolpath in a cell"),
-        openers.joint_path,
+        joint_path,
         whats_this.toolpath_and_cell,
     ),
     "SpinMap": Tool(
         "spin_map",
         marked("Free Rotation Map…"),
         marked("Shows the path and the tool rotation as a map; the curve can be edited by hand"),
-        openers.redundancy_map,
+        redundancy_map,
         whats_this.joint_path,
         True,
     ),
@@ -69,7 +238,7 @@ TOOLS = {
             "Searches for positions of the part, its positioner or the deposition point, and "
             "shows the workspace of the robot"
         ),
-        openers.placement,
+        placement,
         whats_this.toolpath_and_cell,
         True,
     ),
@@ -77,7 +246,7 @@ TOOLS = {
         "path",
         marked("Path"),
         marked("Shows a toolpath or joint path layer by layer and point by point"),
-        openers.path,
+        path,
         whats_this.path,
         True,
     ),
@@ -85,7 +254,7 @@ TOOLS = {
         "infill",
         marked("Infill"),
         marked("Shows voids and double deposit of any layer of a solid over its section"),
-        openers.infill,
+        infill,
         whats_this.path,
         True,
     ),
@@ -93,7 +262,7 @@ TOOLS = {
         "simulate",
         marked("Simulate…"),
         marked("Plays a joint path or program with its machine"),
-        openers.simulate,
+        simulate,
         whats_this.joint_path,
         True,
     ),
@@ -104,14 +273,14 @@ TOOLS = {
             "Writes a path as STEP or DXF wires, a table or a report, or converts it to a CAM "
             "path or Robot trajectory"
         ),
-        openers.export_path,
+        export_path,
         whats_this.path,
     ),
     "Program": Tool(
         "program",
         marked("Program…"),
         marked("Writes the controller program for a joint path"),
-        openers.program,
+        program,
         whats_this.feasible,
     ),
     "NewMachine": Tool(
@@ -121,7 +290,7 @@ TOOLS = {
             "Creates a machine file from a URDF, a Denavit-Hartenberg table or OPW dimensions, "
             "checked against poses"
         ),
-        openers.new_machine,
+        new_machine,
         whats_this.nothing,
         True,
     ),
@@ -129,14 +298,14 @@ TOOLS = {
         "inspect",
         marked("Inspect…"),
         marked("Compares measured points with the plan"),
-        openers.inspect,
+        inspect,
         whats_this.part,
     ),
     "Plots": Tool(
         "plots",
         marked("Plots…"),
         marked("Plots joints against limits, distances between layers and deposit rates"),
-        openers.plots,
+        plots,
         whats_this.path,
         True,
     ),

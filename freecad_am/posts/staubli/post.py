@@ -9,7 +9,9 @@ Output, controller settings and confirmations: docs/posts/staubli.md.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+import textwrap
+import unicodedata
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
@@ -28,6 +30,7 @@ from ...core.program import (
     Wait,
     WaitInput,
 )
+from ...core.types import Array
 from ..catalogue import Naming, controller_checks
 from ..parts import Piece, Run, grouped, move_retracts, packed, size, unbroken
 from ..refusals import (
@@ -40,8 +43,155 @@ from ..refusals import (
     refuse_without_positions,
     refuse_without_speeds,
 )
-from . import numbers, text
+from . import numbers
+from .numbers import ANGLE_DECIMALS, LENGTH_DECIMALS
 from .read import read
+
+# ---- The text of the files: project (.pjx), data (.dtx) and programs (.pgx), UTF-8 with BOM
+
+_HEAD = '<?xml version="1.0" encoding="utf-8"?>\n'
+_XSI = 'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
+_PROJECT = """\
+<Project xmlns="http://www.staubli.com/robotics/VAL3/Project/3">
+  <Parameters version="s7.7.2" stackSize="5000" millimeterUnit="true" />
+  <Programs>
+{programs}  </Programs>
+  <Database>
+    <Data file="{name}.dtx" />
+  </Database>
+  <Libraries>
+{libraries}  </Libraries>
+</Project>
+"""
+_DATA = f"""\
+<Database {_XSI} xmlns="http://www.staubli.com/robotics/VAL3/Data/2">
+  <Datas>
+{{data}}  </Datas>
+</Database>
+"""
+_PROGRAM = f"""\
+<Programs {_XSI} xmlns="http://www.staubli.com/robotics/VAL3/Program/2">
+  <Program name="{{name}}" access="public">
+{{locals}}    <Code><![CDATA[begin
+{{code}}end]]></Code>
+  </Program>
+</Programs>
+"""
+_LOCALS = """\
+    <Locals>
+      <Local name="l_nI" type="num" xsi:type="array" size="1" />
+    </Locals>
+"""
+
+_JOINTS = " ".join(f'j{axis}="%.{ANGLE_DECIMALS}f"' for axis in range(1, 7))
+_FRAME = " ".join(
+    [f'{axis}="%.{LENGTH_DECIMALS}f"' for axis in ("x", "y", "z")]
+    + [f'{axis}="%.{ANGLE_DECIMALS}f"' for axis in ("rx", "ry", "rz")]
+)
+
+
+def _project_file(name: str, programs: Sequence[str], libraries: dict[str, str]) -> bytes:
+    """Return the project of an application.
+
+    Parameters
+    ----------
+    name : str
+        Name of the application.
+    programs : sequence of str
+        Names of its programs.
+    libraries : dict[str, str]
+        Path of each library by alias.
+
+    Returns
+    -------
+    bytes
+        The content of the file.
+    """
+    files = "".join(f'    <Program file="{program}.pgx" />\n' for program in programs)
+    library_files = "".join(
+        f'    <Library alias="{alias}" path="{path}" />\n' for alias, path in libraries.items()
+    )
+    return _file(_PROJECT.format(programs=files, name=name, libraries=library_files))
+
+
+def _data_file(arrays: dict[str, tuple[str, list[str]]]) -> bytes:
+    """The data of an application: type and the attributes of each value, by name."""
+    return _file(
+        _DATA.format(data="".join(_data_element(name, *arrays[name]) for name in sorted(arrays)))
+    )
+
+
+def _data_element(name: str, kind: str, values: list[str]) -> str:
+    head = f'    <Data name="{name}" access="private" xsi:type="array" type="{kind}" size="{len(values)}">\n'
+    return (
+        head
+        + "".join(f'      <Value key="{key}" {value} />\n' for key, value in enumerate(values))
+        + "    </Data>\n"
+    )
+
+
+def _program_file(name: str, lines: Iterable[str]) -> bytes:
+    """A program with the given lines."""
+    lines = [f"  {line}\n" for line in lines]
+    variables = _LOCALS if any("l_nI" in line for line in lines) else ""
+    return _file(_PROGRAM.format(name=name, locals=variables, code="".join(lines)))
+
+
+def _file(body: str) -> bytes:
+    return (_HEAD + body).encode("utf-8-sig")
+
+
+def _joint_rows(values: Array) -> list[str]:
+    """Return the attributes of joint values.
+
+    Parameters
+    ----------
+    values : (n, 6) array
+        Joint values, degrees.
+
+    Returns
+    -------
+    list of str
+        n texts.
+    """
+    return _rows(_JOINTS, values)
+
+
+def _frame_rows(values: Array, attributes: str) -> list[str]:
+    """Return the attributes of points, frames or tools.
+
+    Parameters
+    ----------
+    values : (n, 6) array
+        Coordinates, mm, and angles, degrees.
+    attributes : str
+        Further attributes to add to each.
+
+    Returns
+    -------
+    list of str
+        n texts.
+    """
+    return _rows(f"{_FRAME} {attributes}", values)
+
+
+def _rows(template: str, values: Array) -> list[str]:
+    return [template % row for row in zip(*values.T.tolist())]
+
+
+def _remark(text: str) -> list[str]:
+    """A comment on as many lines as it needs, in plain characters."""
+    decomposed = unicodedata.normalize("NFKD", text.replace("ß", "ss"))
+    plain = decomposed.encode("ascii", "ignore").decode("ascii").replace("]]>", "")
+    return [f"// {line}" for line in textwrap.wrap(plain, 80)]
+
+
+def _delay(seconds: float) -> list[str]:
+    """Standing still for a time, to 0.001 s; nothing for no time."""
+    return [f"delay({max(seconds, 0.001):.3f})"] if seconds > 0.0 else []
+
+
+# ---- The application
 
 __all__ = ["read", "write"]
 
@@ -134,7 +284,7 @@ def write(program: Program) -> dict[str, bytes]:
     name = program_name(program.name, "name")
     _refuse(program)
     remarks = [
-        line for words in (*program.remarks, *_own_remarks(program)) for line in text.remark(words)
+        line for words in (*program.remarks, *_own_remarks(program)) for line in _remark(words)
     ]
     groups = list(
         grouped(program, numbers.Descriptors(program), lambda block: _instructions(program, block))
@@ -152,7 +302,7 @@ def write(program: Program) -> dict[str, bytes]:
         program, name, name, [*remarks, *load], {}, {PART: f"./{names[0]}/{names[0]}.pjx"}
     )
     for number, (part_name, entries) in enumerate(zip(names, part_pieces, strict=True), 1):
-        head = text.remark(f"part {number} of {len(part_pieces)}")
+        head = _remark(f"part {number} of {len(part_pieces)}")
         files |= _application(program, f"{name}/{part_name}", part_name, head, entries)
     return files
 
@@ -216,13 +366,13 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, DepositOn):
-        return [] if program.dry_run else ["doDeposit=true", *text.delay(block.lead)]
+        return [] if program.dry_run else ["doDeposit=true", *_delay(block.lead)]
     if isinstance(block, DepositOff):
-        return [] if program.dry_run else [*text.delay(block.lead), "doDeposit=false"]
+        return [] if program.dry_run else [*_delay(block.lead), "doDeposit=false"]
     if isinstance(block, LayerStart):
-        return text.remark(f"layer {block.layer}")
+        return _remark(f"layer {block.layer}")
     if isinstance(block, Wait):
-        return text.delay(block.seconds)
+        return _delay(block.seconds)
     if isinstance(block, WaitInput):
         return [f"wait(diInput{block.number}==true)"]
     if isinstance(block, Call):
@@ -258,7 +408,7 @@ _GAUGE = 'fatherId="tCarried[0]"'
 
 def _single(six: Six | None, attributes: str) -> list[str]:
     values = np.zeros(6) if six is None else np.array([*six[:3], *np.degrees(six[3:])])
-    return text.frames(values[None] + 0.0, attributes)
+    return _frame_rows(values[None] + 0.0, attributes)
 
 
 def _files(
@@ -276,10 +426,10 @@ def _files(
             "doDeposit": ("dio", [f'link="BasicIO-1\\%Q{program.deposit_output - 1}"']),
         }
     return {
-        f"{folder}/{name}.pjx": text.project(name, ("start", "stop"), libraries),
-        f"{folder}/{name}.dtx": text.database(arrays),
-        f"{folder}/start.pgx": text.code("start", lines),
-        f"{folder}/stop.pgx": text.code("stop", ["resetMotion()", *off]),
+        f"{folder}/{name}.pjx": _project_file(name, ("start", "stop"), libraries),
+        f"{folder}/{name}.dtx": _data_file(arrays),
+        f"{folder}/start.pgx": _program_file("start", lines),
+        f"{folder}/stop.pgx": _program_file("stop", ["resetMotion()", *off]),
     }
 
 
@@ -288,18 +438,18 @@ def _motion(program: Program, run: Run, arrays: dict[str, tuple[str, list[str]]]
     moves, rows = run.moves, slice(run.start, run.stop)
     if moves.interpolation == JOINT_MOVE:
         pattern, array, kind = "movej(jPath[{point}],tCarried,mPath[{speed}])", "jPath", "jointRx"
-        values = text.joints(numbers.degrees(moves.joints[rows]))
+        values = _joint_rows(numbers.degrees(moves.joints[rows]))
     else:
         assert moves.position is not None and moves.rotation is not None
         frames = numbers.frames(moves.position[rows], moves.rotation[rows])
         if program.holds_part:
             pattern, array, kind = "movel(pTarget,tPath[{point}],mPath[{speed}])", "tPath", "tool"
-            values = text.frames(frames, _GAUGE)
+            values = _frame_rows(frames, _GAUGE)
         else:
             pattern = "movel(pPath[{point}],tCarried,mPath[{speed}])"
             array = "pPath"
             kind = "pointRx"
-            values = text.frames(frames, _POINT)
+            values = _frame_rows(frames, _POINT)
     first_index = _appended(arrays, array, kind, values)
     words = list(run.words[rows])
     alike = len(set(words)) == 1
