@@ -9,9 +9,10 @@ import os
 from collections.abc import Callable
 from typing import Any
 
-from ..brep.shapes.distance import skin
+from ..brep.shapes.tessellate import skin
 from ..core.geometry.job_files import digest, is_there
-from ..core.inspection import inspect, point_file, surfaces, table
+from ..core.inspection import inspect, point_file, table
+from ..core.inspection import planned as surfaces
 from ..core.inspection.planned import Planned, triangle_surface
 from ..core.issues import InputError, Text
 from ..core.parameters.inspection import InspectionParameters

@@ -16,7 +16,7 @@ import Part
 import pytest
 
 from freecad_am.brep.kernel import process as kernel_process
-from freecad_am.brep.shapes import distance, tessellate
+from freecad_am.brep.shapes import tessellate
 from freecad_am.brep.walls import sheet
 from freecad_am.core.issues import InputError
 
@@ -130,7 +130,7 @@ def test_both_come_to_the_same_numbers(name, monkeypatch):
         (tessellate.tessellated, 0.05),
         (sheet.tessellated_for, 2.0),
         (tessellate.triangles_of, 0.1),
-        (distance._by_face, 0.1),
+        (tessellate._by_face, 0.1),
     ):
         here = flat(function(shape.copy(), *rest))
         elsewhere = flat(in_thread(kernel_process.in_kernel_process, function, shape.copy(), *rest))

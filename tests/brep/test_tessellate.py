@@ -10,8 +10,7 @@ import Part
 import pytest
 from FreeCAD import Placement, Rotation, Vector
 
-from freecad_am.brep.shapes.distance import skin
-from freecad_am.brep.shapes.tessellate import DEFLECTION, body, tessellated
+from freecad_am.brep.shapes.tessellate import DEFLECTION, body, skin, tessellated
 from freecad_am.core.issues import InputError
 
 PLACE = Placement(Vector(10, -20, 30), Rotation(Vector(1, 2, 3), 50))

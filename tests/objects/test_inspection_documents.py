@@ -8,7 +8,7 @@ import Part
 import pytest
 
 from freecad_am import api
-from freecad_am.core.inspection import surfaces
+from freecad_am.core.inspection import planned as surfaces
 from freecad_am.core.issues import InputError
 
 pytestmark = pytest.mark.any_version

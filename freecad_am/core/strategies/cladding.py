@@ -3,22 +3,206 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
 import numpy as np
 
 from ..filling.cover import Cover
-from ..geometry.walls.patch_wall import CladFaces
+from ..geometry.curves.outline import estimate_outline
+from ..geometry.developable import Plane
+from ..geometry.formatting import place
+from ..geometry.mesh.triangle_mesh import Mesh
+from ..geometry.on_hub import Base
+from ..geometry.regions.region import Region, regions
+from ..geometry.walls.patch_wall import CladFaces, PatchWall
+from ..geometry.walls.surface import dot
 from ..issues import NOTE, InputError, Issue, Text
-from ..layers.on_faces import FaceLayer, pieces, slices
+from ..layers.chart import Chart, Charted, Place, axes
+from ..layers.margins import BORDER
+from ..layers.parted_chart import borders, flatten, split_flattenable, stretch_of
+from ..layers.surface import Slice
 from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
 from ..process.bead_model import BeadModel
 from ..process.order import IslandOrder, RankedBead, add_waits, order_beads
 from ..toolpath import Bead, Checks, MotionRules, Toolpath
+from ..types import Array
 from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of, layer_volumes, twice_volume
 from .solids.filling import Pictures, bead_width, over_fed, spaced
 from .solids.notes import notes
+
+# ---- The layers: each a layer height above the one before, along the faces' normals. Faces are cut
+# once into pieces that can be flattened. Every layer flattens its own surface, so beads have the
+# right spacing there, on the outermost layer of a bent face too.
+
+PART = Base("the part", Plane(), np.eye(4))  # charts are in its coordinates
+FOLDED = 0.05  # share of its area that a triangle keeps in a layer that does not fold
+PROBE = 0.15  # of the extent of a picture: length about its middle along which its direction is measured
+ROUNDS = 5  # of turning it: between bent ends the way is not the picture's
+HALVES = 4  # of an edge of a border, where that bows
+
+
+@dataclass(frozen=True, eq=False)
+class FaceLayer(Charted):
+    """A piece of a layer on faces. sheet: these, exactly. feet: (n, 3) mm, the vertices of the chart on them. distance: mm
+    above them. stretch: the largest share by which lengths of the picture differ from those in the part."""
+
+    sheet: PatchWall
+    feet: Array
+    distance: float
+    stretch: float
+
+    @property
+    def look(self) -> float:
+        """A usual edge of the mesh."""
+        return self.chart.mesh.typical_edge
+
+    def in_part(self, location: Place) -> tuple[Array, Array]:
+        """Return the exact points above the faces, and their normals."""
+        approximate = np.einsum(
+            "nk,nkc->nc", location.share, self.feet[self.chart.mesh.faces[location.triangle]]
+        )
+        feet, normals = self.sheet.project(approximate)
+        return feet + self.distance * normals, normals
+
+
+class Piece(NamedTuple):
+    """A piece of a sheet flattened as one: vertices (n, 3) on it with unit normals (n, 3), and
+    their triangles.
+    """
+
+    mesh: Mesh
+    normals: Array
+
+
+def pieces(sheet: PatchWall, strategy: CladdingParameters) -> list[Piece]:
+    """Return a sheet in pieces that can be flattened within the distortion allowed."""
+    sheet_pieces = []
+    for submesh in split_flattenable(sheet.mesh, strategy.distortion):
+        feet, normals = sheet.project(submesh.vertices)
+        sheet_pieces.append(Piece(Mesh(feet, submesh.faces), normals))
+    return sheet_pieces
+
+
+def slices(sheet: PatchWall, sheet_piece: Piece, strategy: CladdingParameters) -> Iterator[Slice]:
+    """Yield the layers of a piece of faces, outwards.
+
+    Parameters
+    ----------
+    sheet : PatchWall
+        The faces.
+    sheet_piece : Piece
+        A piece that can be flattened.
+    strategy : CladdingParameters
+        Number of layers, layer height and chord error.
+
+    Yields
+    ------
+    Slice
+        The layers, each on a FaceLayer.
+
+    Raises
+    ------
+    InputError
+        FOLDED if layers reach over a hollow's middle.
+    """
+    mesh = sheet_piece.mesh
+    for number in range(strategy.layers):
+        distance = number * strategy.layer_height
+        layer_mesh = Mesh(mesh.vertices + distance * sheet_piece.normals, mesh.faces)
+        _refuse_folded(mesh, layer_mesh, number, sheet.label, strategy)
+        flat = flatten(layer_mesh)
+        surface = _along_x(
+            FaceLayer(
+                Chart(layer_mesh, flat.points),
+                sheet,
+                mesh.vertices,
+                distance,
+                stretch_of(flat, layer_mesh.areas),
+            )
+        )
+        filled_regions = tuple(
+            region.simple(BORDER * strategy.chord_error)
+            for region in _regions(surface.chart, strategy.chord_error)
+        )
+        yield Slice(number, PART, surface, filled_regions)
+
+
+def _along_x(layer: FaceLayer) -> FaceLayer:
+    """Return the layer with its picture about the origin, turned so that in its middle x runs as
+    the part's X does.
+
+    Where the layer is normal to X there, the part's Y replaces X.
+    """
+    flat = layer.chart.flat - layer.chart.flat.mean(axis=0)
+    for _ in range(ROUNDS):
+        chart = Chart(layer.chart.mesh, flat)
+        centres = flat[chart.mesh.faces].mean(axis=1)
+        middle = centres[int(np.argmin(np.hypot(*centres.T)))]
+        reach = max(PROBE * float(np.ptp(flat[:, 0])), layer.look)
+        points, normals = layer.in_part(
+            chart.find(middle + reach * np.array([[-1.0, 0.0], [1.0, 0.0], [0.0, 0.0]]))
+        )
+        axis_x, axis_y = axes(normals[2:])
+        direction = points[1] - points[0]
+        angle = np.arctan2(axis_y[0] @ direction, axis_x[0] @ direction)
+        cos, sin = np.cos(angle), np.sin(angle)
+        flat = flat @ np.array([[cos, sin], [-sin, cos]])
+    return replace(layer, chart=Chart(layer.chart.mesh, flat))
+
+
+def _regions(chart: Chart, chord_error: float) -> tuple[Region, ...]:
+    """Return the picture of the piece. Its borders are smooth through the vertices, which are on
+    the edges of the faces.
+    """
+    return regions([_smooth(chart.flat[border], chord_error) for border in borders(chart.mesh)])
+
+
+def _smooth(loop: Array, chord_error: float) -> Array:
+    """Return a loop (n, 2) with points added on edges that bow."""
+    points = np.column_stack([np.vstack([loop, loop[:1]]), np.zeros(len(loop) + 1)])
+    curve = estimate_outline(points, True)
+    segment = np.arange(len(loop))
+    bow = np.linalg.norm(curve.at(segment, 0.5)[0] - 0.5 * (points[:-1] + points[1:]), axis=1)
+    piece_count = np.clip(np.ceil(np.sqrt(bow / (BORDER * chord_error))), 1, 4 * HALVES).astype(
+        np.intp
+    )
+    segment_number = np.repeat(segment, piece_count)
+    number = np.arange(len(segment_number)) - np.repeat(
+        np.cumsum(piece_count) - piece_count, piece_count
+    )
+    smooth_loop: Array = curve.at(segment_number, number / piece_count[segment_number])[0][:, :2]
+    return smooth_loop
+
+
+def _refuse_folded(
+    mesh: Mesh, above: Mesh, layer: int, label: str, strategy: CladdingParameters
+) -> None:
+    share = dot(above.area_vectors, mesh.area_vectors) / np.maximum(
+        dot(mesh.area_vectors, mesh.area_vectors), 1e-300
+    )
+    big = mesh.areas > 0.01 * np.median(mesh.areas)
+    if (share[big] > FOLDED).all():
+        return
+    worst = int(np.argmin(np.where(big, share, np.inf)))
+    raise InputError(
+        "FOLDED",
+        "strategy.layers",
+        "layer {} of {} is {:.4g} mm above the faces, the depth of the hollow at {}, and would "
+        "fold there; deposit at most {} layer(s), or exclude the hollow face",
+        layer,
+        label,
+        layer * strategy.layer_height,
+        place(mesh.vertices[mesh.faces[worst]].mean(axis=0)),
+        layer,
+    )
+
+
+# ---- The beads
 
 REPORTED_DISTORTION = 0.02  # distortion that is reported
 

@@ -27,8 +27,7 @@ from ...posts.catalogue import plain
 from .. import icons
 from ..in_language import tr
 from .figure_table import FigureTable, Page, axis_names, choice, heading
-from .poses_page import PosesPage
-from .source_page import SourcePage
+from .geometry_pages import PosesPage, SourcePage
 
 _POSE = ["X", "Y", "Z", "roll", "pitch", "yaw"]
 

@@ -4,22 +4,27 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, replace
 from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
+import numpy as np
 from PySide import QtGui
 
+from ...core.geometry.frames import TURN
 from ...core.geometry.on_hub import SolidsOnHub
 from ...core.kinematics import cell as cells
 from ...core.motion import Motion
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
 from ...core.planning import program as programs
+from ...core.planning.redundancy_map import RZ
+from ...core.planning.redundancy_map import Picture as MapPicture
 from ...core.simulation import timeline
 from ...core.simulation.achievable_feed import spread_to_deposit_rows
+from ...core.types import Array
 from ...objects import user_machines
 from ...objects.current import is_stale
 from ...objects.families.registry import stage_family
@@ -28,6 +33,7 @@ from ...plots.chart import LIGHT, Picture
 from ...plots.draw import Range, Window, figure
 from ...plots.files import KINDS, image, values
 from ...plots.source import Source
+from ..colours import ramp
 from ..in_language import tr
 from ..views.toolpath import band_of
 from ..worker import Background, Worker
@@ -211,3 +217,143 @@ def write_file(content: bytes, path: str) -> None:
     finally:
         if os.path.exists(unfinished):
             os.remove(unfinished)
+
+
+# ---- The map of the free rotation as an image, or its cells as comma separated values
+
+STEPS = 64  # of the ramp
+TICKS = np.arange(-180, 181, 60)  # deg
+
+
+def save_map(board: Any, branch: int, canvas: Any, obj: Any) -> None:
+    """Ask for a file, and write to it the map of a joint path as the canvas shows it, or its cells; board: its
+    `redundancy_map.board.Board`."""
+    if canvas.painted is None:
+        return
+    picture, painted, curves = board.pictures[branch], canvas.painted, list(canvas.curves)
+    size = canvas.width(), canvas.height()
+
+    def content(ending: str) -> bytes:
+        from ...plots import files
+
+        if ending == "csv":
+            return "".join(map_values(board, picture)).encode()
+        return files.image(files.figure(_cells(board, painted, curves, files.Cells), *size), ending)
+
+    ask(tr("Save the map"), obj, "map", content)
+
+
+def map_values(board: Any, picture: MapPicture) -> Iterator[str]:
+    """A header and a row for each cell, column by column, in the units of machine files; '' for a
+    cell out of reach.
+
+    `state`: the objection to a cell, '' without one.
+    """
+    names, across = _across(board)
+    up_name, up = _up(board)
+    yield (
+        ",".join([*names, up_name, "phi_deg", "joint_margin_percent", "condition", "state"]) + "\n"
+    )
+    arm = np.zeros_like(picture.outside) if picture.arm is None else picture.arm
+    state = np.select(
+        [~picture.reachable, picture.past_limit, picture.singular, arm, picture.forbidden],
+        ["unreachable", "beyond a limit", "near a singularity", "a link touches", "not allowed"],
+        "",
+    )
+    phi = np.degrees(_phi(board, picture))
+    for column, labels in enumerate(across):
+        for row, value in enumerate(up):
+            figures = 100.0 * picture.margin[row, column], picture.condition[row, column]
+            cells = [
+                f"{figure:.10g}" if picture.reachable[row, column] else "" for figure in figures
+            ]
+            yield (
+                ",".join(
+                    [
+                        *labels,
+                        f"{value:.10g}",
+                        f"{phi[row, column]:.10g}",
+                        *cells,
+                        state[row, column],
+                    ]
+                )
+                + "\n"
+            )
+
+
+def _across(board: Any) -> tuple[list[str], list[list[str]]]:
+    """Return names and texts (C,) of the columns."""
+    labels = [
+        [str(number) for number in board.place(column)] for column in range(len(board.columns))
+    ]
+    if board.offsets is None or board.across is None:
+        return ["layer", "bead", "point"], labels
+    name, axis_values = _axis(board, board.across, board.offsets)
+    return ["layer", "bead", "point", name], [
+        [*row, f"{value:.10g}"] for row, value in zip(labels, axis_values, strict=True)
+    ]
+
+
+def _up(board: Any) -> tuple[str, Array]:
+    """Return name and values (R,) of the rows."""
+    if board.pair is not None:
+        return _axis(board, board.pair.up, board.pair.values)
+    assert board.map is not None
+    return "rz_deg" if board.axis == RZ else "rotation_deg", np.degrees(board.map.values)
+
+
+def _axis(board: Any, number: int, inside: Array) -> tuple[str, Array]:
+    """An external axis: name and values as a machine file has them."""
+    machine, index = board.source.cell.machine, board.source.cell.robot.chain.axes + number
+    unit = "mm" if machine.chain.sliding[index] else "deg"
+    return f"{machine.axes[index]}_{unit}", inside / machine.unit_values[index]
+
+
+def _phi(board: Any, picture: MapPicture) -> Array:
+    """(R, C) the rotation about the tool axis of each cell."""
+    if board.pair is not None:
+        return np.full(picture.margin.shape, board.pair.phi)
+    assert board.map is not None
+    return board.map.phi
+
+
+def _cells(board: Any, painted: Any, curves: list[Any], factory: Any) -> Any:
+    """The map for a figure."""
+    count = len(painted.hatched)
+
+    def row(value: Any) -> Any:
+        return (np.asarray(value) + np.pi) / TURN * (count - 1)
+
+    lines = []
+    for curve in curves:
+        rows = row((np.asarray(curve.values) + np.pi) % TURN - np.pi)
+        jumps = np.abs(np.diff(rows, prepend=rows[:1])) > 0.5 * count
+        lines.append(
+            (np.where(jumps, np.nan, rows), tuple(channel / 255.0 for channel in curve.colour))
+        )
+    if board.pair is not None:
+        up, rows_ = (
+            board.pair.name,
+            [(float(row(height)), text) for height, text in board.pair.labels],
+        )
+        across = [float(row(board.pair.planned))]
+    else:
+        up, across = (tr("RZ") if board.axis == RZ else tr("rotation")), []
+        rows_ = [(float(row(np.radians(tick))), f"{tick}°") for tick in TICKS]
+    scale = painted.scale
+    return factory(
+        title=board.title,
+        up=up,
+        colours=painted.colours,
+        hatched=painted.hatched,
+        columns=board.labels,
+        rows=rows_,
+        lines=([mark - 0.5 for mark in board.marks[1:]], across),
+        curves=lines,
+        ramp=ramp(np.linspace(0.0, 1.0, STEPS)),
+        low=scale.low,
+        high=max(scale.high, scale.low + 1e-9),
+        scale=f"{tr(scale.title)} {scale.unit}".strip(),
+        classes=[(tr(text), colour) for text, colour in painted.classes],
+        hatching=tr("not allowed, or touching"),
+    )

@@ -26,14 +26,13 @@ from ..dock_area import Lookout
 from ..in_language import error_line, tr, translated, translated_error
 from ..path import dock as path_dock
 from ..path.path_view import PathView
-from ..plots.map_file import save
+from ..plots.saving import save_map
 from ..simulation import dock as simulation_dock
 from ..widgets.shape_inputs import job_named, job_selection
 from ..widgets.steady import Scrolled
 from ..worker import Background, Later, Work, Worker
+from .beside import AXES, CURVES, Consequences, Controls, Figures, Form, readout
 from .board import COLOURS, Board, Dragged, build_curves
-from .consequences import Consequences, Figures, Form, readout
-from .controls import AXES, CURVES, Controls
 from .draft import Draft, Source, source_of, status_of
 from .painting import KINDS, Canvas, painted
 
@@ -196,7 +195,7 @@ class RedundancyMapDock:
         self.figures = Figures(self._show_curves)
         self.form = Form(self.canvas, self.controls, self.figures)
         self.form.buttons["save"].clicked.connect(
-            lambda *_: save(self.board, self.draft.branch, self.canvas, self.obj)
+            lambda *_: save_map(self.board, self.draft.branch, self.canvas, self.obj)
         )
         for name, act in (
             ("use", self._use),

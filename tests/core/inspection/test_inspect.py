@@ -10,8 +10,7 @@ import pytest
 from freecad_am.core.inspection import bands, figures, point_file, table
 from freecad_am.core.inspection.figures import narrowest
 from freecad_am.core.inspection.inspect import inspect
-from freecad_am.core.inspection.planned import triangle_surface
-from freecad_am.core.inspection.surfaces import planned
+from freecad_am.core.inspection.planned import planned, triangle_surface
 from freecad_am.core.issues import AmError, InputError
 from freecad_am.core.parameters.inspection import InspectionParameters
 from tests.core.inspection_parts import R0, away, funnel, hemisphere, moved, sampled, scan

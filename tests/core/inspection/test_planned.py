@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.inspection.planned import sided, triangle_surface
-from freecad_am.core.inspection.surfaces import planned
+from freecad_am.core.inspection.planned import planned, sided, triangle_surface
 from freecad_am.core.issues import InputError
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from tests.core.inspection_parts import R0, funnel, hemisphere, sampled

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.slicing import revolution_directions as directions
+from freecad_am.core.slicing import revolution as directions
 
 
 def some_builds(count=200):

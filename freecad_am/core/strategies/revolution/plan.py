@@ -19,7 +19,7 @@ from ...parameters.cell import NozzleParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import RevolutionParameters
 from ...process import classes, order
-from ...slicing import meridian_levels
+from ...slicing import revolution
 from ...toolpath import Bead, BeadRole, Layer, MotionRules, Toolpath
 from ...types import Array, Index
 from .. import size
@@ -159,7 +159,7 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
     """
     meridian = wall.meridian
     along_wall = strategy.spacing == "arc-length"
-    levels = meridian_levels.arc_length_levels if along_wall else meridian_levels.iso_height_levels
+    levels = revolution.arc_length_levels if along_wall else revolution.iso_height_levels
     layers, remainder = levels(meridian, strategy.layer_height)
     issues = []
     if remainder > 1e-6 * strategy.layer_height:
@@ -195,7 +195,7 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
 
 
 def _spacing_issues(wall: RevolvedWall, layers: list[Array], layer_height: float) -> list[Issue]:
-    gaps = [meridian_levels.spacing(wall.meridian, a, b) for a, b in pairwise(layers)]
+    gaps = [revolution.spacing(wall.meridian, a, b) for a, b in pairwise(layers)]
     widest = np.array([gap.max() for gap in gaps])
     narrowest = np.array([gap.min() for gap in gaps])
     over = (1.0 + SPACING_BAND + 1e-9) * layer_height
@@ -346,7 +346,7 @@ def spiral_layers(
             "PARTIAL_TURN", "strategy.path", "{} is not a full turn; use path: layers", wall.label
         )
     pitch = strategy.layer_height
-    meridian_levels.arc_length_levels(wall.meridian, pitch)
+    revolution.arc_length_levels(wall.meridian, pitch)
     end = _end(wall.meridian, pitch)
     turns = _turn_angles(wall.meridian, end, pitch, strategy)
     s = np.clip(pitch * (turns / (2.0 * math.pi) - 1.0), 0.0, end)

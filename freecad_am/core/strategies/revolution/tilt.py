@@ -19,7 +19,7 @@ from ...issues import ERROR, NOTE, Issue, Text, Word
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
 from ...parameters.strategy import RevolutionParameters
-from ...slicing import revolution_directions as directions
+from ...slicing import revolution as directions
 from ...types import Array, Index, Mask
 from .clearance import (
     CHORD,
