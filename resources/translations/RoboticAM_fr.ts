@@ -1407,12 +1407,12 @@
         <translation>(d&apos;autres sont sur la courbure de {0} : comme substrat il donne sa forme à leurs couches)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>(planned)</source>
         <translation>(planifié)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>, and </source>
         <translation>, et </translation>
     </message>
@@ -1452,7 +1452,7 @@
         <translation>0 rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>0, or 1 if the joint slides along z: a five-axis machine has three such joints</source>
         <translation>0, ou 1 si l&apos;articulation glisse selon z : une machine à cinq axes a trois articulations de ce type</translation>
     </message>
@@ -1487,7 +1487,7 @@
         <translation>1 solide, {:.4g} mm de haut</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>1, or -1 if the joint moves the other way</source>
         <translation>1, ou -1 si l&apos;articulation va dans l&apos;autre sens</translation>
     </message>
@@ -1577,17 +1577,17 @@
         <translation>&lt;{0}&gt; {1} n&apos;a pas de &lt;{2}&gt; ; ajoutez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>A URDF file</source>
         <translation>Un fichier URDF</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>A copy of another machine</source>
         <translation>Une copie d&apos;une autre machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>A joint would need {:.0f} % of its speed: the planner will slow it down, or reject the curve</source>
         <translation>Une articulation devrait aller à {:.0f} % de sa vitesse : le planificateur la ralentira, ou refusera</translation>
     </message>
@@ -1617,7 +1617,7 @@
         <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence autour de laquelle tourner, si la forme n&apos;en a pas. Une esquisse tourne autour de son axe vertical, sauf si un autre est choisi.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>A table of Denavit and Hartenberg</source>
         <translation>Un tableau de Denavit et Hartenberg</translation>
     </message>
@@ -1667,7 +1667,7 @@
         <translation>Ajoute les éléments sélectionnés, sinon le suivant du document</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>After</source>
         <translation>Après</translation>
     </message>
@@ -1677,7 +1677,7 @@
         <translation>Après la couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>All beads together</source>
         <translation>Tous les cordons ensemble</translation>
     </message>
@@ -1697,7 +1697,7 @@
         <translation>Toute la pièce est déposée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>All points are feasible</source>
         <translation>Tous les points conviennent</translation>
     </message>
@@ -1767,7 +1767,7 @@
         <translation>Angle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Angle added to the joint angle, deg</source>
         <translation>Angle ajouté à celui de l&apos;articulation, deg</translation>
     </message>
@@ -1817,7 +1817,7 @@
         <translation>Dégagement du bras</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>As planned</source>
         <translation>Comme planifié</translation>
     </message>
@@ -1842,7 +1842,7 @@
         <translation>Axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Axis 2 is a1 ahead of axis 1 and c1 above the base; c2 to axis 3; axis 4 is a2 from axis 3 (negative: above it), b to the side; c3 to the wrist centre, c4 to the flange. The angle of the arm is q · sign - offset; at zero it stretches straight up.</source>
         <translation>L&apos;axe 2 est à a1 devant l&apos;axe 1 et à c1 au-dessus de la base ; c2 jusqu&apos;à l&apos;axe 3 ; l&apos;axe 4 est à a2 de l&apos;axe 3 (négatif : au-dessus de lui), b de côté ; c3 jusqu&apos;au centre du poignet, c4 jusqu&apos;à la bride. L&apos;angle du bras est q · signe - décalage ; à zéro il se tend droit vers le haut.</translation>
     </message>
@@ -1862,7 +1862,7 @@
         <translation>Les BASE_DATA et TOOL_DATA des numéros du programme sont ceux de la cellule, avec leur charge</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Back</source>
         <translation>Retour</translation>
     </message>
@@ -1892,7 +1892,7 @@
         <translation>Base : le repère de base du fabricant, dans lequel le pupitre montre les positions, par rapport à la plaque au sol. FANUC le place à la hauteur de l&apos;axe 2. Bride : dans le dernier corps, Z sortant de la plaque. Rotation : autour de X, puis Y, puis Z.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Bead</source>
         <translation>Cordon</translation>
     </message>
@@ -1922,7 +1922,7 @@
         <translation>Largeur de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Before</source>
         <translation>Avant</translation>
     </message>
@@ -1957,7 +1957,7 @@
         <translation>Lissage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Branch</source>
         <translation>Branche</translation>
     </message>
@@ -1967,7 +1967,7 @@
         <translation>Branche de cette trajectoire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Browse…</source>
         <translation>Parcourir…</translation>
     </message>
@@ -2027,7 +2027,7 @@
         <translation>Annuler</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/worker.py"/>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>Cancelled.</source>
         <translation>Annulé.</translation>
     </message>
@@ -2077,12 +2077,12 @@
         <translation>Certificat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Certificate: {:.4g} as planned, no rotation goes below {:.4g}: a gap of {:.1f} %, {:.1f} % in layer {} bead {}</source>
         <translation>Certificat : {:.4g} tel que planifié, aucune rotation ne descend sous {:.4g} : un écart de {:.1f} %, de {:.1f} % dans la couche {} cordon {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Change all beads together</source>
         <translation>Changer tous les cordons ensemble</translation>
     </message>
@@ -2097,7 +2097,7 @@
         <translation>De combien la valeur de l&apos;entrée dans un programme monte par degré.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Changes the conventions accordingly; the entered poses stay</source>
         <translation>Change ainsi les conventions ; les poses restent telles que saisies</translation>
     </message>
@@ -2107,7 +2107,7 @@
         <translation>Longueur caractéristique</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Check poses</source>
         <translation>Poses de contrôle</translation>
     </message>
@@ -2252,7 +2252,7 @@
         <translation>Couleurs des trajectoires</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Compare methods</source>
         <translation>Comparer les méthodes</translation>
     </message>
@@ -2357,7 +2357,7 @@
         <translation>Fait toutes les étapes pour la forme sélectionnée, de la cellule au programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Criterion</source>
         <translation>Critère</translation>
     </message>
@@ -2372,12 +2372,12 @@
         <translation>Cliquez, avec Ctrl, sur les faces à couvrir.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Cubic</source>
         <translation>Cubique</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Curve</source>
         <translation>Courbe</translation>
     </message>
@@ -2437,7 +2437,7 @@
         <translation>Flèche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Degree</source>
         <translation>Degré</translation>
     </message>
@@ -2447,12 +2447,12 @@
         <translation>Degré du polynôme d&apos;une couche.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Degree of the polynomials</source>
         <translation>Degré des polynômes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Degree {}</source>
         <translation>Degré {}</translation>
     </message>
@@ -2592,7 +2592,7 @@
         <translation>Sortie logique qui commande le dépôt.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Dimensions of an arm with a spherical wrist (OPW)</source>
         <translation>Cotes d&apos;un bras à poignet sphérique (OPW)</translation>
     </message>
@@ -2797,7 +2797,7 @@
         <translation>Axes externes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>External axes of the robot in this file, in its base frame, as named in a cell: NAME {}</source>
         <translation>Axes externes du robot de ce fichier, dans son repère de base, comme une cellule les nomme : NAME {0}</translation>
     </message>
@@ -3057,7 +3057,7 @@
         <translation>Quatre axes seulement : de combien l&apos;outil peut manquer la direction demandée.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Frame of the first row in the base, and flange in the frame of the last row. mm and deg; about X first, then Y, then Z of the outer frame.</source>
         <translation>Repère de la première ligne dans la base, et bride dans le repère de la dernière ligne. mm et deg ; d&apos;abord autour de X, puis Y, puis Z du repère extérieur.</translation>
     </message>
@@ -3112,7 +3112,7 @@
         <translation>De la couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>From link</source>
         <translation>Du corps</translation>
     </message>
@@ -3302,7 +3302,7 @@
         <translation>Cacher la machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Horizontal axis</source>
         <translation>Axe horizontal</translation>
     </message>
@@ -3417,7 +3417,7 @@
         <translation>Jerk</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Jog the machine to at least three poses in which every axis has moved, and enter the values on the pendant: the joints, and the pose of the tool frame in the base frame. The manufacturer&apos;s simulator works as well; values computed from this geometry prove nothing. You can paste a table.</source>
         <translation>Amenez la machine à au moins trois poses où chaque axe a bougé, et saisissez ce que montre le pupitre : les articulations, et la place du repère outil dans le repère de base. Le simulateur du constructeur convient aussi ; des chiffres calculés à partir de cette géométrie ne prouvent rien. Un tableau peut être collé.</translation>
     </message>
@@ -3652,7 +3652,7 @@
         <translation>Couche {} (0 à {})</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Layer {} bead {} point {}</source>
         <translation>Couche {} cordon {} point {}</translation>
     </message>
@@ -3762,7 +3762,7 @@
         <translation>Longueur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Length along x, mm</source>
         <translation>Longueur le long de x, mm</translation>
     </message>
@@ -3812,7 +3812,7 @@
         <translation>Divise les lignes de translation du jacobien.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Lengths are in mm, angles in degrees. Robots need six revolute axes, machine tools three prismatic and two revolute axes; the wizard checks this when you continue. Tracks, turntables and positioners next to a robot have one axis or two.</source>
         <translation>Les longueurs sont en mm, les angles en degrés. Les robots demandent six axes rotatifs, les machines-outils trois axes linéaires et deux rotatifs ; l&apos;assistant le vérifie quand vous continuez. Les rails, plateaux et positionneurs à côté d&apos;un robot ont un ou deux axes.</translation>
     </message>
@@ -3822,7 +3822,7 @@
         <translation>Le faire suivre une expression, comme {}Spreadsheet.height / 2</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Let the planner choose</source>
         <translation>Laisser choisir</translation>
     </message>
@@ -3857,7 +3857,7 @@
         <translation>Ligne {} : {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Linear</source>
         <translation>Linéaire</translation>
     </message>
@@ -3917,7 +3917,7 @@
         <translation>Aspect</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Lost</source>
         <translation>Perdus</translation>
     </message>
@@ -3947,7 +3947,7 @@
         <translation>M82 et G91 sont actifs ensemble : Klipper compte E depuis la position précédente, Marlin depuis zéro ; écrivez M83 ou G90</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Machine</source>
         <translation>Machine</translation>
     </message>
@@ -3992,7 +3992,7 @@
         <translation>Carte de la rotation libre…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Margin</source>
         <translation>Marge</translation>
     </message>
@@ -4087,7 +4087,7 @@
         <translation>Côté mesuré d&apos;une paroi : le côté extérieur, le côté intérieur, ou les deux.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Mechanisms in the file; each gets its own machine file</source>
         <translation>Mécanismes du fichier ; chacun reçoit son propre fichier machine</translation>
     </message>
@@ -4152,7 +4152,7 @@
         <translation>Règle la vitesse d&apos;avance pour que les cordons gardent leur largeur dans les courbes : none, csw (acier, Dai 2020), li-2025 (aluminium), ou le chemin d&apos;une table d&apos;étalonnage.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Modified (Craig): Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z, d)</source>
         <translation>Modifié (Craig) : Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z, d)</translation>
     </message>
@@ -4447,12 +4447,12 @@
         <translation>Excentrage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Offset (deg)</source>
         <translation>Décalage (deg)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Offset along z, mm</source>
         <translation>Décalage le long de z, mm</translation>
     </message>
@@ -4472,7 +4472,7 @@
         <translation>Une seule couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>One more row</source>
         <translation>Une ligne de plus</translation>
     </message>
@@ -4492,7 +4492,7 @@
         <translation>Un point en avant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>One polynomial per bead, or one RZ for the whole job</source>
         <translation>Un polynôme par cordon, ou un RZ pour tout le travail</translation>
     </message>
@@ -4502,7 +4502,7 @@
         <translation>Un polynôme par couche, une valeur par point, ou une valeur pour tout le travail.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>One pose must be at the serial zeros, where the controller shows {}.</source>
         <translation>Une pose doit être aux zéros en série, où la commande montre {0}.</translation>
     </message>
@@ -4512,7 +4512,7 @@
         <translation>Ouvrir une pièce…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/openers.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Open part</source>
         <translation>Ouvrir une pièce</translation>
     </message>
@@ -4642,12 +4642,12 @@
         <translation>Pièce de révolution</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Part of the cell</source>
         <translation>Partie de la cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/tools/openers.py"/>
+        <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Parts, meshes and tables of points ({})</source>
         <translation>Pièces, maillages et tableaux de points ({})</translation>
     </message>
@@ -4687,7 +4687,7 @@
         <translation>Placement…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Plan constant, point-by-point and layer-by-layer in this configuration, for comparison</source>
         <translation>Planifier constant, point-by-point et layer-by-layer dans cette configuration, pour comparer</translation>
     </message>
@@ -4697,7 +4697,7 @@
         <translation>Planifier la trajectoire articulaire…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Plan the joint path again layer by layer, without a given curve</source>
         <translation>Replanifier la trajectoire articulaire couche par couche, sans courbe donnée</translation>
     </message>
@@ -4812,7 +4812,7 @@
         <translation>Points desservis, %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Points that are unreachable, beyond a limit, near a singularity or not allowed</source>
         <translation>Points hors d&apos;atteinte, au-delà d&apos;une limite, près d&apos;une singularité ou non permis</translation>
     </message>
@@ -4827,12 +4827,12 @@
         <translation>Les polynômes donnent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Pose {}</source>
         <translation>Pose {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Poses before the first row and after the last row, if the table has them</source>
         <translation>Poses avant la première ligne et après la dernière, si le tableau en a</translation>
     </message>
@@ -4847,7 +4847,7 @@
         <translation>Position de l&apos;axe bloqué ; auto : la position où l&apos;angle restant est le plus petit.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Positioner</source>
         <translation>Positionneur</translation>
     </message>
@@ -4992,12 +4992,12 @@
         <translation>PyKDL n&apos;est pas installé ; le programme a été vérifié par un seul solveur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Quadratic</source>
         <translation>Quadratique</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Quantity shown by the colours</source>
         <translation>Ce que disent les couleurs</translation>
     </message>
@@ -5032,17 +5032,17 @@
         <translation>RY</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/map_file.py"/>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>RZ</source>
         <translation>RZ</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>RZ as in Chalvin 2020, the true tool rotation, or an external axis that is not on the other axis of the map</source>
         <translation>RZ comme dans Chalvin 2020, la vraie rotation autour de l&apos;axe de l&apos;outil, ou un autre axe externe que celui en travers</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>RZ at the start</source>
         <translation>RZ au départ</translation>
     </message>
@@ -5082,7 +5082,7 @@
         <translation>Largeurs extrêmes que les cordons peuvent avoir, en part de leur largeur et de leur écartement habituels, pour que les contours se répartissent également sur l&apos;épaisseur d&apos;une région et que les cordons aient la largeur des endroits minces.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Range of each joint on this curve; red beyond a limit</source>
         <translation>D&apos;où à où va chaque articulation sur cette courbe ; rouge au-delà d&apos;une limite</translation>
     </message>
@@ -5152,7 +5152,7 @@
         <translation>De combien le dépôt doit dépasser la pièce partout, pour être usiné : sa forme est prédite et comparée à la pièce ; rien : elle ne l&apos;est pas.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Reset to the planned curve</source>
         <translation>Revenir à la courbe planifiée</translation>
     </message>
@@ -5172,7 +5172,7 @@
         <translation>Retour en fin de cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Robot</source>
         <translation>Robot</translation>
     </message>
@@ -5297,7 +5297,7 @@
         <translation>Enregistrer les chiffres…</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/map_file.py"/>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>Save the map</source>
         <translation>Enregistrer la carte</translation>
     </message>
@@ -5307,7 +5307,7 @@
         <translation>Enregistrer le graphique</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Save…</source>
         <translation>Enregistrer…</translation>
     </message>
@@ -5437,7 +5437,7 @@
         <translation>Épaule, coude et poignet de la trajectoire articulaire ; cell : comme dans la cellule.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Shoulder, elbow and wrist, with the share of the map within reach and limits</source>
         <translation>Épaule, coude et poignet ; derrière, la part de la carte qu&apos;elle atteint dans ses limites</translation>
     </message>
@@ -5492,7 +5492,7 @@
         <translation>Afficher les vides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Shown on the map</source>
         <translation>Montré sur la carte</translation>
     </message>
@@ -5532,7 +5532,7 @@
         <translation>Le côté des faces qui est recouvert : celui vers lequel pointent leurs normales, l&apos;extérieur d&apos;un solide (front), ou l&apos;autre côté de faces qui ne sont d&apos;aucun solide (back).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Sign</source>
         <translation>Signe</translation>
     </message>
@@ -5672,7 +5672,7 @@
         <translation>D&apos;où viennent les poses de contrôle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Source of the geometry</source>
         <translation>D&apos;où vient la géométrie</translation>
     </message>
@@ -5757,7 +5757,7 @@
         <translation>Écart type de l&apos;épaisseur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Standard: Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)</source>
         <translation>Standard : Rot(z, theta) Trans(z, d) Trans(x, a) Rot(x, alpha)</translation>
     </message>
@@ -5897,7 +5897,7 @@
         <translation>Le bras reste dégagé de la pièce, du dépôt, du plateau, de la buse et de lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>The bead whose polynomial is shown; click the map to choose one</source>
         <translation>Le cordon dont le polynôme est montré ; un clic sur la carte en choisit un</translation>
     </message>
@@ -5967,7 +5967,7 @@
         <translation>Les broches numériques et analogiques sont reliées au procédé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>The displacement of the joints (Chalvin 2020, eq. 17), and its ratio to the plan</source>
         <translation>Le déplacement des articulations (Chalvin 2020, éq. 17), et son rapport au plan</translation>
     </message>
@@ -6032,12 +6032,12 @@
         <translation>Les premières lignes du programme tel qu&apos;il serait écrit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>The fixed link</source>
         <translation>Le corps fixe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>The flange link, with Z out of the flange: tool0 in ROS-Industrial files</source>
         <translation>Le corps de la bride, Z sortant de la bride : tool0 dans les fichiers ROS-Industrial</translation>
     </message>
@@ -6072,7 +6072,7 @@
         <translation>Les articulations amènent l’outil à chaque point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>The largest joint speed at the travel speed, as a share of its maximum</source>
         <translation>La plus grande part de la vitesse maximale d&apos;une articulation à la vitesse d&apos;avance</translation>
     </message>
@@ -6097,12 +6097,12 @@
         <translation>La couche affichée, à partir de 0</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>The layer shown; -1 for all layers</source>
         <translation>La couche montrée ; -1 pour toutes les couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>The limits of J3 as shown can be entered on the previous page.</source>
         <translation>Les limites de J3 tel qu&apos;il est montré peuvent être données à la page précédente.</translation>
     </message>
@@ -6112,17 +6112,17 @@
         <translation>La charge de t_am est réglée, et la vitesse générale est à 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>The machine does not reproduce these poses, and no single sign, zero, coupling or frame explains it. Check for typing errors, the angle convention, the tool frame, and lengths.</source>
         <translation>La machine ne donne pas ces poses, et aucun signe, zéro, couplage ou repère ne l&apos;explique à lui seul. Cherchez des fautes de frappe, et vérifiez la convention d&apos;angles, le repère outil et les longueurs.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>The machine does not reproduce these poses. It would if:</source>
         <translation>La machine ne donne pas ces poses. Elle le ferait si :</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>The machine does not reproduce these poses; enter at least three to locate the error.</source>
         <translation>La machine ne donne pas ces poses ; entrez-en au moins trois pour localiser l&apos;erreur.</translation>
     </message>
@@ -6132,7 +6132,7 @@
         <translation>La machine est gardée dans le dossier de vos propres machines ; cellules et travaux la connaissent par son nom.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>The machine reproduces all {} poses, within {} mm.</source>
         <translation>La machine donne toutes les {} poses, à {} mm près.</translation>
     </message>
@@ -6182,7 +6182,7 @@
         <translation>La vitesse générale est à 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>The path, or an external axis at the point clicked last, with the other axes as planned there</source>
         <translation>La trajectoire, ou un axe externe au dernier point cliqué, les autres axes comme prévu à cet endroit</translation>
     </message>
@@ -6242,12 +6242,12 @@
         <translation>La simulation est terminée : {why}.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>The smallest distance to a limit, as a share of half the range of the joint</source>
         <translation>La plus petite part de la demi-plage d&apos;une articulation qui reste jusqu&apos;à une limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>The smallest inverse condition number of the Jacobian, sigma_min / sigma_max</source>
         <translation>Le plus petit sigma_min / sigma_max du jacobien</translation>
     </message>
@@ -6422,7 +6422,7 @@
         <translation>Mince</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>This curve</source>
         <translation>Cette courbe</translation>
     </message>
@@ -6517,7 +6517,7 @@
         <translation>À la couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>To link</source>
         <translation>Au corps</translation>
     </message>
@@ -6532,7 +6532,7 @@
         <translation>Tolérance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Tool</source>
         <translation>Outil</translation>
     </message>
@@ -6552,7 +6552,7 @@
         <translation>Repère outil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Tool frame of the pendant on the flange (mm, deg); zeros for the flange itself</source>
         <translation>Le repère outil du pupitre sur la bride (mm, deg) ; des zéros pour la bride elle-même</translation>
     </message>
@@ -6587,7 +6587,7 @@
         <translation>Tolérance de palpage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Track</source>
         <translation>Rail</translation>
     </message>
@@ -6637,7 +6637,7 @@
         <translation>Rotation du cordon dans la paroi au-dessous de laquelle restent les couches smooth là où la bande le permet.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Twist about x, deg</source>
         <translation>Torsion autour de x, deg</translation>
     </message>
@@ -6652,7 +6652,7 @@
         <translation>UFRAME et UTOOL aux numéros du programme sont ceux de la cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>URDF file</source>
         <translation>Fichier URDF</translation>
     </message>
@@ -6712,7 +6712,7 @@
         <translation>Utilisez des cordons plus larges de {0} mm de chaque côté, par process.bead_width, ou laissez moins à usiner</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Use the curve for the joint path, and plan it again</source>
         <translation>Utiliser la courbe pour la trajectoire articulaire, et la planifier de nouveau</translation>
     </message>
@@ -6772,7 +6772,7 @@
         <translation>Valeurs (*.csv)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Vertical axis</source>
         <translation>Axe vertical</translation>
     </message>
@@ -7357,7 +7357,7 @@
         <translation>le nom d&apos;un programme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>a quaternion cannot be all zeros; enter the one shown on the controller</source>
         <translation>un quaternion n&apos;est pas tout à zéro ; saisissez celui que la commande affiche</translation>
     </message>
@@ -7962,7 +7962,7 @@
         <translation>l&apos;axe 1 n&apos;est pas le Z du repère de base</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>axis 3 is shown {}</source>
         <translation>l&apos;axe 3 est montré {}</translation>
     </message>
@@ -8197,7 +8197,7 @@
         <translation>les deux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>both ends of the wall are inside {0}; extend one end outside</source>
         <translation>les deux bouts de la paroi sont à l&apos;intérieur de {0} ; prolongez l&apos;un d&apos;eux à l&apos;extérieur</translation>
     </message>
@@ -8292,7 +8292,7 @@
         <translation>vérification que le dépôt est sur la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>choose a URDF file</source>
         <translation>choisissez un fichier URDF</translation>
     </message>
@@ -8302,7 +8302,7 @@
         <translation>choisissez un robot qui en a six rotatifs ; ceux d&apos;à côté sont dans `cell.external`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>choose a solid part for the wall to grow on</source>
         <translation>choisissez une pièce solide sur laquelle la paroi s&apos;élève</translation>
     </message>
@@ -8407,7 +8407,7 @@
         <translation>condition</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>condition {:.4f}, least {:.4f}</source>
         <translation>condition {:.4f}, minimum {:.4f}</translation>
     </message>
@@ -8427,7 +8427,7 @@
         <translation>constante</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>constant RZ</source>
         <translation>RZ constant</translation>
     </message>
@@ -8487,7 +8487,7 @@
         <translation>cubes du dépôt contre section du fil x vitesse x temps, ou ce que comptent les cordons là où aucun fil n&apos;est connu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/surfaces.py"/>
+        <location filename="../../freecad_am/core/inspection/planned.py"/>
         <source>curves and cladding have no planned surface; compare the points with the part</source>
         <translation>les courbes et le rechargement ne planifient pas de surface ; comparez les points à la pièce</translation>
     </message>
@@ -8842,7 +8842,7 @@
         <translation>pour tenir la buse éloignée, les axes de l&apos;outil tournent jusqu&apos;à {0} deg/mm, plus vite que build_direction.max_turn ({1} deg/mm) ; utilisez une buse plus fine ou permettez une rotation plus rapide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/catalogue.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>freecad-am machines</source>
         <translation>freecad-am machines</translation>
     </message>
@@ -9352,7 +9352,7 @@
         <translation>elle a une arête mais pas d&apos;aire, donc le fichier est endommagé ou elle ne tourne pas autour de l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>it has an edge that is neither a straight end of the tube nor below the first layer, which cannot be deposited yet; fill openings, and cut ends straight</source>
         <translation>elle a une arête qui n&apos;est ni droite en travers du tube à son extrémité ni sous la première couche, ce qui ne peut pas encore être déposé ; comblez les ouvertures, et coupez droit les extrémités</translation>
     </message>
@@ -9412,7 +9412,7 @@
         <translation>il n&apos;a pas de face dont tenir la buse éloignée ; choisissez un solide ou un maillage</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/shapes/distance.py"/>
+        <location filename="../../freecad_am/brep/shapes/tessellate.py"/>
         <source>it has no faces to compare points with; choose a solid or a surface</source>
         <translation>il n&apos;a pas de face à laquelle comparer les points ; choisissez un solide ou une surface</translation>
     </message>
@@ -9822,7 +9822,7 @@
         <translation>c&apos;est l&apos;intérieur d&apos;un alésage ; choisissez l&apos;extérieur d&apos;un moyeu, sur lequel croissent les solides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>it is the same in all poses, which proves nothing; add another pose</source>
         <translation>il est le même dans toutes les poses, ce qui ne prouve rien ; ajoutez une autre pose</translation>
     </message>
@@ -10002,7 +10002,7 @@
         <translation>ses axes s&apos;écartent jusqu&apos;à {0}° de l&apos;angle droit : les angles articulaires sont résolus pour les axes réels</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/surfaces.py"/>
+        <location filename="../../freecad_am/core/inspection/planned.py"/>
         <source>its beads fill solids, so most are inside; compare the points with the feature</source>
         <translation>ses cordons remplissent des solides, la plupart sont à l&apos;intérieur ; comparez les points à l&apos;élément à déposer</translation>
     </message>
@@ -10347,7 +10347,7 @@
         <translation>couche {0} sur {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/layers/on_faces.py"/>
+        <location filename="../../freecad_am/core/strategies/cladding.py"/>
         <source>layer {0} of {1} is {2} mm above the faces, the depth of the hollow at {3}, and would fold there; deposit at most {4} layer(s), or exclude the hollow face</source>
         <translation>la couche {0} de {1} est à {2} mm au-dessus des faces, la profondeur du creux en {3}, et s&apos;y replierait ; déposez au plus {4} couche(s), ou excluez la face creuse</translation>
     </message>
@@ -10667,7 +10667,7 @@
         <translation>marge</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>margin {:.1f} % ({})</source>
         <translation>marge {:.1f} % ({})</translation>
     </message>
@@ -10767,7 +10767,7 @@
         <translation>des mouvements avec d&apos;autres axes externes sont mêlés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>near a singularity</source>
         <translation>près d&apos;une singularité</translation>
     </message>
@@ -10857,7 +10857,7 @@
         <translation>aucune articulation de {0} ne meut quoi que ce soit par rapport à {1} ; nommer un autre corps comme base</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/catalogue.py"/>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>no known machine is from {0}; use one of {1}</source>
         <translation>aucune machine connue n&apos;est de {0} ; utilisez l&apos;un de {1}</translation>
     </message>
@@ -10887,7 +10887,7 @@
         <translation>aucune ligne n&apos;a trois nombres ; donnez des lignes de x y z</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>no link is carried by {}</source>
         <translation>aucun corps n&apos;est porté par {}</translation>
     </message>
@@ -10992,7 +10992,7 @@
         <translation>normales à une courbe guide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/map_file.py"/>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>not allowed, or touching</source>
         <translation>non permis, ou contact</translation>
     </message>
@@ -11287,7 +11287,7 @@
         <translation>seulement {0} points sont à moins de {1} mm de la hauteur {2} mm ; mesurez-y plus de points, choisissez d&apos;autres hauteurs, ou une bande plus large</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>only {} are entered, but at least {} are needed, as a machine without them is not loaded; enter more</source>
         <translation>il y en a {} ; il en faut au moins {}, car une machine sans elles n&apos;est pas chargée ; saisissez-en d&apos;autres</translation>
     </message>
@@ -11337,7 +11337,7 @@
         <translation>hors d&apos;atteinte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>out of reach in this configuration</source>
         <translation>hors d&apos;atteinte avec cette branche</translation>
     </message>
@@ -11472,7 +11472,7 @@
         <translation>des points écartés de {0} mm au plus ont été confondus</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>polynomials</source>
         <translation>polynômes</translation>
     </message>
@@ -11657,12 +11657,12 @@
         <translation>refuser</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>relative to link 2</source>
         <translation>par rapport au corps 2</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>relative to the horizontal</source>
         <translation>par rapport à l&apos;horizontale</translation>
     </message>
@@ -11697,12 +11697,12 @@
         <translation>plateau rotatif</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/map_file.py"/>
+        <location filename="../../freecad_am/gui/plots/saving.py"/>
         <source>rotation</source>
         <translation>rotation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>rotation not allowed</source>
         <translation>rotation non permise</translation>
     </message>
@@ -11887,12 +11887,12 @@
         <translation>translation</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>sign</source>
         <translation>signe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>signs and zeros of {} differ</source>
         <translation>les signes et zéros de {} sont autres</translation>
     </message>
@@ -11907,7 +11907,7 @@
         <translation>extrusion simple</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>slides</source>
         <translation>glisse</translation>
     </message>
@@ -12202,7 +12202,7 @@
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>the base frame</source>
         <translation>le repère de base</translation>
     </message>
@@ -12577,7 +12577,7 @@
         <translation>la première couche suit l&apos;intersection de la paroi et de {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>the first layer follows the intersection of the wall and {0} within {1} mm</source>
         <translation>la première couche suit l&apos;intersection de la paroi et de {0} à {1} mm près</translation>
     </message>
@@ -12602,7 +12602,7 @@
         <translation>{0} points ont été laissés hors de l&apos;ajustement, les plus écartés ; les chiffres les contiennent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>the flange</source>
         <translation>la bride</translation>
     </message>
@@ -12842,7 +12842,7 @@
         <translation>la distance locale entre les couches est de {0} à {1} mm, la hauteur de couche de {2} mm ; spacing: constant-distance est égal</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>the machine does not reproduce them; see the deviations</source>
         <translation>la machine ne les donne pas ; voyez les écarts</translation>
     </message>
@@ -13007,7 +13007,7 @@
         <translation>la buse n&apos;est pas dégagée avec {0} non plus, ce qui a été essayé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>the nozzle touches platform or part</source>
         <translation>la buse touche le plateau ou la pièce</translation>
     </message>
@@ -13117,7 +13117,7 @@
         <translation>la pièce touche {what}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>the path</source>
         <translation>la trajectoire</translation>
     </message>
@@ -13172,7 +13172,7 @@
         <translation>la pose à zéro de tous les axes manque ; ajoutez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>the pose at the serial zeros is missing; enter it too</source>
         <translation>la pose aux zéros en série manque ; saisissez-la aussi</translation>
     </message>
@@ -13467,7 +13467,7 @@
         <translation>le solide est retourné (volume {0} mm3, près de {1}) ; inversez ses normales (Mesh, Inverser les normales)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>the solid is inside out; repair it (Part, Check geometry)</source>
         <translation>le solide est retourné ; réparez-le (Part, Vérifier la géométrie)</translation>
     </message>
@@ -13767,7 +13767,7 @@
         <translation>la paroi coïncide avec la surface de {0} ; choisissez la pièce sous la paroi, ou videz le substrat si la paroi part du plateau ou d&apos;arêtes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>the wall does not meet {0} in a closed curve (nearest {1} mm); extend it into the substrate all around</source>
         <translation>la paroi ne rencontre pas {0} en une courbe fermée (au plus près {1} mm) ; faites-la pénétrer sur tout le tour</translation>
     </message>
@@ -14177,7 +14177,7 @@
         <translation>tubes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/controls.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>turn</source>
         <translation>tour</translation>
     </message>
@@ -14272,12 +14272,12 @@
         <translation>jusqu&apos;à {0} mm de la paroi restent au-dessus de la dernière couche entière</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>use 0 or 1</source>
         <translation>utilisez 0 ou 1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/source_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>use 1 or -1</source>
         <translation>utilisez 1 ou -1</translation>
     </message>
@@ -15842,7 +15842,7 @@
         <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/feature_kinds.py"/>
+        <location filename="../../freecad_am/macro/features.py"/>
         <source>{0} is not one of {1}; choose one</source>
         <translation>{0} n&apos;est pas l&apos;un de {1} ; choisissez-en un</translation>
     </message>
@@ -16052,7 +16052,7 @@
         <translation>{0} mécanismes portent le robot ; donnez un seul rail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/walls/first_layer.py"/>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>{0} meets {1} in {2} loops; layers start at the uppermost</source>
         <translation>{0} rencontre {1} en {2} boucles ; les couches commencent à la plus haute</translation>
     </message>
@@ -16072,12 +16072,12 @@
         <translation>à {0} mm au-dessus de sa pointe la torche s&apos;étend à {1} mm de son axe, mais le cône de la buse à {2} mm seulement, et c&apos;est le cône qui est tenu à l&apos;écart du dépôt ; donnez un cell.nozzle.half_angle d&apos;au moins {3} deg, ou une cell.nozzle.length plus petite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/meridian_levels.py"/>
+        <location filename="../../freecad_am/core/slicing/revolution.py"/>
         <source>{0} mm exceeds the height of the wall ({1} mm); use a smaller layer height, or layers along the wall (spacing: arc-length)</source>
         <translation>{0} mm sont plus que la hauteur de la paroi ({1} mm) ; donnez moins, ou des couches le long de la paroi (spacing: arc-length)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/meridian_levels.py"/>
+        <location filename="../../freecad_am/core/slicing/revolution.py"/>
         <source>{0} mm exceeds the length of the wall ({1} mm); use a smaller layer height</source>
         <translation>{0} mm sont plus que la longueur de la paroi ({1} mm) ; donnez moins</translation>
     </message>
@@ -17262,7 +17262,7 @@
         <translation>{} n&apos;atteint pas la pièce avec la buse droite : tous ses axes sont dessinés à 0</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>{} exceed a limit only because an axis runs out of turns along its bead</source>
         <translation>{0} dépassent une limite seulement parce qu&apos;un axe n&apos;a plus de tours le long de son cordon</translation>
     </message>
@@ -17377,7 +17377,7 @@
         <translation>{} n&apos;est pas inférieur à {} ; saisissez d&apos;abord la plus petite extrémité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>{} is offset by {} mm and rotated by {} deg</source>
         <translation>{} est déplacé de {} mm et tourné de {} deg</translation>
     </message>
@@ -17422,7 +17422,7 @@
         <translation>{} objets sont sélectionnés ; choisissez la paroi et le substrat</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/redundancy_map/consequences.py"/>
+        <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>{} of the tested points fail: they are red</source>
         <translation>{} des points regardés ne conviennent pas : ils sont rouges</translation>
     </message>
@@ -17442,7 +17442,7 @@
         <translation>{} point {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>{} shows {} at zero</source>
         <translation>{} montre {} à zéro</translation>
     </message>
@@ -17507,7 +17507,7 @@
         <translation>{} : proposé pour ce travail : {} ; saisissez ce que la vôtre a réellement.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/machine_wizard/poses_page.py"/>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>{}: reversed sign</source>
         <translation>{} : signe inversé</translation>
     </message>
