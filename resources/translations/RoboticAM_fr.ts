@@ -14697,7 +14697,7 @@
         <translation>{0} ne sont pas {1} nombres ; {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/between_cuts.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
         <source>{0} at {1} ({2} mm high, {3} of its {4} cm3)</source>
         <translation>{0} en {1} (haut de {2} mm, {3} de ses {4} cm3)</translation>
     </message>
@@ -16547,7 +16547,7 @@
         <translation>{0} solide(s) ({1}), environ {2} cm3 des {3} cm3 de {4}, ne sont pas déposés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/between_cuts.py"/>
+        <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
         <source>{0} solid(s) fit between the cuts of two layers, {1} mm apart, and get no bead, {2} cm3 in total: {3}{4}; set strategy.layer_height to at most their height, or fuse them with the adjacent solid</source>
         <translation>{0} solide(s) se trouvent entre les coupes de deux couches, distantes de {1} mm, et ne reçoivent aucun cordon, {2} cm3 en tout : {3}{4} ; réglez strategy.layer_height à leur hauteur au plus, ou fusionnez-les avec le solide voisin</translation>
     </message>
