@@ -301,7 +301,7 @@ WRONG = {
         "1e12 mm",
     ),
     "setup": ("part_on_robot", "7", "[]", "!x a", "{}"),
-    "deposition_point": ("far", "[1, 2, 3, 4, 5, '6 mm/s']", "12 mm"),
+    "deposition_point": ("far", "[1, 2, 3]", "[1, 2, 3, 4, 5, '6 mm/s']", "12 mm"),
     "external": (
         "here",
         "[{}]",

@@ -9,7 +9,7 @@ from typing import Any
 from ..core.geometry import frames
 from ..core.issues import InputError
 from ..core.kinematics.machines import machine
-from ..sections import fields
+from ..objects.fields import quantities
 from .host import require_freecad
 
 
@@ -33,7 +33,7 @@ def chosen(maker: str | None, reach: str | None, payload: str | None, post: str 
 
     if post is not None:
         catalogue.load(post)
-    min_reach = 0.0 if reach is None else fields.read(reach, field.LENGTH, "--reach")
+    min_reach = 0.0 if reach is None else quantities.read(reach, field.LENGTH, "--reach")
     entries = machine.select_machines(
         machine.entries(user_machines.folders()),
         maker,

@@ -17,7 +17,8 @@ from ..core.parameters.field import unknown_choice
 from ..core.strategies.sequence import BY_FEATURE, BY_HEIGHT
 from ..objects import stage as stages
 from ..objects.fields import properties, rows
-from ..objects.fields.rows import is_text, safe_repr
+from ..objects.fields.quantities import safe_repr
+from ..objects.fields.rows import is_text
 from ..objects.shapes import bodies
 from ..objects.shapes.nested import resolved
 from ..objects.stage import Stage

@@ -27,7 +27,8 @@ from ..core.parameters.cell_records import (
     TouchedPoint,
     usual_name,
 )
-from ..core.parameters.records import NONE, Point, Pose
+from ..core.parameters.records import NONE, Point
+from ..objects.fields import quantities
 from . import fields, paths, tree
 
 PAPERS = "paper"  # limits
@@ -150,7 +151,7 @@ def _external(value: Any) -> tuple[ExternalMechanism, ...]:
 def _one_external(value: Any, key: str) -> ExternalMechanism:
     section = fields.mapping(value, key)
     fields.known_keys(section, ("machine", "pose", "carries"), key)
-    pose = _pose(section.get("pose"), f"{key}.pose")
+    pose = fields.pose(section.get("pose"), f"{key}.pose")
     machine_text = section.get("machine")
     if not isinstance(machine_text, dict):
         machine_text = fields.text(machine_text, f"{key}.machine").strip()
@@ -201,24 +202,11 @@ def _touched(value: Any) -> str | tuple[TouchedPoint, ...]:
 def _point(value: Any, key: str) -> Point:
     """Three lengths of a job file."""
     if not isinstance(value, list) or len(value) != 3:
-        raise InputError("BAD_VALUE", key, "{} is not a point; give [x, y, z]", fields.quote(value))
-    x, y, z = (fields.read(number, f.LENGTH, key) for number in value)
-    return x, y, z
-
-
-def _pose(value: Any, key: str) -> Pose:
-    """Six quantities of a job file, or what a pendant shows."""
-    if (controller_pose := fields.as_shown(value, key)) is not None:
-        return controller_pose
-    if not isinstance(value, list) or len(value) != 6:
         raise InputError(
-            "BAD_VALUE", key, "{} is not a pose; give [x, y, z, RX, RY, RZ]", fields.quote(value)
+            "BAD_VALUE", key, "{} is not a point; give [x, y, z]", quantities.quote(value)
         )
-    kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
-    x, y, z, a, b, c = (
-        fields.read(number, kind, key) for number, kind in zip(value, kinds, strict=True)
-    )
-    return x, y, z, a, b, c
+    x, y, z = (quantities.read(number, f.LENGTH, key) for number in value)
+    return x, y, z
 
 
 def _obstacles(value: Any) -> tuple[Obstacle, ...]:
@@ -253,11 +241,15 @@ def _obstacle(value: Any, key: str, number: int) -> Obstacle:
                 "BAD_VALUE",
                 f"{key}.box",
                 "{} is not a box; give its edges along x, y and z such as [1200, 800, 30]",
-                fields.quote(edges),
+                quantities.quote(edges),
             )
-        width, depth, height = (fields.read(edge, f.LENGTH, f"{key}.box") for edge in edges)
+        width, depth, height = (quantities.read(edge, f.LENGTH, f"{key}.box") for edge in edges)
         size = (width, depth, height)
     name = section.get("name")
     called = usual_name(file, number) if name is None else fields.text(name, f"{key}.name").strip()
-    pose = _pose(section["pose"], f"{key}.pose") if section.get("pose") is not None else (0.0,) * 6
+    pose = (
+        fields.pose(section["pose"], f"{key}.pose")
+        if section.get("pose") is not None
+        else (0.0,) * 6
+    )
     return Obstacle(called, pose, file, size)

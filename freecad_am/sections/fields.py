@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import dataclasses
 import math
-import re
 from collections.abc import Iterable
 from typing import Any, TypeVar
 
@@ -17,168 +16,8 @@ from ..core.issues import InputError, Text, Word
 from ..core.parameters import field as f
 from ..core.parameters.records import Records
 from ..core.parameters.vectors import VectorText
-from ..objects.fields import pendants
-
-# ---- Quantities as FreeCAD understands them: '1 mm', '90 deg', '360 mm/min', '1/2 in'
-
-Dimension = tuple[int, int, int]  # powers of length, time and angle
-
-LENGTH, TIME, ANGLE, NONE = (1, 0, 0), (0, 1, 0), (0, 0, 1), (0, 0, 0)
-UNITS: dict[str, tuple[float, Dimension]] = {
-    "nm": (1e-6, LENGTH),
-    "um": (1e-3, LENGTH),
-    "\u00b5m": (1e-3, LENGTH),
-    "\u03bcm": (1e-3, LENGTH),
-    "mm": (1.0, LENGTH),
-    "cm": (10.0, LENGTH),
-    "dm": (100.0, LENGTH),
-    "m": (1e3, LENGTH),
-    "km": (1e6, LENGTH),
-    "in": (25.4, LENGTH),
-    '"': (25.4, LENGTH),
-    "ft": (304.8, LENGTH),
-    "'": (304.8, LENGTH),
-    "yd": (914.4, LENGTH),
-    "thou": (0.0254, LENGTH),
-    "mil": (0.0254, LENGTH),
-    "ms": (1e-3, TIME),
-    "s": (1.0, TIME),
-    "min": (60.0, TIME),
-    "h": (3600.0, TIME),
-    "deg": (1.0, ANGLE),
-    "\u00b0": (1.0, ANGLE),
-    "rad": (180.0 / math.pi, ANGLE),
-    "gon": (0.9, ANGLE),
-}
-WANTED: dict[str, tuple[Dimension, str]] = {
-    f.LENGTH: (LENGTH, "a length such as 1 mm"),
-    f.ANGLE: (ANGLE, "an angle such as 30 deg"),
-    f.SPEED: ((1, -1, 0), "a speed such as 6 mm/s or 360 mm/min"),
-    f.TIME: (TIME, "a time such as 0.1 s"),
-    f.RATIO: (NONE, "a percentage such as 20 %"),
-    f.TURN_RATE: ((-1, 0, 1), "a turn per length such as 10 deg/mm"),
-    f.NUMBER: (NONE, "a number without a unit such as 0.1"),
-}
-DIMENSION_NAMES = {
-    LENGTH: "is a length",
-    TIME: "is a time",
-    ANGLE: "is an angle",
-    (1, -1, 0): "is a speed",
-    (-1, 0, 1): "is a turn per length",
-    NONE: "is without unit",
-}
-_UNIT = "[^\\s\\d/*^+().,%-]+"
-_SIMPLE = re.compile(
-    rf"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?:({_UNIT})(?:\s*/\s*({_UNIT}))?|(%))?",
-    re.ASCII,
-)
-_FOREIGN = re.compile("[^A-Za-z0-9\\s.+*/^()'\"\u00b5\u00b0\u2032\u2033-]")
-_INFINITE = re.compile(r"([+-]?)\.?inf(?:\s*[a-z/\u00b0]+)?", re.IGNORECASE)
-
-
-def read(value: Any, kind: str, key: str) -> float:
-    """The value of `key` in inner units (mm, rad, mm/s, s, plain) from a YAML scalar; may be infinite.
-
-    A number without a unit is in the outer unit of `kind` (mm, deg, mm/s, s, %). Raises InputError 'BAD_VALUE' for
-    what is not a quantity, 'BAD_UNIT' for an unknown unit or one of the wrong dimension.
-    """
-    expected, example = WANTED[kind]
-    if isinstance(value, bool) or value is None or not isinstance(value, (int, float, str)):
-        raise InputError("BAD_VALUE", key, "{} is not a quantity; give {}", quote(value), example)
-    if isinstance(value, str):
-        number, dimension = _read_text(value, kind, key)
-    else:
-        number, dimension = float(value), None
-    if math.isnan(number):
-        raise InputError("BAD_VALUE", key, "{} is not a number; give {}", quote(value), example)
-    if dimension is not None and dimension != expected:
-        actual = DIMENSION_NAMES.get(dimension, "is of another dimension")
-        raise InputError("BAD_UNIT", key, "{} {}; give {}", quote(value), actual, example)
-    return number * f.TO_INNER.get(kind, 1.0)
-
-
-def quote(value: Any) -> str:
-    """A value as its user wrote it, cut short where it is long."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    text = "null" if value is None else repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
-
-
-def _read_text(text: str, kind: str, key: str) -> tuple[float, Dimension | None]:
-    """Number in outer units and its dimension, None where no unit was given."""
-    example = WANTED[kind][1]
-    text = text.strip()
-    if "," in text:
-        raise InputError(
-            "BAD_VALUE",
-            key,
-            "{} has a comma; use a decimal point, as in {}",
-            quote(text),
-            text.replace(",", "."),
-        )
-    infinite = _INFINITE.fullmatch(text)
-    if infinite:
-        return (-math.inf if infinite[1] == "-" else math.inf), None
-    simple = _SIMPLE.fullmatch(text)
-    if simple is None:
-        return _read_with_freecad(text, key, example)
-    number, over, under, percent = float(simple[1]), simple[2], simple[3], simple[4]
-    if not math.isfinite(number):
-        raise InputError("BAD_VALUE", key, "{} is too large; give {}", quote(text), example)
-    if percent:
-        if kind != f.RATIO:
-            raise InputError("BAD_UNIT", key, "{} is a percentage; give {}", quote(text), example)
-        return number, None
-    if over is None:
-        return number, None
-    if over not in UNITS or (under is not None and under not in UNITS):
-        return _read_with_freecad(text, key, example)
-    factor, dimension = UNITS[over]
-    if under is not None:
-        divisor, divisor_dimension = UNITS[under]
-        factor /= divisor
-        dimension = (
-            dimension[0] - divisor_dimension[0],
-            dimension[1] - divisor_dimension[1],
-            dimension[2] - divisor_dimension[2],
-        )
-    return number * factor, None if dimension == NONE else dimension
-
-
-def _read_with_freecad(text: str, key: str, example: str) -> tuple[float, Dimension | None]:
-    """The same by FreeCAD's own parser, for expressions and rare units."""
-    wrong = InputError(
-        "BAD_UNIT", key, "{} is not a quantity with a known unit; give {}", quote(text), example
-    )
-    if not text:
-        raise InputError("BAD_VALUE", key, "the value is missing; give {}", example)
-    if _FOREIGN.search(
-        text
-    ):  # FreeCAD passes over signs it does not know, which changes the meaning
-        raise wrong
-    try:
-        import FreeCAD
-    except ImportError:
-        raise wrong from None
-    try:
-        quantity = FreeCAD.Units.Quantity(text)
-        length, _, time, _, _, _, _, angle = quantity.Unit.Signature
-    except (
-        ValueError,
-        ArithmeticError,
-        RuntimeError,
-    ):  # FreeCAD's versions differ in what they raise
-        raise wrong from None
-    if (
-        not math.isfinite(quantity.Value)
-        or quantity.Unit.Signature[1]
-        or any(quantity.Unit.Signature[3:7])
-    ):
-        raise wrong
-    dimension = (length, time, angle)
-    return quantity.Value, None if dimension == NONE else dimension
-
+from ..objects.fields import quantities
+from ..objects.fields.quantities import WANTED, quote
 
 Parameters = TypeVar("Parameters")
 _BOUND = 1e9  # a quantity beyond is a slip of the pen, and its square must stay finite
@@ -241,7 +80,7 @@ def text(value: Any, key: str) -> str:
             "BAD_VALUE",
             key,
             "{} is not a text; put numbers in quotes",
-            _quote(value),
+            quote(value),
         )
     return value
 
@@ -259,18 +98,22 @@ def _value(spec: f.Spec, field: dataclasses.Field[Any], value: Any, key: str) ->
         return spec.records.read(numbers)
     if isinstance(value, str) and value in spec.words:
         return math.inf if value == "inf" else value
-    if _is_pose(spec, field) and (pose := as_shown(value, key)) is not None:
-        return pose
+    if spec.kind == f.POSE or (_takes_pose(spec, field) and quantities.is_pose(value)):
+        return pose(value, key, spec.words)
     if isinstance(value, list):
         return _list(spec, field, value, key)
-    if spec.kind == f.POSE or spec.kind in f.END_OF:
-        example = "[x, y, z, RX, RY, RZ]" if spec.kind == f.POSE else "[smallest, largest]"
+    if spec.kind in f.END_OF:
         also = Text.joined("", (Text(" or {}", word) for word in spec.words))
         raise InputError(
-            "BAD_VALUE", key, "{} is not a list; give {}{}", _quote(value), Word(example), also
+            "BAD_VALUE",
+            key,
+            "{} is not a list; give {}{}",
+            quote(value),
+            Word("[smallest, largest]"),
+            also,
         )
     if spec.kind in WANTED:
-        return _number(value, spec, key)
+        return _finite(value, spec.kind, key, spec.words)
     return _plain(spec, value, key)
 
 
@@ -279,28 +122,16 @@ def _vector(values: list[Any], key: str) -> list[float]:
     is_axis = bool(values) and all(isinstance(entry, list) for entry in values)
     rows = values if is_axis else [values]
     numbers = [
-        read(number, f.LENGTH if k == 0 and len(rows) == 2 else f.NUMBER, key)
+        quantities.read(number, f.LENGTH if k == 0 and len(rows) == 2 else f.NUMBER, key)
         for k, row in enumerate(rows)
         for number in row
     ]
     return [float(f"{number:.15g}") for number in numbers]  # as exact as texts of documents were
 
 
-def _is_pose(spec: f.Spec, field: dataclasses.Field[Any]) -> bool:
-    """Whether a field takes a pose, it alone or as well as a length."""
-    return spec.kind == f.POSE or (spec.kind == f.LENGTH and "Pose" in str(field.type))
-
-
-def as_shown(value: Any, key: str) -> tuple[float, float, float, float, float, float] | None:
-    """The pose that a text or list says as a pendant shows it, mm and rad: kuka 1000 0 300 90 0 0; None of other values."""
-    words = (
-        value.split()
-        if isinstance(value, str)
-        else list(map(str, value))
-        if isinstance(value, list)
-        else []
-    )
-    return pendants.six(words, key) if pendants.named(words) else None
+def _takes_pose(spec: f.Spec, field: dataclasses.Field[Any]) -> bool:
+    """Whether a field takes a pose as well as a length."""
+    return spec.kind == f.LENGTH and "Pose" in str(field.type)
 
 
 def _plain(spec: f.Spec, value: Any, key: str) -> Any:
@@ -308,11 +139,11 @@ def _plain(spec: f.Spec, value: Any, key: str) -> Any:
         raise _unknown_choice(key, value, spec.choices)
     if spec.kind == f.FLAG and not isinstance(value, bool):
         raise InputError(
-            "BAD_VALUE", key, "{} is neither true nor false; use true or false", _quote(value)
+            "BAD_VALUE", key, "{} is neither true nor false; use true or false", quote(value)
         )
     if spec.kind == f.COUNT and (isinstance(value, bool) or not isinstance(value, int)):
         raise InputError(
-            "BAD_VALUE", key, "{} is not a whole number; give one such as 3", _quote(value)
+            "BAD_VALUE", key, "{} is not a whole number; give one such as 3", quote(value)
         )
     if spec.kind in (f.TEXT, f.RECORDS):
         return text(value, key)
@@ -328,23 +159,13 @@ def _unknown_choice(key: str, value: Any, choices: tuple[str, ...]) -> InputErro
         "BAD_VALUE",
         key,
         "{} is not known; {}use one of {}",
-        _quote(value),
+        quote(value),
         Word(hint),
         ", ".join(choices),
     )
 
 
 def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: str) -> Any:
-    if _is_pose(spec, field):
-        if len(value) != 6:
-            raise InputError(
-                "BAD_VALUE",
-                key,
-                "a pose has six numbers, not {}; give [x, y, z, RX, RY, RZ]",
-                len(value),
-            )
-        kinds = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
-        return tuple(_finite(number, kind, key) for number, kind in zip(value, kinds))
     if spec.kind in f.END_OF:
         if len(value) != 2:
             what = "angles" if spec.kind == f.ANGLE_RANGE else "percentages"
@@ -363,29 +184,27 @@ def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: st
     raise InputError("BAD_VALUE", key, "{} is a list; give one value", quote(value))
 
 
-def _number(value: Any, spec: f.Spec, key: str) -> float:
-    if isinstance(value, str) and spec.words and not any(sign.isdigit() for sign in value):
+def pose(value: Any, key: str, words: tuple[str, ...] = ()) -> tuple[float, ...]:
+    """The pose of a job file, whose rotation is required. Raises InputError BAD_VALUE or BAD_UNIT."""
+    result = quantities.pose(value, key, words)
+    count = len(value.replace(",", " ").split() if isinstance(value, str) else value)
+    if count == 3:
         raise InputError(
             "BAD_VALUE",
             key,
-            "{} is not known; give {} or {}",
-            _quote(value),
-            Text.joined(" or ", spec.words),
-            WANTED[spec.kind][1],
+            "a pose has six numbers, not {}; give [x, y, z, RX, RY, RZ]",
+            count,
         )
-    return _finite(value, spec.kind, key)
+    if max(map(abs, result)) > _BOUND:
+        raise quantities.too_large(value, f.LENGTH, key)
+    return result
 
 
-def _finite(value: Any, kind: str, key: str) -> float:
+def _finite(value: Any, kind: str, key: str, words: tuple[str, ...] = ()) -> float:
     if value == {}:
         raise InputError("BAD_VALUE", key, "the value is missing; give {}", WANTED[kind][1])
-    number = read(value, kind, key)
+    is_word = isinstance(value, str) and words and not any(sign.isdigit() for sign in value)
+    number = quantities.read(value, kind, key, words, "BAD_VALUE" if is_word else "BAD_UNIT")
     if abs(number) > _BOUND:
-        raise InputError(
-            "BAD_VALUE", key, "{} is too large; give {}", _quote(value), WANTED[kind][1]
-        )
+        raise quantities.too_large(value, kind, key)
     return number
-
-
-def _quote(value: Any) -> str:
-    return "nothing" if value == {} else quote(value)

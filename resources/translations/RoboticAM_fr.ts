@@ -7192,7 +7192,7 @@
         <translation>une hauteur de couche de {0} mm est plus que ne permet le coude de la paroi ; réduisez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>a length such as 1 mm</source>
         <translation>une longueur comme 1 mm</translation>
     </message>
@@ -7282,7 +7282,7 @@
         <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, qui se dit par pas de {1} % ; utilisez une autre vitesse, pour qu&apos;il soit de {2} à 100 %</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>a number without a unit such as 0.1</source>
         <translation>un nombre sans unité comme 0.1</translation>
     </message>
@@ -7297,7 +7297,7 @@
         <translation>une partie est chargée sans arrêt là où cela ne se peut pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>a percentage such as 20 %</source>
         <translation>un pourcentage comme 20 %</translation>
     </message>
@@ -7427,7 +7427,7 @@
         <translation>une plage d’écartement de {0} à {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>a speed such as 6 mm/s or 360 mm/min</source>
         <translation>une vitesse comme 6 mm/s ou 360 mm/min</translation>
     </message>
@@ -7462,7 +7462,7 @@
         <translation>une température est attendue autrement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>a time such as 0.1 s</source>
         <translation>un temps comme 0.1 s</translation>
     </message>
@@ -7497,7 +7497,7 @@
         <translation>un déclencheur n&apos;est pas défini, ou est nommé deux fois, ou l&apos;arc brûle encore</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>a turn per length such as 10 deg/mm</source>
         <translation>une rotation par longueur comme 10 deg/mm</translation>
     </message>
@@ -7697,7 +7697,7 @@
         <translation>une sortie analogique que KRL règle entre des mouvements lissés l&apos;est en avance sur le mouvement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>an angle such as 30 deg</source>
         <translation>un angle comme 30 deg</translation>
     </message>
@@ -9092,37 +9092,37 @@
         <translation>le conditionnement {0} lors d&apos;un mouvement rapide avant ou après le cordon est inférieur aux {1} admis, et aucune autre hauteur, direction ou rotation n&apos;est plus loin d&apos;une singularité ; diminuez joints.min_condition ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>is a length</source>
         <translation>est une longueur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>is a speed</source>
         <translation>est une vitesse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>is a time</source>
         <translation>est un temps</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>is a turn per length</source>
         <translation>est une rotation par longueur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>is an angle</source>
         <translation>est un angle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>is of another dimension</source>
         <translation>est d&apos;une autre dimension</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>is without unit</source>
         <translation>est sans unité</translation>
     </message>
@@ -12357,7 +12357,7 @@
         <translation>ce qui est repris de la commande n&apos;est pas une donnée de soudage du module, ou l&apos;est deux fois</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>the deleted object</source>
         <translation>l&apos;objet supprimé</translation>
     </message>
@@ -13722,7 +13722,7 @@
         <translation>une valeur est un objet qui a été supprimé ; donnez un nombre ou un texte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>the value is missing; give {0}</source>
         <translation>il n&apos;y a pas de valeur ; donnez {0}</translation>
     </message>
@@ -14547,6 +14547,11 @@
         <translation>écrivez par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
+        <source>x y z in mm and RX RY RZ in deg</source>
+        <translation>x y z en mm et RX RY RZ en deg</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>zigzag</source>
         <translation>zigzag</translation>
@@ -15002,7 +15007,7 @@
         <translation>{0} donne {1}, qui n&apos;est pas un nombre ; écrivez-en une qui donne un nombre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>{0} has a comma; use a decimal point, as in {1}</source>
         <translation>{0} a une virgule ; écrivez les décimales avec un point, comme {1}</translation>
     </message>
@@ -15085,11 +15090,6 @@
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
         <source>{0} has sliding axes; use {1}, or choose another machine</source>
         <translation>{0} a des axes de translation ; utilisez {1}, ou choisissez une autre machine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} has the wrong dimension; give {1}</source>
-        <translation>{0} a une autre dimension ; donnez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
@@ -15207,7 +15207,7 @@
         <translation>{0} est un volume négatif et ne peut pas être soustrait de la pièce ici : {1} triangles sont concernés, et au plus {2} sont coupés ; soustrayez-le là où la pièce a été dessinée ou supprimez-le dans le trancheur, et exportez de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>{0} is a percentage; give {1}</source>
         <translation>{0} est un pourcentage ; donnez {1}</translation>
     </message>
@@ -15272,7 +15272,7 @@
         <translation>{0} peut être un nombre avec exposant ou deux mots ; écrivez le nombre sans exposant ou une espace avant E</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>{0} is ambiguous; write decimals with a point and one kind of separator, as in 10.5 20.5</source>
         <translation>{0} peut se lire de deux façons ; écrivez les décimales avec un point et une seule sorte de séparateur, comme dans 10.5 20.5</translation>
     </message>
@@ -15512,11 +15512,6 @@
         <translation>{0} n&apos;est pas une liste ; donnez [le plus petit, le plus grand]{1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
-        <source>{0} is not a list; give [x, y, z, RX, RY, RZ]{1}</source>
-        <translation>{0} n&apos;est pas une liste ; donnez [x, y, z, RX, RY, RZ]{1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
         <source>{0} is not a list; pass one, such as []</source>
         <translation>{0} n’est pas une liste ; donnez-en une, telle que []</translation>
@@ -15552,7 +15547,7 @@
         <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2 ou {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>{0} is not a number; give {1}</source>
         <translation>{0} n&apos;est pas un nombre ; donnez {1}</translation>
     </message>
@@ -15587,24 +15582,9 @@
         <translation>{0} n’est pas un chemin ; donnez-en un sous forme de texte, tel que &quot;cup.step&quot;</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} is not a percentage; give one such as 20 %</source>
-        <translation>{0} n&apos;est pas un pourcentage ; donnez par exemple 20 %</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} is not a percentage; give one such as 20 % or {1}</source>
-        <translation>{0} n&apos;est pas un pourcentage ; donnez par exemple 20 % ou {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/sections/cell.py"/>
         <source>{0} is not a point; give [x, y, z]</source>
         <translation>{0} n&apos;est pas un point ; donnez [x, y, z]</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/cell.py"/>
-        <source>{0} is not a pose; give [x, y, z, RX, RY, RZ]</source>
-        <translation>{0} n&apos;est pas une pose ; donnez [x, y, z, RX, RY, RZ]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
@@ -15617,9 +15597,9 @@
         <translation>{0} n&apos;est pas une pose ; donnez six nombres x y z RX RY RZ{1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} is not a pose; give x y z in mm and RX RY RZ in deg</source>
-        <translation>{0} n&apos;est pas une pose ; donnez x y z en mm et RX RY RZ en deg</translation>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
+        <source>{0} is not a pose; give {1}</source>
+        <translation>{0} n&apos;est pas une pose ; donnez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/pendants.py"/>
@@ -15637,12 +15617,12 @@
         <translation>{0} n&apos;est pas un de ses programmes, ou s&apos;appelle lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>{0} is not a quantity with a known unit; give {1}</source>
         <translation>{0} n&apos;est pas une grandeur d&apos;une unité connue ; donnez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>{0} is not a quantity; give {1}</source>
         <translation>{0} n&apos;est pas une grandeur ; donnez {1}</translation>
     </message>
@@ -15832,11 +15812,6 @@
         <translation>{0} n&apos;est pas connu ; vouliez-vous dire {1} ? utilisez l&apos;une des valeurs {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
-        <source>{0} is not known; give {1} or {2}</source>
-        <translation>{0} n&apos;est pas connu ; donnez {1} ou {2}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
         <source>{0} is not known; use one of {1}</source>
         <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}</translation>
@@ -15900,11 +15875,6 @@
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>{0} is not understood; give a JSON mapping with keys of {1}</source>
         <translation>{0} n&apos;est pas compris ; donnez un objet JSON avec des clés parmi {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} is not understood; give {1}</source>
-        <translation>{0} n&apos;est pas compris ; donnez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -15977,7 +15947,7 @@
         <translation>{0} est la machine de la cellule et ne peut pas se porter elle-même ; nommez un rail ou un positionneur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>{0} is too large; give {1}</source>
         <translation>{0} est trop grand ; donnez {1}</translation>
     </message>
@@ -16672,7 +16642,7 @@
         <translation>{0} {1} {2} n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>{0} {1}; give {2}</source>
         <translation>{0} {1} ; donnez {2}</translation>
     </message>

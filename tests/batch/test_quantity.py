@@ -9,7 +9,7 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters import field as f
-from freecad_am.sections import fields
+from freecad_am.objects.fields import quantities
 
 KINDS = {f.LENGTH: "Length", f.ANGLE: "Angle", f.SPEED: "Velocity", f.TIME: "TimeSpan"}
 
@@ -21,7 +21,7 @@ def outer(kind, value):
 def texts(seed, count):
     """Random quantities of every form that a user may write, right and wrong."""
     random_ = random.Random(seed)
-    units = [unit for unit in fields.UNITS if unit not in ("\u03bcm", "ms")] + [
+    units = [unit for unit in quantities.UNITS if unit not in ("\u03bcm", "ms")] + [
         "foo",
         "mi",
         "Hz",
@@ -59,13 +59,13 @@ def test_means_what_freecad_means(kind):
         plain = theirs is not None and theirs.Unit == FreeCAD.Units.Unit()
         fits = theirs is not None and (plain or theirs.Unit == getattr(FreeCAD.Units, KINDS[kind]))
         if fits and math.isfinite(theirs.Value):
-            assert outer(kind, fields.read(text, kind, "key")) == pytest.approx(
+            assert outer(kind, quantities.read(text, kind, "key")) == pytest.approx(
                 theirs.Value, rel=1e-14, abs=1e-300
             ), text
             agreed += 1
         else:
             with pytest.raises(InputError):
-                fields.read(text, kind, "key")
+                quantities.read(text, kind, "key")
     assert agreed > 100
 
 
@@ -105,7 +105,7 @@ def test_means_what_freecad_means(kind):
     ],
 )
 def test_reads(value, kind, inner):
-    assert fields.read(value, kind, "key") == pytest.approx(inner, rel=1e-15)
+    assert quantities.read(value, kind, "key") == pytest.approx(inner, rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -133,7 +133,7 @@ def test_reads(value, kind, inner):
 )
 def test_refuses(value, kind, code, says):
     with pytest.raises(InputError) as caught:
-        fields.read(value, kind, "strategy.key")
+        quantities.read(value, kind, "strategy.key")
     assert caught.value.code == code
     assert caught.value.where == "strategy.key"
     assert says in caught.value.message

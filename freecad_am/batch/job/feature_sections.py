@@ -22,6 +22,7 @@ from ...core.parameters.records import NONE as NO_RECORDS
 from ...core.parameters.strategy import LayerParameters
 from ...core.process import wire
 from ...core.process.wire import BUILT_IN, load
+from ...objects.fields import quantities
 from ...sections import fields, tree
 from ...sections.paths import absolute, folder_of
 from .part_source import PartSource, part_of
@@ -38,7 +39,7 @@ def with_classes(section: dict[str, Any]) -> dict[str, Any]:
             bead_classes.WHERE,
             "{} is not understood; write classes below it such as contour: {{travel_speed: "
             "8 mm/s, schedule: 3}}",
-            fields.quote(classes),
+            quantities.quote(classes),
         )
     fields.known_keys(classes, bead_classes.CLASSES, bead_classes.WHERE)
     records = [_bead_class(class_section, name) for name, class_section in classes.items()]
@@ -240,7 +241,7 @@ def _file(name: str) -> Path:
         "NO_FILE",
         KEY,
         "unknown material {}; use one of {}, or the path of a material file",
-        fields.quote(name),
+        quantities.quote(name),
         ", ".join(built_in()),
     )
 
@@ -285,9 +286,9 @@ def _range(value: Any) -> tuple[float | None, float | None]:
             "BAD_VALUE",
             "speed_range",
             "{} is not a range; give [slowest, fastest]",
-            fields.quote(value),
+            quantities.quote(value),
         )
-    low, high = (fields.read(end, f.SPEED, "speed_range") for end in value)
+    low, high = (quantities.read(end, f.SPEED, "speed_range") for end in value)
     if not 0.0 < low <= high < 1e9:
         raise InputError(
             "BAD_VALUE",
@@ -309,13 +310,13 @@ def _checked(
         ("stand_off", f.LENGTH),
         ("travel_speed", f.SPEED),
     ):
-        number = fields.read(stated[key], kind, key) if key in stated else 1.0
+        number = quantities.read(stated[key], kind, key) if key in stated else 1.0
         if key in ("density", "travel_speed") and not 0.0 < number < 1e9:
             raise InputError(
                 "BAD_VALUE",
                 key,
                 "{} is out of range; give more than 0",
-                fields.quote(stated[key]),
+                quantities.quote(stated[key]),
             )
         if (
             key == "travel_speed"
@@ -327,19 +328,19 @@ def _checked(
                 "BAD_VALUE",
                 key,
                 "{} is outside speed_range; change one of the two",
-                fields.quote(stated[key]),
+                quantities.quote(stated[key]),
             )
     if values.get("wire") in (None, {}):
         return {}
     wire = fields.mapping(values["wire"], "wire")
     fields.known_keys(wire, WIRE, "wire")
     for key, kind in zip(WIRE, (f.LENGTH, f.SPEED), strict=True):
-        if key in wire and not 0.0 < fields.read(wire[key], kind, f"wire.{key}") < 1e9:
+        if key in wire and not 0.0 < quantities.read(wire[key], kind, f"wire.{key}") < 1e9:
             raise InputError(
                 "BAD_VALUE",
                 f"wire.{key}",
                 "{} is out of range; give more than 0",
-                fields.quote(wire[key]),
+                quantities.quote(wire[key]),
             )
     return {"wire": dict(wire)}
 
@@ -358,7 +359,7 @@ def _schedules(value: Any) -> dict[str, Any]:
                 "BAD_VALUE",
                 f"schedules.{name}",
                 "{} is not a number of a schedule; give a whole number from 1 to {}",
-                fields.quote(number),
+                quantities.quote(number),
                 bead_classes.LARGEST_SCHEDULE,
             )
     classes = {name: {"schedule": number} for name, number in table.items() if name != ALL}
@@ -389,7 +390,7 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
         )
     feed = (values.get("wire") or {}).get("feed")
     if feed not in (None, "auto"):
-        wire_feed = fields.read(feed, f.SPEED, "wire.feed")
+        wire_feed = quantities.read(feed, f.SPEED, "wire.feed")
         min_feed, max_feed = model.feeds or (model.wire_feed, model.wire_feed)
         if not 0.99 * min_feed <= wire_feed <= 1.01 * max_feed:
             raise InputError(

@@ -19,6 +19,7 @@ from ...core.parameters.process import ProcessParameters
 from ...core.parameters.strategy import LayerParameters
 from ...core.process import wire
 from ...core.process.wire import model_wire_feed
+from ...objects.fields import quantities
 from ...sections import fields, tree
 from .feature_sections import (
     kept_clear,
@@ -68,7 +69,9 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
         height = float(model.heights(np.array([speed]), np.array([np.inf]))[0])
         section_with_numbers[HEIGHT] = f"{height!r} mm"
     if section_with_numbers.get(SPACING) == WORD:
-        height = fields.read(section_with_numbers.get(HEIGHT, 1.0), f.LENGTH, f"strategy.{HEIGHT}")
+        height = quantities.read(
+            section_with_numbers.get(HEIGHT, 1.0), f.LENGTH, f"strategy.{HEIGHT}"
+        )
         if not height > 0.0:
             raise InputError(
                 "BAD_VALUE",

@@ -19,6 +19,7 @@ from ...core.parameters.process import ProcessParameters
 from ...core.parameters.program import ProgramParameters
 from ...core.parameters.strategy import LayerParameters
 from ...core.strategies.sequence import BY_FEATURE, BY_HEIGHT
+from ...objects.fields import quantities
 from ...posts.catalogue import motion_written
 from ...sections import cell as job_cell
 from ...sections import fields, paths, tree
@@ -148,7 +149,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
             "BAD_VERSION",
             "version",
             "{} is not understood; write version: 1",
-            fields.quote(version),
+            quantities.quote(version),
         )
     name = _name(values.get("name"), path)
     if values.get("features") is None:
@@ -203,7 +204,7 @@ def _name(name: Any, path: str) -> str:
             "BAD_NAME",
             "name",
             "{} is used in file names; use no slash, control character or leading dot",
-            fields.quote(name),
+            quantities.quote(name),
         )
     if len(name.encode()) > _LONGEST_NAME:
         raise InputError(

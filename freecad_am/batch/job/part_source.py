@@ -18,6 +18,7 @@ from ...core.parameters import field as f
 from ...core.parameters.filled import PLANES
 from ...core.parameters.inspection import AUTO, BEST, NONE, UNITS, InspectionParameters
 from ...core.parameters.scan import PREFIX, ScanParameters
+from ...objects.fields import quantities
 from ...sections import fields
 
 _EDGE = re.compile(r"Edge[1-9]\d*", re.ASCII)
@@ -118,7 +119,7 @@ def guide_of(value: Any, part_section: dict[str, Any]) -> PartSource | None:
             key,
             "{} is not a guide; write {{edges: [Edge1]}}, {{object: Spine}}, {{file: spine.step}}, or "
             "auto",
-            fields.quote(value),
+            quantities.quote(value),
         )
     fields.known_keys(value, ("file", "object", "edges", "set"), key)
     guide_section = {name: value[name] for name in ("file", "object", "set") if name in value}
@@ -145,7 +146,7 @@ def _scale(value: Any, file: str, key: str) -> float:
     """mm of one unit of a file."""
     if value is None:
         return 1.0
-    scale = fields.read(value, f.LENGTH, key)
+    scale = quantities.read(value, f.LENGTH, key)
     refuse_scale(scale, file, key)
     return scale
 
@@ -161,7 +162,7 @@ def _names(value: Any, key: str, pattern: re.Pattern[str]) -> tuple[str, ...]:
             "BAD_VALUE",
             key,
             "{} names no {}s; write [{}1, {}2]",
-            fields.quote(value),
+            quantities.quote(value),
             kind.lower(),
             kind,
             kind,
@@ -178,7 +179,7 @@ def _settings(section: Any, key_of_part: str) -> list[tuple[str, str, str]]:
                     "BAD_VALUE", f"{key_of_part}.set.{name}.{key}", "give one value such as 45 mm"
                 )
             settings.append(
-                (name, key, fields.quote(value) if isinstance(value, bool) else str(value))
+                (name, key, quantities.quote(value) if isinstance(value, bool) else str(value))
             )
     return settings
 

@@ -22,8 +22,9 @@ from PySide import QtCore, QtGui
 
 from ...core.issues import InputError, Text, Word
 from ...objects.fields.preferences import feet_and_inches, field_text, round_conversion
-from ...objects.fields.rows import MARK, is_expression, plain_blanks
-from ...objects.fields.rows import quantity as quantity_of
+from ...objects.fields.quantities import plain_blanks
+from ...objects.fields.quantities import quantity as quantity_of
+from ...objects.fields.rows import MARK, is_expression
 from ..in_language import tr
 from ..signals import connect
 

@@ -15,14 +15,13 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import Any
 
-import FreeCAD as App
-
 from ...core.issues import InputError, Text, Word
 from ...core.parameters import field as f
 from ...core.parameters.records import Records, RecordTexts
 from ...core.parameters.vectors import VectorText
 from ...posts import catalogue
-from . import pendants
+from . import pendants, quantities
+from .quantities import safe_repr
 
 
 def is_text(value: Any) -> bool:
@@ -39,14 +38,6 @@ def checked_words(words: Any, where: str) -> list[str]:
     if not isinstance(words, (list, tuple)) or not all(map(is_text, words)):
         raise InputError("BAD_VALUE", where, "{} is not a text; put it in quotes", safe_repr(words))
     return list(words)
-
-
-def safe_repr(value: Any) -> str:
-    """A value in a message, where it may be of an object that is gone and cannot even be named."""
-    try:
-        return repr(value)
-    except ReferenceError:
-        return Text("the deleted object")
 
 
 _NAME_LENGTH = 20
@@ -108,19 +99,6 @@ def refusal(name: str, post: str) -> str:
 
 TEXT_LIST, MIXED, LENGTH_OR_POSE = "text list", "mixed", "length or pose"
 ENDS = ("low", "high")
-_UNITS = {  # with an example that all parameters of the kind may be
-    f.LENGTH: (App.Units.Length, "a length such as 1 mm"),
-    f.ANGLE: (App.Units.Angle, "an angle such as 30 deg"),
-    f.SPEED: (App.Units.Velocity, "a speed such as 6 mm/s or 360 mm/min"),
-    f.TIME: (App.Units.TimeSpan, "a time such as 0.1 s"),
-    f.TURN_RATE: (App.Units.Unit(-1, 0, 0, 0, 0, 0, 0, 1), "a turn per length such as 10 deg/mm"),
-}
-# non-ASCII signs that FreeCAD reads in a quantity
-_OTHER_SIGNS = "\N{DEGREE SIGN}\N{MICRO SIGN}\N{PRIME}\N{DOUBLE PRIME}\N{MINUS SIGN}"
-# a comma that may begin decimals, a no-break blank that may group digits
-_TWO_WAYS = re.compile(r"(?:^|\s),\d|\d,\d.*\s|\s.*\d,\d|\d[\u00a0\u2009\u202f]\d", re.DOTALL)
-_MILLISECONDS = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*ms\s*", re.ASCII)
-_DECIMAL_COMMA = re.compile(r"\s*[-+]?\d*,\d+(?:[eE][-+]?\d+)?(?:\s*[^\d\s,].*)?", re.ASCII)
 _ABBREVIATED = {"rz": "RZ", "nc": "NC machines"}
 _LABELS = {  # of parameters whose keys do not say it in words
     "given": "Given polynomials",
@@ -185,14 +163,10 @@ class Row:
             return self._records(self.spec.records, value, where)
         if isinstance(self.spec.records, VectorText):
             return self.spec.records.read(value)
-        if self.form == f.POSE:
-            return _pose(value, where)
+        if self.form == f.POSE or (self.form == LENGTH_OR_POSE and quantities.is_pose(value)):
+            return quantities.pose(value, where)
         if self.form == TEXT_LIST:
             return self._list(value, where)
-        if self.form == LENGTH_OR_POSE and (
-            _is_list(value) or (isinstance(value, str) and len(split(value, where)) > 2)
-        ):
-            return _pose(value, where)
         if self.form == MIXED and (value is None or (isinstance(value, str) and not value.strip())):
             return None
         if isinstance(value, str) and value.strip() in self.spec.words:
@@ -202,8 +176,17 @@ class Row:
         if self.spec.kind in (f.TEXT, f.CHOICE, f.FLAG):
             return value
         if self.spec.kind == f.POSE:
-            return _pose(value, where)
-        return _number(self.spec, value, where)
+            return quantities.pose(value, where, self.spec.words)
+        return self._number(value, where)
+
+    def _number(self, value: Any, where: str) -> float:
+        """The number of a value. Raises InputError BAD_VALUE or BAD_UNIT."""
+        if self.spec.kind == f.COUNT:
+            return _count(self.spec, value, where)
+        number = quantities.read(value, self.spec.kind, where, self.spec.words, "BAD_VALUE")
+        if isinstance(value, str) and math.isinf(number):
+            raise quantities.too_large(value, self.spec.kind, where)
+        return number
 
     def _records(self, records: Records, value: Any, where: str) -> Any:
         """Records of their text or JSON. Raises InputError BAD_VALUE, at the dotted key of a job file."""
@@ -220,7 +203,11 @@ class Row:
         records = self.spec.records
         if records is not None and not isinstance(value, str) and _are(records.record, value):
             return tuple(value)
-        words = split(value, where) if isinstance(value, str) else checked_words(value, where)
+        words = (
+            quantities.split(value, where)
+            if isinstance(value, str)
+            else checked_words(value, where)
+        )
         return tuple(words) if records is None else records.read(words)
 
     def outer(self, value: Any) -> Any:
@@ -346,118 +333,16 @@ def _is_list(value: Any) -> bool:
     return isinstance(value, (tuple, list))
 
 
-def split(text: str, where: str) -> list[str]:
-    """The words of a list with commas or blanks between.
-    Raises InputError 'BAD_VALUE' naming `where` for one with both, where a
-    comma may begin decimals ('10,5 20,5' is two numbers, or four), and for digits that are grouped by no-break blanks."""
-    if _TWO_WAYS.search(text.strip()):
-        remedy = "write decimals with a point and one kind of separator, as in 10.5 20.5"
-        raise InputError(
-            "BAD_VALUE", where, "{!r} is ambiguous; {}", plain_blanks(text), Word(remedy)
-        )
-    return text.replace(",", " ").split()
-
-
-def plain_blanks(text: str) -> str:
-    """A text with plain blanks for no-break and thin ones, which FreeCAD does not know."""
-    return re.sub(r"\s", " ", text)
-
-
-def quantity(text: str) -> Any:
-    """FreeCAD's quantity of a text. ValueError for other texts, also where FreeCAD would stop at an
-    unknown sign and drop the rest with the unit ('1’234 mm' would give 1), or where a '[' would
-    begin a comment that swallows all later quantities. 'ms', which FreeCAD does not know (0.20), is
-    read here.
-    """
-    plain = plain_blanks(text).replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}")
-    if "[" in plain or any(not sign.isascii() and sign not in _OTHER_SIGNS for sign in plain):
-        raise ValueError(text)
-    if milliseconds := _MILLISECONDS.fullmatch(plain):
-        return App.Units.Quantity(float(milliseconds[1]) * 1e-3, App.Units.TimeSpan)
-    return App.Units.Quantity(plain)
-
-
-def _number(spec: f.Spec, value: Any, where: str) -> Any:
-    also = Text(" or {}", ", ".join(spec.words)) if spec.words else ""
-    if spec.kind not in _UNITS:
-        percentage = spec.kind == f.RATIO
-        try:
-            number = float(_strip_percent_sign(value) if percentage else value)
-        except (TypeError, ValueError):
-            if percentage:
-                message = Text(
-                    "{!r} is not a percentage; give one such as 20 %{}", value, Word(also)
-                )
-            else:
-                message = Text("{!r} is not a number; give one such as 2{}", value, Word(also))
-            raise InputError("BAD_VALUE", where, message) from None
-        if spec.kind == f.COUNT:
-            return int(number) if number.is_integer() else number
-        return number * f.TO_INNER.get(spec.kind, 1.0)
-    unit, example = _UNITS[spec.kind]
-    expected = Text.joined(" or ", (example, *spec.words))
-    quantity_value = _quantity(value, where, expected)
-    if quantity_value.Unit != unit and quantity_value.Unit != App.Units.Unit():
-        raise InputError(
-            "BAD_UNIT", where, "{!s} has the wrong dimension; give {}", value, expected
-        )
-    return (
-        math.radians(quantity_value.Value)
-        if spec.kind in (f.ANGLE, f.TURN_RATE)
-        else float(quantity_value.Value)
-    )
-
-
-def _strip_percent_sign(value: Any) -> Any:
-    """The number of a text such as '20 %' or '20%', still a text; any other value as it is."""
-    if isinstance(value, str) and value.rstrip().endswith("%"):
-        return value.rstrip()[:-1]
-    return value
-
-
-def _quantity(value: Any, where: str, example: str) -> Any:
-    if isinstance(value, App.Units.Quantity):
-        return value
+def _count(spec: f.Spec, value: Any, where: str) -> float:
+    """A whole number where it is one; any other number is rejected with the range."""
     try:
-        if isinstance(value, str) and ("," in value or not value.strip()):
-            raise ValueError
-        if isinstance(value, bool):
-            raise ValueError
-        return quantity(value) if isinstance(value, str) else App.Units.Quantity(value)
-    except (ValueError, TypeError, ArithmeticError, OSError):
-        plain = plain_blanks(value) if isinstance(value, str) else value
-        if isinstance(plain, str) and _DECIMAL_COMMA.fullmatch(plain):
-            raise InputError(
-                "BAD_VALUE",
-                where,
-                "{} has a comma; use a decimal point, as in {}",
-                repr(plain),
-                plain.replace(",", "."),
-            ) from None
-        raise InputError(
-            "BAD_VALUE", where, "{!r} is not understood; give {}", plain, example
-        ) from None
-
-
-def _pose(value: Any, where: str) -> tuple[float, ...]:
-    if isinstance(value, App.Placement):
-        return pendants.pose_of(value)
-    try:
-        numbers = split(value, where) if isinstance(value, str) else list(value)
-    except TypeError:
-        numbers = []
-    if pendants.named([entry for entry in numbers if isinstance(entry, str)]):
-        return pendants.six([str(entry) for entry in numbers], where)
-    try:
-        floats = [float(number) for number in numbers]
+        number = float(value)
     except (TypeError, ValueError):
-        floats = []
-    if len(floats) not in (3, 6):
+        also = Text(" or {}", ", ".join(spec.words)) if spec.words else ""
         raise InputError(
-            "BAD_VALUE", where, "{!r} is not a pose; give x y z in mm and RX RY RZ in deg", value
-        )
-    floats += [0.0] * (6 - len(floats))
-    return (*floats[:3], *(math.radians(angle) for angle in floats[3:]))
+            "BAD_VALUE", where, "{!r} is not a number; give one such as 2{}", value, Word(also)
+        ) from None
+    return int(number) if number.is_integer() else number
 
 
 MARK = "="
