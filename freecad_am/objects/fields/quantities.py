@@ -78,16 +78,18 @@ _OTHER_SIGNS = "\N{DEGREE SIGN}\N{MICRO SIGN}\N{PRIME}\N{DOUBLE PRIME}\N{MINUS S
 _TWO_WAYS = re.compile(r"(?:^|\s),\d|\d,\d.*\s|\s.*\d,\d|\d[\u00a0\u2009\u202f]\d", re.DOTALL)
 _MILLISECONDS = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*ms\s*", re.ASCII)
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d*,\d+(?:[eE][-+]?\d+)?(?:\s*[^\d\s,.].*)?", re.ASCII)
-# where a term of a sum ends: at a sign that is no exponent's, or at a number right after a unit
+# where a term of a sum without exponents ends: at a sign, or at a number right after a unit
 _TERMS = re.compile(
-    r"(?<=[^\s(*/^+\u2212-])(?<!\d[eE])(?<!\.[eE])\s*[-+\u2212]|"
-    "(?<=[A-Za-z\u00b5'\"\u00b0\u2032\u2033])(?<!\\d[eE])(?<!\\.[eE])\\s*(?=[\\d.])"
+    r"(?<=[^\s(*/^+\u2212-])\s*[-+\u2212]|"
+    "(?<=[A-Za-z\u00b5'\"\u00b0\u2032\u2033])\\s*(?=[\\d.])"
 )
 _FACTORS = re.compile(
     "(/?)[\\s\\d.(]*([A-Za-z\u00b5\u00b0\u2032\u2033'\"]+)(?:\\s*\\^\\s*(-?\\d+))?"
 )
 _POSE_KINDS = (f.LENGTH,) * 3 + (f.ANGLE,) * 3
-_BASE_UNITS = 8  # of FreeCAD: length, mass, time, ..., angle
+_FUNCTIONS = re.compile(r"[A-Za-z]+\([^()]*\)")
+_EXPONENTS = re.compile(r"(?<=[\d.])[eE][-+]?\d+", re.ASCII)
+_PARTS_OF_DEGREE = ("\u2032", "\u2033")  # minutes and seconds of arc
 _FORM_OF_POSE = "x y z in mm and RX RY RZ in deg"
 
 _Reading = tuple[float, Dimension | None]  # in the outer unit; None for a number without a unit
@@ -385,22 +387,18 @@ def quantity(text: str) -> Any:
 
 
 def _adds_dimensions(text: str) -> bool:
-    """Whether terms of a sum have different dimensions, which ends FreeCAD 0.20 at '1 mm - 1 s' and '1 mm 1 s'."""
-    terms = _TERMS.split(text)
-    if len(terms) == 1:
-        return False
-    dimensions = {_term_dimension(term) for term in terms}
-    return len(dimensions - {(0,) * _BASE_UNITS}) > 1
+    """Whether terms of a sum have different dimensions, which ends FreeCAD 0.20. A unit that is not ours is of another one."""
+    terms = _TERMS.split(_FUNCTIONS.sub("1", _EXPONENTS.sub("", text)))
+    return len(terms) > 1 and len({_term_dimension(term) for term in terms} - {NONE}) > 1
 
 
-def _term_dimension(term: str) -> tuple[int, ...]:
-    """The powers of the base units in a product; of functions none."""
-    total = [0] * _BASE_UNITS
+def _term_dimension(term: str) -> Dimension:
+    """The dimension of a product of numbers and units."""
+    length, time, angle = NONE
     for over, unit, power in _FACTORS.findall(term):
-        try:
-            powers = App.Units.Quantity(f"1 {unit}").Unit.Signature
-        except (ValueError, TypeError, ArithmeticError, OSError, RuntimeError):
-            continue
-        sign = (-1 if over else 1) * int(power or 1)
-        total = [one + sign * each for one, each in zip(total, powers, strict=True)]
-    return tuple(total)
+        times = (-1 if over else 1) * int(power or 1)
+        powers = ANGLE if unit in _PARTS_OF_DEGREE else UNITS.get(unit, (1.0, _OTHER_DIMENSION))[1]
+        length += times * powers[0]
+        time += times * powers[1]
+        angle += times * powers[2]
+    return length, time, angle
