@@ -357,15 +357,12 @@ def test_layers_on_a_plate_that_is_not_flat_are_as_far_from_it_as_they_are_many(
     )
     done, report, rows = planned(block, "offset", 2.0, more="}\nsubstrate: {file: plate.step")
     assert done.status == 0, done.err
-    points, layer = (
-        column(rows, "x_mm", "y_mm", "z_mm"),
-        np.array([int(row["layer"]) for row in rows]),
-    )
+    points, _, layer = places(rows)
     assert layer.max() >= 8 and report["unsupported_mm"] == 0.0
     away = [face.distToShape(Part.Vertex(*point))[0] for point in points]
     off = np.abs(away - 2.0 * layer)
     # the layers are triangles, coarsest where they bend most; the largest of a few points beside
-    # the border depends on the processor's last bits (0.28 to 0.33 mm)
+    # the border depends on the processor's last bits (0.28 to 0.35 mm)
     assert off.max() < 0.4 and np.percentile(off, 99.0) < 0.2 and off.mean() < 0.05
 
 

@@ -23,10 +23,10 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import arcs, length
-from ..geometry.regions.region import Region, along, select_significant, select_simplified
+from ..geometry.regions.region import Region, select_significant, select_simplified
 from ..geometry.regions.spokes import Spokes, find_spokes
 from ..types import Array, Index, Mask
-from .centre import Beads, PlaneCurve, divide_by_share, long_enough, start_curve
+from .centre import Beads, PlaneCurve, covered_regions, long_enough, start_curve
 
 MAX_WEDGE = math.radians(60.0)  # sides of a wedge that opens more belong to a corner
 GAP_WEDGE = math.radians(120.0)  # the same in a gap between beads
@@ -46,6 +46,7 @@ SHARE_TOLERANCE = 0.02  # of the usual width; shares within this of a straight l
 SAME = 1e-9  # of the spacing
 SHORTEST_PIECE = 0.1  # of the spacing; shorter pieces of the axis are ends of branches into corners
 CAP = 0.25  # of the radius of a bead's round end, which has no more volume, kept off the bead it ends on
+ROUND_END = 0.25 * math.pi  # of the radius: length of a rectangle with the area of a round end
 MEET = 0.8  # of the usual width; about as wide are beads that others end on
 JOINT = 1.3  # steps; ends of middle beads that near to each other meet
 
@@ -161,7 +162,7 @@ class _Thickness(NamedTuple):
             np.add.at(total, spokes, weights)
         for spokes, low, high, weights in self.transitions:
             weights = weights / np.maximum(total[spokes], 1.0)
-            if self.counts[low] >= 2 * pair + 2:
+            if min(self.counts[low], self.counts[high]) >= 2 * pair + 2:
                 ramped_depths[spokes] += weights * (depths[high] - depths[low])
                 ramped_shares[spokes] += weights * (shares[high] - shares[low])
         return ramped_depths, ramped_shares
@@ -202,24 +203,6 @@ def adapt_contours(region: Region, beads: Beads, law: BeadLaw) -> list[PlaneCurv
         middles = _adapt(gap, beads, law, GAP_WEDGE, beads.shortest)
         curves += [replace(curve, kind="closing", ring=0) for curve in middles]
     return curves
-
-
-def covered_regions(
-    curves: Sequence[PlaneCurve], width: float, chord_error: float
-) -> tuple[Region, ...]:
-    """Regions that beads cover at their shares of a usual width, mm."""
-    lines, halves = [], []
-    for curve in curves:
-        points, shares = curve.closed_points()
-        if shares is None:
-            lines.append((points, False))
-            halves.append(0.5 * width)
-            continue
-        points, shares = divide_by_share(points, shares)
-        means = 0.5 * (shares[1:] + shares[:-1])
-        lines += [(points[k : k + 2], False) for k in range(len(means))]
-        halves += (0.5 * width * means).tolist()
-    return along(lines, np.array(halves), chord_error)
 
 
 def _adapt(
@@ -276,25 +259,21 @@ def _thickness(
     _bridge(radii, counts, distance, following, is_central, SHORT_CHANGE * law.spacing)
     follows = ~is_central & is_central[summit]
     counts[follows], deciding[follows] = counts[summit[follows]], deciding[summit[follows]]
-    transitions = _transitions(
-        counts, deciding, distance, following, is_central, summit, RAMP * law.spacing
-    )
-    return _Thickness(deciding, counts, is_central, transitions)
+    thickness = _Thickness(deciding, counts, is_central, [])
+    return thickness._replace(transitions=_transitions(spokes, thickness, distance, summit, law))
 
 
 def _transitions(
-    counts: Index,
-    deciding: Array,
-    distance: Array,
-    following: Index,
-    is_central: Mask,
-    summit: Index,
-    reach: float,
+    spokes: Spokes, thickness: _Thickness, distance: Array, summit: Index, law: BeadLaw
 ) -> list[_Transition]:
-    """Changes of the number of beads: each extends over `reach` mm of the axis on the side with
-    fewer beads, and into the corners that belong to it."""
+    """Changes of the number of beads, and of their widths where a thin part opens into a thick
+    place: each extends over `RAMP` of the axis on the side with fewer beads, and into the corners
+    that belong to it; where the thin part has less room than the beads of the thick place take, as
+    far into the mouth as this is so.
+    """
+    counts, deciding, is_central = thickness.counts, thickness.radii, thickness.is_central
     transitions = []
-    for cycle in _cycles(following):
+    for cycle in _cycles(spokes.following):
         for run in _runs(is_central[cycle]):
             if len(run) < len(cycle):
                 run = np.r_[run[0] - 1, run, (run[-1] + 1) % len(cycle)]
@@ -306,18 +285,58 @@ def _transitions(
                 here, ahead_ = ((counts[j], deciding[j]) for j in members[k : k + 2])
                 falls = here > ahead_
                 low, high = members[[k + 1, k] if falls else [k, k + 1]].tolist()
+                if is_central[low] and not is_central[high]:
+                    mouth = _mouth(spokes, thickness, cycle, low, high, -1 if falls else 1, law)
+                    if mouth is not None:
+                        transitions.append(mouth)
+                        continue
                 ahead = arc - arc[k + 1] if falls else arc[k] - arc
                 length_of_few = _stretch_length(counts[members], arc, k if not falls else k + 1)
-                ramp = min(reach, 0.5 * length_of_few)
+                ramp = min(RAMP * law.spacing, 0.5 * length_of_few)
                 near = is_central[members] & (ahead >= 0.0) & (ahead < ramp)
-                spokes, weights = members[near], 1.0 - ahead[near] / max(ramp, 1e-300)
-                corner = np.flatnonzero(~is_central & np.isin(summit, spokes))
-                order = np.argsort(spokes)
-                source = order[np.searchsorted(spokes[order], summit[corner])]
+                ramped, weights = members[near], 1.0 - ahead[near] / max(ramp, 1e-300)
+                corner = np.flatnonzero(~is_central & np.isin(summit, ramped))
+                order = np.argsort(ramped)
+                source = order[np.searchsorted(ramped[order], summit[corner])]
                 transitions.append(
-                    _Transition(np.r_[spokes, corner], low, high, np.r_[weights, weights[source]])
+                    _Transition(np.r_[ramped, corner], low, high, np.r_[weights, weights[source]])
                 )
     return transitions
+
+
+def _mouth(
+    spokes: Spokes,
+    thickness: _Thickness,
+    cycle: Index,
+    low: int,
+    high: int,
+    step: int,
+    law: BeadLaw,
+) -> _Transition | None:
+    """The change from a thin part to a thick place along the spokes of its mouth, which are longer
+    from one to the next: beads of the thin part widen until they are as wide as those of the thick
+    place. None if the thin part has room for beads as wide as those.
+
+    low, high: the adjacent spokes of both; step: 1 if `high` follows `low`, else -1.
+    """
+    pairs = int(thickness.counts[low]) // 2
+    if not pairs or pairs > int(thickness.counts[high]) // 2:
+        return None
+    depths, shares = law.depths(
+        pairs - 1, thickness.counts[[low, high]], thickness.radii[[low, high]]
+    )
+    needed = float(depths[1] + 0.5 * law.spacing * shares[1])
+    room = float(spokes.radii[low])
+    order = np.roll(cycle, -int(high - cycle[0]))
+    order = order if step > 0 else np.roll(order[::-1], 1)
+    radii = spokes.radii[order]
+    is_out = thickness.is_central[order] | (radii >= needed)
+    is_out[1:] |= radii[1:] < radii[:-1]
+    count = int(np.argmax(is_out)) if is_out.any() else 0
+    if needed <= room or not count:
+        return None
+    weights = np.clip((needed - radii[:count]) / (needed - room), 0.0, 1.0)
+    return _Transition(order[:count], high, low, weights)
 
 
 def _level_short_changes(
@@ -725,12 +744,13 @@ def _thinned(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[A
 
 
 class _Middle(NamedTuple):
-    """A piece of the axis for a bead: points (n, 2), shares (n,), and whether its ends meet beads
-    that begin there."""
+    """A piece of the axis for a bead: points (n, 2), shares (n,), whether its ends meet beads that
+    begin there, and whether they are inside pairs."""
 
     points: Array
     shares: Array
     meets: tuple[bool, bool]
+    in_pairs: tuple[bool, bool]
 
 
 def _centres(
@@ -786,7 +806,8 @@ def _middle_pieces(
                         width += share * (float(shares[neighbour]) - width)
                     points = np.vstack([points, end] if last else [end, points])
                     widths = np.r_[widths, width] if last else np.r_[width, widths]
-            pieces.append(_Middle(points, widths, (meets[0], meets[1])))
+            in_pairs = bool(counts[members[0]] > 1), bool(counts[members[-1]] > 1)
+            pieces.append(_Middle(points, widths, (meets[0], meets[1]), in_pairs))
     return pieces, closed
 
 
@@ -869,26 +890,31 @@ def _walk(
                 break
             end = int(partner[far])
         chain = _Middle(
-            np.vstack(points), np.concatenate(shares), (bool(meets[start]), bool(meets[far]))
+            np.vstack(points),
+            np.concatenate(shares),
+            (bool(meets[start]), bool(meets[far])),
+            (pieces[start // 2].in_pairs[start % 2], pieces[far // 2].in_pairs[far % 2]),
         )
         chains.append(_cut_back(chain, law, shortest))
     return chains
 
 
 def _cut_back(piece: _Middle, law: BeadLaw, shortest: float) -> _Middle:
-    """Shorten a piece by its ends that overlap other beads, of which `shortest` mm remain; extend its
-    free ends so far that the round end of a bead has its volume.
+    """Shorten a piece by its ends that overlap other beads, of which `shortest` mm remain. Extend
+    its free ends: inside pairs to the end of the room between them, so that the bead has its volume,
+    elsewhere so far that a round end with the volume of the bead touches the border.
     """
     points, shares = piece.points, piece.shares
-    for meets in piece.meets:
+    for meets, in_pairs in zip(piece.meets, piece.in_pairs):
         points, shares = points[::-1], shares[::-1]  # the end in question is the last
-        radius = 0.5 * law.spacing * float(shares[-1])
+        radius = 0.5 * (law.spacing if in_pairs else law.width) * float(shares[-1])
         if meets:
             excess = length(points, False) - 1.01 * shortest
             back = min(CAP * radius + 0.5 * law.spacing * MEET, max(excess, 0.0))
             points, shares = _shortened(points, shares, back)
         else:
-            end = points[-1] + 0.25 * math.pi * radius * _outward(points, -1)
+            reach = radius if in_pairs else ROUND_END * radius
+            end = points[-1] + reach * _outward(points, -1)
             points, shares = np.vstack([points, end]), np.r_[shares, shares[-1:]]
     return piece._replace(points=points, shares=shares)
 

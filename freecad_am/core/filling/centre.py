@@ -275,12 +275,29 @@ def open_regions(
 ) -> list[Region]:
     """Regions that curves leave open, wider than the allowed gap, within reach of beads with their middles in `inner`."""
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
-    lines = [(simplified(curve.points, error, curve.closed), curve.closed) for curve in curves]
+    covered = covered_regions(curves, beads.spacing, error)
     return select_wider(
-        subtract_regions(grow_regions(inner, half, error), along(lines, half, error), beads.gap),
-        beads.gap,
-        error,
+        subtract_regions(grow_regions(inner, half, error), covered, beads.gap), beads.gap, error
     )
+
+
+def covered_regions(
+    curves: Sequence[PlaneCurve], width: float, chord_error: float
+) -> tuple[Region, ...]:
+    """Regions that beads cover at their shares of a usual width, mm, with round ends."""
+    lines, halves = [], []
+    for curve in curves:
+        if curve.share is None:
+            lines.append((simplified(curve.points, chord_error, curve.closed), curve.closed))
+            halves.append(0.5 * width)
+            continue
+        points, shares = curve.closed_points()
+        assert shares is not None
+        points, shares = divide_by_share(points, shares)
+        means = 0.5 * (shares[1:] + shares[:-1])
+        lines += [(points[k : k + 2], False) for k in range(len(means))]
+        halves += (0.5 * width * means).tolist()
+    return along(lines, np.array(halves), chord_error)
 
 
 def closing_beads(

@@ -234,7 +234,7 @@ class FilledParameters(LayerParameters):
         advanced=True,
     )
     widths: str = f.parameter(
-        "fixed",
+        "adaptive",
         f.CHOICE,
         "Width of contours in planes: it follows the thickness of the region where that covers "
         "the region better (adaptive), or is the usual width (fixed).",

@@ -12,7 +12,7 @@ from freecad_am.core.parameters.process import ProcessParameters, WireParameters
 from freecad_am.core.process.shape import compare
 from freecad_am.core.process.shape.compare import BOTH, faces
 from freecad_am.core.process.shape.laying import feature_parts, predicted_deposit
-from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.core.toolpath import Bead, Layer, SpeedLaw, Toolpath
 
 WIDE, HIGH, SPEED = 6.0, 2.0, 8.0
 KNOWN = 0.35  # of a cube's edge, by which one place of a surface may be off its formula; in the mean a tenth of that
@@ -247,7 +247,8 @@ def test_the_area_is_kept_where_beads_overlap(pitch, valley):
     across = pitch * WIDE
     real = {"width": np.full(40, WIDE), "height": np.full(40, HIGH)}
     beads = [straight((-60.0, y, 0.0), (60.0, y, 0.0), **real) for y in across * np.arange(-6, 7)]
-    found = deposit(toolpath([beads]), edge=0.5)
+    law = SpeedLaw(0.0, 0.0, 1.0, math.inf)  # widths are from a bead model
+    found = deposit(toolpath([beads], law=law), edge=0.5)
     tops = np.array(
         [
             [
@@ -260,6 +261,31 @@ def test_the_area_is_kept_where_beads_overlap(pitch, valley):
     assert abs(tops.mean() - WIDE * HIGH / across) < 0.03 * HIGH * WIDE / across
     profile = tops.mean(axis=0)
     assert np.ptp(profile) > 0.3 if valley else np.ptp(profile) < 0.1 * KNOWN * 0.5
+
+
+@pytest.mark.parametrize("edge", [0.5, 0.9, 1.0])
+def test_beads_of_several_widths_side_by_side_are_as_high(edge):
+    """Each as wide as its room, without a bead model: six layers end flat, however cubes and pieces of beads are divided."""
+    widths = np.array([6.0, 6.0, 4.0, 3.0, 5.0, 3.0, 4.0, 6.0, 6.0])
+    middles = np.cumsum(widths) - 0.5 * widths
+    layers = [
+        [
+            straight((-60.0, y, k * HIGH), (60.0, y, k * HIGH), width=np.full(40, wide))
+            for y, wide in zip(middles, widths)
+        ]
+        for k in range(6)
+    ]
+    found = deposit(toolpath(layers), edge=edge)
+    tops = np.array(
+        [
+            [
+                first_air(found.grid, (x, y, 1.0), (0, 0, 1), 20.0) + 1.0
+                for y in np.linspace(8.0, widths.sum() - 8.0, 40)
+            ]
+            for x in np.linspace(-25.0, 25.0, 40)
+        ]
+    )
+    assert np.abs(tops - 6.0 * HIGH).max() < 0.2 * HIGH
 
 
 @pytest.mark.parametrize("share", [0.85, 1.1])

@@ -39,9 +39,10 @@ class Footprint:
     """k cubes of a layer.
 
     cubes: (k,) indices in the grid. piece_rows: (k,) the nearest piece; other_piece: (k,) the piece of the adjacent bead, or the
-    same without one, and share: (k,) how much of the cube is on the nearest piece's side of the middle between. up: (k,) mm of the
+    same without one, and share: (k,) how much of the cube is on the nearest piece's side of the border between. up: (k,) mm of the
     middle of the cube along the piece's build direction, from the path; aside: (k,) mm from the middle of the bead, positive to
-    its left. cover: (k,) share of the cube that is within the beads' widths.
+    its left. cover: (k,) share of the cube that is within the beads' widths. pieces: (n, k) share of each cube that is on
+    each piece, of the two nearest along a bead too, so that cubes and pieces of about a length do not beat.
     """
 
     cubes: Index
@@ -51,6 +52,7 @@ class Footprint:
     up: Array
     aside: Array
     cover: Array
+    pieces: csr_matrix
 
     def mixed(self, of_pieces: Array) -> Array:
         """Interpolate values of pieces at cubes.
@@ -68,27 +70,6 @@ class Footprint:
         return np.asarray(
             self.share * of_pieces[self.piece_rows]
             + (1.0 - self.share) * of_pieces[self.other_piece],
-            dtype=np.float64,
-        )
-
-    def summed(self, of_cubes: Array, count: int) -> Array:
-        """Sum values of cubes over their pieces.
-
-        Parameters
-        ----------
-        of_cubes : (k,) array
-            Values of the cubes.
-        count : int
-            Number n of pieces.
-
-        Returns
-        -------
-        (n,) array
-            The sums.
-        """
-        sums = np.bincount(self.piece_rows, self.share * of_cubes, count)
-        return np.asarray(
-            sums + np.bincount(self.other_piece, (1.0 - self.share) * of_cubes, count),
             dtype=np.float64,
         )
 
@@ -111,13 +92,13 @@ def footprint(grid: Grid, pieces: Strands, low: Array, high: Array) -> Footprint
         The cubes with their pieces.
     """
     candidates = [_near(grid, pieces, rows, low, high) for rows in _chunks(grid, pieces, low, high)]
-    cubes, piece_rows, up, aside, off = (
+    cubes, piece_rows, up, aside, along, off = (
         np.concatenate(columns) for columns in zip(*candidates, strict=True)
     )
     # the nearest first, measured by the width; ties go to the earlier piece
     order = np.lexsort((piece_rows, off / pieces.width[piece_rows], cubes))
     cubes, piece_rows = cubes[order], piece_rows[order]
-    up, aside, off = up[order], aside[order], off[order]
+    up, aside, along, off = up[order], aside[order], along[order], off[order]
     alone, bridged = (
         np.clip((0.5 * wide * pieces.width[piece_rows] - off) / grid.edge + 0.5, 0.0, 1.0)
         for wide in (1.0, BRIDGED)
@@ -139,7 +120,20 @@ def footprint(grid: Grid, pieces: Strands, low: Array, high: Array) -> Footprint
         cover[mine] + alone[other_rows],
         np.where(alone[other_rows] < bridged_cover, 2.0 * bridged_cover, 0.0),
     )
-    share[mine] = np.clip((off[other_rows] - off[begins][mine]) / (2.0 * grid.edge) + 0.5, 0.0, 1.0)
+    wide, other_wide = pieces.width[piece_rows[begins][mine]], pieces.width[piece_rows[other_rows]]
+    to_border = (off[other_rows] * wide - off[begins][mine] * other_wide) / (wide + other_wide)
+    share[mine] = np.clip(to_border / grid.edge + 0.5, 0.0, 1.0)
+    second_along = along[begins]
+    second_along[mine] = along[other_rows]
+    counted = [
+        (rows, cube_shares * part_shares)
+        for at, offset, cube_shares in (
+            (piece_rows[begins], along[begins], share),
+            (second, second_along, 1.0 - share),
+        )
+        for rows, part_shares in _along_bead(pieces, at, offset, grid.edge)
+    ]
+    number = np.arange(len(begins))
     return Footprint(
         cubes[begins],
         piece_rows[begins],
@@ -148,7 +142,26 @@ def footprint(grid: Grid, pieces: Strands, low: Array, high: Array) -> Footprint
         up[begins],
         aside[begins],
         np.minimum(cover, 1.0),
+        csr_matrix(
+            (
+                np.concatenate([shares for _, shares in counted]),
+                (np.concatenate([rows for rows, _ in counted]), np.tile(number, len(counted))),
+            ),
+            shape=(len(pieces), len(begins)),
+        ),
     )
+
+
+def _along_bead(
+    pieces: Strands, piece_rows: Index, along: Array, edge: float
+) -> tuple[tuple[Index, Array], tuple[Index, Array]]:
+    """The pieces (k,) of cubes `along` (k,) mm from their middles, and the next pieces of their beads on that side, each with its
+    share (k,) of the cube. edge: mm of a cube.
+    """
+    beside = np.clip(piece_rows + np.where(along < 0.0, -1, 1), 0, len(pieces) - 1)
+    share = np.clip((np.abs(along) - 0.5 * pieces.length[piece_rows]) / edge + 0.5, 0.0, 0.5)
+    share = np.where(pieces.bead[beside] == pieces.bead[piece_rows], share, 0.0)
+    return (piece_rows, 1.0 - share), (beside, share)
 
 
 def _chunks(grid: Grid, pieces: Strands, low: Array, high: Array) -> Iterator[Index]:
@@ -177,8 +190,8 @@ def _counts(
 
 def _near(
     grid: Grid, pieces: Strands, rows: Index, low: Array, high: Array
-) -> tuple[Index, Index, Array, Array, Array]:
-    """Cubes near some pieces: cube, piece, mm above the path, aside, and from the line of the piece, for each pair."""
+) -> tuple[Index, Index, Array, Array, Array, Array]:
+    """Cubes near some pieces: cube, piece, mm above the path, aside, along, and from the line of the piece, for each pair."""
     ahead, aside = _reach(grid, pieces, rows)
     counts = _counts(grid, pieces, rows, low, high)
     lattice = [np.linspace(-1.0, 1.0, count) for count in counts]
@@ -217,7 +230,14 @@ def _near(
     )
     off = np.hypot(left_offset, np.maximum(np.abs(along) - 0.5 * pieces.length[piece_rows], 0.0))
     is_near: Mask = off < 0.5 * (BRIDGED * pieces.width[piece_rows] + grid.edge)
-    return cube_rows[is_near], piece_rows[is_near], up[is_near], left_offset[is_near], off[is_near]
+    return (
+        cube_rows[is_near],
+        piece_rows[is_near],
+        up[is_near],
+        left_offset[is_near],
+        along[is_near],
+        off[is_near],
+    )
 
 
 MAX_CUBES = 400_000  # cubes, about, of a deposit
@@ -235,6 +255,7 @@ POOL = 1.5  # widths over which a melt levels itself
 ROUNDS = 10  # in which levels are found
 MIN_RISING_SHARE = 0.05  # of a piece's area that counts as rising at least
 HALVINGS = 60
+ROUNDING = 1e-9  # of a cube
 ROUNDING_SHARE = 1e-12  # of the volume fed to a layer; a smaller rest is rounding
 
 Report = Callable[[float, str], None]
@@ -287,9 +308,13 @@ def feature_parts(toolpath: Toolpath, processes: Sequence[ProcessParameters]) ->
 
 
 def edge_of(pieces: Strands) -> float:
-    """mm of the cubes for a deposit of these strands: fine against layers and beads, as far as their number allows."""
-    fine = MIN_EDGE_SHARE * min(float(pieces.height.min()), 0.5 * float(pieces.width.min()))
-    return max(fine, float(np.cbrt(pieces.volume.sum() / MAX_CUBES)))
+    """mm of the cubes for a deposit of these strands: fine against layers and beads, as far as their number allows, and a whole number
+    of them in the lowest layer.
+    """
+    height = float(pieces.height.min())
+    fine = MIN_EDGE_SHARE * min(height, 0.5 * float(pieces.width.min()))
+    edge = max(fine, float(np.cbrt(pieces.volume.sum() / MAX_CUBES)))
+    return height / int(height / edge + ROUNDING) if edge < height else edge
 
 
 def predicted_deposit(
@@ -485,8 +510,8 @@ class _Layer:
         cube, level = edge**3, pool @ (self.base + self.rise) / pool.sum(axis=1).A1 + pieces.height
 
         def margin(levels_: Array) -> Array:
-            levels: Array = cells.summed(filled(levels_), len(pieces)) * cube
-            return levels
+            volumes: Array = cells.pieces @ filled(levels_) * cube
+            return volumes
 
         for _ in range(ROUNDS):
             volume = margin(level)

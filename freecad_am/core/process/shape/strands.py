@@ -239,7 +239,7 @@ def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
         bead,
         pieces.point,
         on_ground,
-        np.array([bead_.width is not None for _, _, bead_ in beads])[bead],
+        np.full(len(bead), toolpath.law is not None),
     )
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from ...filling.adaptive import BeadLaw, adapt_contours, covered_regions
+from ...filling.adaptive import BeadLaw, adapt_contours
 from ...filling.centre import OVER, Beads, PlaneCurve, bare_parts
 from ...filling.cover import Cover, measure_cover, total
 from ...filling.fill import Gaps, fill, open_places
@@ -319,9 +319,7 @@ def _adapt_widths(
     adapted_cover = measure_cover(region, adapted, beads)
     if _fault(adapted, adapted_cover, beads) > BETTER * fault:
         return None
-    covered = covered_regions(adapted, law.width, beads.chord_error)
-    gaps = [(gap.inside(), gap.width) for gap in region.without(covered, wide=beads.gap)]
-    return adapted, adapted_cover, [gap for gap in gaps if gap[1] > beads.gap]
+    return adapted, adapted_cover, open_places(region, adapted, beads)
 
 
 def _fault(curves: Sequence[PlaneCurve], cover: Cover, beads: Beads) -> float:
