@@ -169,8 +169,8 @@ def test_a_bent_top_gets_layers_above_it_and_the_program_has_them(planned, works
         assert covered(rows, above, number, 0.5 * SPACING * 1.03) > 0.985
     deposit = report["deposit"]
     assert deposit["part_cm3"] == pytest.approx(2 * HEIGHT * top.Area / 1000.0, rel=0.01)
-    # beads where links join the lines are narrower, and what these leave bare counts
-    assert deposit["left_out_cm3"] < 0.025 * deposit["part_cm3"]
+    # beads where links join the lines are narrower; what these and their round ends leave bare counts
+    assert deposit["left_out_cm3"] < 0.03 * deposit["part_cm3"]
     covers = deposit["deposited_cm3"] + deposit["beside_cm3"]
     twice = max(report["totals"]["volume_cm3"] - covers, 0.0)
     assert deposit["twice_cm3"] == pytest.approx(twice, abs=0.01 * covers)

@@ -136,6 +136,19 @@ def test_beads_lie_in_the_shape(doc, name):
     assert not [issue for issue in api.issues(toolpath) if issue.level == "error"]
 
 
+def deposited_volume(toolpath):
+    """Volume of all beads, mm3: the sum of length, mean width and layer height of their pieces."""
+    volume = 0.0
+    for _, _, bead in toolpath:
+        points = bead.points
+        widths = np.full(len(points), FAST["bead_spacing"]) if bead.width is None else bead.width
+        if bead.closed:
+            points, widths = np.vstack([points, points[:1]]), np.r_[widths, widths[:1]]
+        lengths = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        volume += float(lengths @ (widths[1:] + widths[:-1])) / 2.0 * FAST["layer_height"]
+    return volume
+
+
 def test_a_mesh_and_the_shape_it_is_of_are_filled_alike(doc):
     exact = api.result(
         api.make_toolpath(doc, api.make_solid_feature(doc, part(doc, flange()), **FAST))
@@ -144,7 +157,11 @@ def test_a_mesh_and_the_shape_it_is_of_are_filled_alike(doc):
         api.make_toolpath(doc, api.make_solid_feature(doc, mesh(doc, flange()), **FAST))
     )
     assert len(exact.layers) == len(scanned.layers)
-    assert exact.length == pytest.approx(scanned.length, rel=0.005)
+    # beads of variable width divide the same volume into other lengths where a chord error moves a corner
+    assert deposited_volume(exact) == pytest.approx(deposited_volume(scanned), rel=0.005)
+    assert exact.length == pytest.approx(scanned.length, rel=0.02)
+    (whole, *shares), (_, *scanned_shares) = exact.checks.volumes, scanned.checks.volumes
+    assert shares == pytest.approx(scanned_shares, abs=0.005 * whole)
 
 
 def test_several_objects_and_solids_that_touch(doc):
@@ -283,12 +300,12 @@ def test_a_margin_far_wider_than_the_part_is_told_before_its_layers_are_filled(d
     assert [[issue.code for issue in issues].count("LARGE") for issues in told] == [0, 1]
 
 
-def balanced(doc, shape):
+def balanced(doc, shape, **values):
     """mm3 of the part, of what beads of 6 mm in layers of 4 mm leave of it and of what they lay beside it; and the codes."""
     toolpath = api.make_toolpath(
         doc,
         api.make_solid_feature(
-            doc, part(doc, shape), layer_height=4.0, chord_error=0.1, bead_spacing=6.0
+            doc, part(doc, shape), layer_height=4.0, chord_error=0.1, bead_spacing=6.0, **values
         ),
     )
     told = {issue.code: issue.message for issue in api.issues(toolpath)}
@@ -315,7 +332,10 @@ def test_what_beads_leave_of_a_solid_and_lay_beside_it_is_told(doc):
             left - corners == pytest.approx(24 * 24 * (high - 8.0), rel=0.05)
             and ("NOT_DEPOSITED" in told) == news
         )
-    (whole, _, beside), told = balanced(doc, Part.makeBox(60, 3.2, 8))
+    wall = Part.makeBox(60, 3.2, 8)
+    (whole, _, beside), told = balanced(doc, wall)  # a bead of half the usual width
+    assert beside < 0.05 * whole and "DEPOSITED_BESIDE" not in told
+    (whole, _, beside), told = balanced(doc, wall, widths="fixed")
     assert beside > 0.8 * whole
     assert (
         f"about {beside / 1000.0:.3g} cm3 of beads are outside the 1.54" in told["DEPOSITED_BESIDE"]

@@ -22,11 +22,18 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from ..geometry.curves.plane_curve import arcs, length
+from ..geometry.curves.plane_curve import arcs, length, shorten_end
 from ..geometry.regions.region import Region, select_significant, select_simplified
 from ..geometry.regions.spokes import Spokes, find_spokes
 from ..types import Array, Index, Mask
-from .centre import Beads, PlaneCurve, covered_regions, long_enough, start_curve
+from .centre import (
+    ROUND_END,
+    Beads,
+    PlaneCurve,
+    covered_regions,
+    long_enough,
+    start_curve,
+)
 
 MAX_WEDGE = math.radians(60.0)  # sides of a wedge that opens more belong to a corner
 GAP_WEDGE = math.radians(120.0)  # the same in a gap between beads
@@ -46,7 +53,6 @@ SHARE_TOLERANCE = 0.02  # of the usual width; shares within this of a straight l
 SAME = 1e-9  # of the spacing
 SHORTEST_PIECE = 0.1  # of the spacing; shorter pieces of the axis are ends of branches into corners
 CAP = 0.25  # of the radius of a bead's round end, which has no more volume, kept off the bead it ends on
-ROUND_END = 0.25 * math.pi  # of the radius: length of a rectangle with the area of a round end
 MEET = 0.8  # of the usual width; about as wide are beads that others end on
 JOINT = 1.3  # steps; ends of middle beads that near to each other meet
 
@@ -213,7 +219,7 @@ def _adapt(
     max_wedge: rad; sides of a wedge that opens more belong to a corner. shortest_centre: mm; a
     shorter stretch of the axis gets no bead of its own.
     """
-    reach = region.extent
+    reach = 2.0 * float(np.hypot(*(region.borders()[0] - region.middle).T).max())
     turn = 2.0 * math.acos(max(1.0 - beads.chord_error / max(reach, beads.chord_error), 0.0))
     spokes = find_spokes(
         region,
@@ -247,7 +253,8 @@ def _thickness(
     is_steep = np.abs(rise) > np.maximum(math.sin(0.5 * max_wedge) * distance, tiny)
     is_level = ~is_steep & (distance > tiny)
     forks = _forks(spokes, distance, law.spacing)
-    is_level &= ~_in_short_runs(is_level, forks, distance, following, shortest_centre)
+    is_level &= ~forks
+    is_level &= ~_in_short_runs(is_level, distance, following, shortest_centre)
     is_central = np.zeros(len(radii), dtype=bool)
     is_central[is_level] = True
     is_central[following[is_level]] = True
@@ -439,17 +446,13 @@ def _forks(spokes: Spokes, distance: Array, spacing: float) -> Mask:
     return np.asarray(np.nan_to_num(jump) > FORK_RATIO * distance + FORK * spacing)
 
 
-def _in_short_runs(
-    is_level: Mask, forks: Mask, distance: Array, following: Index, shortest: float
-) -> Mask:
-    """Mask of level stretches of the axis, from fork to fork, that are shorter than a length, mm."""
+def _in_short_runs(is_level: Mask, distance: Array, following: Index, shortest: float) -> Mask:
+    """Mask of level stretches of the axis that are shorter than a length, mm."""
     short = np.zeros(len(is_level), dtype=bool)
     for cycle in _cycles(following):
         for run in _runs(is_level[cycle]):
-            cuts = np.flatnonzero(forks[cycle[run]]) + 1
-            for members in np.split(cycle[run], cuts):
-                if distance[members].sum() < shortest:
-                    short[members] = True
+            if distance[cycle[run]].sum() < shortest:
+                short[cycle[run]] = True
     return short
 
 
@@ -557,7 +560,10 @@ def _summits(values: Array) -> tuple[Array, Index]:
     number = np.arange(len(values))
     right = _walk_up(values)
     left = number[::-1][_walk_up(values[::-1])][::-1]
-    return level, np.where(level[right] >= level[left], right, left)
+    is_right = (level[right] > level[left]) | (
+        (level[right] == level[left]) & (values[right] >= values[left])
+    )
+    return level, np.where(is_right, right, left)
 
 
 def _walk_up(values: Array) -> Index:
@@ -911,20 +917,9 @@ def _cut_back(piece: _Middle, law: BeadLaw, shortest: float) -> _Middle:
         if meets:
             excess = length(points, False) - 1.01 * shortest
             back = min(CAP * radius + 0.5 * law.spacing * MEET, max(excess, 0.0))
-            points, shares = _shortened(points, shares, back)
+            points, shares = shorten_end(points, shares, back)
         else:
             reach = radius if in_pairs else ROUND_END * radius
             end = points[-1] + reach * _outward(points, -1)
             points, shares = np.vstack([points, end]), np.r_[shares, shares[-1:]]
     return piece._replace(points=points, shares=shares)
-
-
-def _shortened(points: Array, shares: Array, by: float) -> tuple[Array, Array]:
-    """A line (n, 2) with shares (n,), shortened by `by` mm at its end."""
-    arc = arcs(points)
-    end = arc[-1] - by
-    if end <= 0.0:
-        return points[:1], shares[:1]
-    keep = arc < end
-    last = np.array([np.interp(end, arc, points[:, k]) for k in (0, 1)])
-    return np.vstack([points[keep], last]), np.r_[shares[keep], np.interp(end, arc, shares)]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
@@ -14,6 +15,7 @@ from ..geometry.curves.plane_curve import (
     doubled_area,
     length,
     nearest,
+    shorten_end,
     start_at,
 )
 from ..geometry.regions.medial import spine
@@ -37,6 +39,9 @@ NEXT, OVER = (
 THINNEST = (
     0.6  # of a bead's width; ribs that wide get a bead even if all beads have the usual width
 )
+ROUND_END = 0.25 * math.pi  # of the radius: length of a rectangle with the area of a round end
+LONGEST_ENDS = 0.4995  # of a bead's length, for each of its round ends
+SHARES = 0.02  # of a bead's usual width; widths in a step of that are one
 SHARE_STEP = 0.05  # of the usual width; along an edge of a bead the width changes no more
 FARTHEST_TOLERANCE = 1e-9  # of a ring's extent; points less apart are equally far out
 
@@ -79,6 +84,33 @@ class PlaneCurve:
             self.share, self.share[:1]
         ]
 
+    def deposit(self, inset: float) -> tuple[Array, Array]:
+        """Return the line about which the bead spreads, with round ends.
+
+        Parameters
+        ----------
+        inset : float
+            Half the usual width, mm.
+
+        Returns
+        -------
+        points : (m, 2) array
+            Points, mm, of a closed bead with the first repeated at the end. An open one with widths of its own goes as far
+            as its volume reaches, so that its round ends are left out; one of the usual width ends half a width earlier.
+        share : (m,) array
+            Of the usual width.
+        """
+        points, share = self.closed_points()
+        if share is None:
+            return points, np.ones(len(points))
+        if not self.closed:
+            most = LONGEST_ENDS * length(points, False)
+            for _ in range(2):
+                by = min(ROUND_END * inset * float(share[-1]), most)
+                points, share = shorten_end(points, share, by)
+                points, share = points[::-1], share[::-1]
+        return points, share
+
 
 def divide_by_share(points: Array, share: Array) -> tuple[Array, Array]:
     """Divide the edges of a line so that the width changes little along each: a bead has one speed an edge.
@@ -99,6 +131,33 @@ def divide_by_share(points: Array, share: Array) -> tuple[Array, Array]:
     places = np.r_[edge + number / np.repeat(counts, counts), position[-1]]
     divided = np.stack([np.interp(places, position, points[:, k]) for k in (0, 1)], axis=1)
     return divided, np.interp(places, position, share)
+
+
+def split_by_width(points: Array, share: Array) -> tuple[list[tuple[Array, bool]], list[float]]:
+    """Split a bead into lines of constant width.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        The bead, mm.
+    share : (n,) array
+        Of the usual width.
+
+    Returns
+    -------
+    lines : list of tuple
+        Points (m, 2), mm, and False: no line is closed.
+    shares : list of float
+        Of the usual width, in steps of `SHARES`; the mean where all are within one step.
+    """
+    if np.ptp(share) < SHARES:
+        return [(points, False)], [float(share.mean())]
+    points, share = divide_by_share(points, share)
+    level = np.round(0.5 * (share[1:] + share[:-1]) / SHARES)
+    starts = np.flatnonzero(np.diff(level, prepend=np.nan))
+    ends = np.r_[starts[1:], len(level)]
+    lines = [(points[a : b + 1], False) for a, b in zip(starts.tolist(), ends.tolist())]
+    return lines, (SHARES * level[starts]).tolist()
 
 
 def plane_text(point: Array) -> str:
@@ -293,10 +352,9 @@ def covered_regions(
             continue
         points, shares = curve.closed_points()
         assert shares is not None
-        points, shares = divide_by_share(points, shares)
-        means = 0.5 * (shares[1:] + shares[:-1])
-        lines += [(points[k : k + 2], False) for k in range(len(means))]
-        halves += (0.5 * width * means).tolist()
+        stretches, means = split_by_width(points, shares)
+        lines += stretches
+        halves += [0.5 * width * mean for mean in means]
     return along(lines, np.array(halves), chord_error)
 
 

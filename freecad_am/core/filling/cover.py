@@ -14,11 +14,10 @@ from ..geometry.curves.plane_curve import length
 from ..geometry.regions.region import Region, measure_bands, simplified
 from ..geometry.regions.strip import Strip
 from ..types import Array
-from .centre import Beads, PlaneCurve, divide_by_share, near_windows
+from .centre import Beads, PlaneCurve, near_windows, split_by_width
 
 COARSE = 0.01  # of half a bead; finest chord error of beads round a hub
 DOT = 1e-6  # of a dot's length: the line about which its disc is drawn
-SHARES = 0.02  # of a bead's usual width; shares that differ by less are one
 
 Line = tuple[Array, bool]  # points (n, 2), and whether they close
 
@@ -120,17 +119,5 @@ def _widths(curve: PlaneCurve, beads: Beads) -> tuple[list[Line], list[float]]:
         middle = curve.points.mean(axis=0)
         ends = middle + DOT * (curve.points[[0, len(curve.points) // 2]] - middle)
         return [(ends, False)], [math.sqrt(fed / math.pi) / beads.inset]
-    if curve.share is None:
-        return [(curve.points, curve.closed)], [1.0]
-    if np.ptp(curve.share) < SHARES:
-        return [(curve.points, curve.closed)], [float(curve.share.mean())]
-    points, share = curve.closed_points()
-    assert share is not None
-    points, share = divide_by_share(points, share)
-    level = np.round(0.5 * (share[1:] + share[:-1]) / SHARES)
-    starts = np.flatnonzero(np.diff(level, prepend=np.nan))
-    ends = np.r_[starts[1:], len(level)]
-    return (
-        [(points[a : b + 1], False) for a, b in zip(starts.tolist(), ends.tolist())],
-        [float(SHARES * level[a]) for a in starts.tolist()],
-    )
+    points, share = curve.deposit(beads.inset)
+    return split_by_width(points, share)

@@ -591,7 +591,7 @@ def test_walls_that_lean_out_are_told(lean, most, told):
 
 
 def test_a_wall_thinner_than_a_bead_gets_one_bead_and_says_so():
-    made = planned(box((0, 0, 0), (60, 2, 8)))
+    made = planned(box((0, 0, 0), (60, 2, 8)), widths="fixed")
     assert all(len(layer.beads) == 1 for layer in made.layers)
     assert {issue.code for issue in made.issues} >= {"THIN_SINGLE"}
 
@@ -601,6 +601,7 @@ def test_a_wall_thinner_than_a_bead_gets_one_bead_as_wide_as_it_is():
     assert all(len(layer.beads) == 1 for layer in made.layers)
     for layer in made.layers:
         assert layer.beads[0].width == pytest.approx(2.0, abs=0.02)
+    assert not [issue.message for issue in made.issues if issue.code == "THIN_SINGLE"]
 
 
 @pytest.mark.parametrize("low", [0.0, 23.7, -0.3])

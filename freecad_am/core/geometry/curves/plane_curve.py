@@ -393,6 +393,34 @@ def cut_at_length(points: Array, length: float) -> Array:
     return np.vstack([points[:k], end[None]]) if share > 1e-9 else points[:k]
 
 
+def shorten_end(points: Array, values: Array, by: float) -> tuple[Array, Array]:
+    """Shorten a polyline at its end.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        The polyline, mm.
+    values : (n,) array
+        Of its points.
+    by : float
+        Length that goes, mm.
+
+    Returns
+    -------
+    points : (m, 2) array
+        The shorter polyline; the first point alone where nothing is left.
+    values : (m,) array
+        Of its points, interpolated at the new end.
+    """
+    arc = arcs(points)
+    end = arc[-1] - by
+    if end <= 0.0:
+        return points[:1], values[:1]
+    keep = arc < end
+    last = np.array([np.interp(end, arc, points[:, k]) for k in (0, 1)])
+    return np.vstack([points[keep], last]), np.r_[values[keep], np.interp(end, arc, values)]
+
+
 def rotate_points(points: Array, angle: float) -> Array:
     """Rotate points about the origin.
 

@@ -480,6 +480,8 @@ def _has_slit(shape: Any, wider: Any, width: float) -> bool:
 def _bends(line: Array) -> list[Array]:
     """A line (n, 2) in pieces that do not come beside themselves: where one does, the library may fill what it goes round,
     or find a shape that crosses itself."""
+    if len(line) < 3:
+        return [line]
     way = np.diff(line, axis=0)
     heading = np.arctan2(way[:, 1], way[:, 0])
     turn = np.abs(np.remainder(np.diff(heading) + math.pi, 2.0 * math.pi) - math.pi)

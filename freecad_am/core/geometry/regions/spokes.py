@@ -23,6 +23,7 @@ from .region import Region
 
 NEAREST_PIECES = 16  # whose middles are nearest; among them is the nearest piece of the border
 SMOOTH_TURN = 0.3  # rad; a corner that turns less is part of a curve, without an axis of its own
+SAME_START = 1e-6  # of the extent; corners as far from the middle may be the start of a border
 SAME_PLACE = 1e-9  # of the longest edge
 MAX_SHRINKS = 40
 SHRINK_TOLERANCE = 1e-6  # of the radius
@@ -145,7 +146,7 @@ def _points_at(border: _Border, positions: Array) -> Array:
 
 
 def _border_of(region: Region) -> _Border:
-    rings = region.borders()
+    rings = _ordered_rings(region)
     counts = np.array([len(ring) for ring in rings])
     firsts = np.cumsum(counts) - counts
     starts = np.vstack(rings)
@@ -162,6 +163,22 @@ def _border_of(region: Region) -> _Border:
     return _Border(
         starts, chords, np.stack([-unit[:, 1], unit[:, 0]], axis=1), previous, following, turns
     )
+
+
+def _ordered_rings(region: Region) -> list[Array]:
+    """Borders (n, 2), mm, of a region, in an order and with starts that move with it: holes by the distance of their middles
+    from that of the region, each from its corner that is farthest from there and has the longest edge ahead.
+    """
+    middle = region.middle
+    rings = []
+    for ring in region.borders():
+        away = np.hypot(*(ring - middle).T)
+        ahead = np.hypot(*(np.roll(ring, -1, axis=0) - ring).T)
+        grid = SAME_START * away.max()
+        start = int(np.lexsort((np.rint(ahead / grid), np.rint(away / grid)))[-1])
+        rings.append(np.roll(ring, -start, axis=0))
+    outer, *holes = rings
+    return [outer, *sorted(holes, key=lambda hole: float(np.hypot(*(hole.mean(axis=0) - middle))))]
 
 
 def _cut_pieces(border: _Border, step: float) -> _Pieces:
@@ -275,7 +292,8 @@ def _nearest_border(border: _Border, pieces: _Pieces, points: Array) -> tuple[Ar
     gaps = points[:, None] - starts
     shares = (gaps * chords).sum(axis=2) / np.maximum((chords * chords).sum(axis=2), 1e-300)
     shares = np.clip(shares, limits[..., 0], limits[..., 1])
-    return starts + shares[..., None] * chords, edges + shares, edges
+    positions = np.where(shares < 1.0, edges + shares, border.following[edges])
+    return starts + shares[..., None] * chords, positions, edges
 
 
 def _refine(

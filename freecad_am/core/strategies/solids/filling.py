@@ -465,10 +465,8 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
     ]
     if not curves:
         return []
-    points = np.vstack([curve.points for curve in curves])
-    share = np.concatenate(
-        [np.ones(len(curve.points)) if curve.share is None else curve.share for curve in curves]
-    )
+    deposits = [curve.deposit(beads.inset) for curve in curves]
+    points, share = (np.concatenate(column) for column in zip(*deposits))
     out = share * beads.inset - nearest_among(layer.borders, points)[1]
     worst = int(np.argmax(out))
     if out[worst] <= TOLERANCE_MM or ((share < 1.0).any() and out[worst] < 0.02 * beads.inset):
