@@ -10,11 +10,6 @@ import pytest
 PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
 # packages whose functions of several parameters, or with arrays as results, all have sections
 DOCUMENTED = ("api.py", "core", "posts")
-NOT_YET = (
-    "core/filling/adaptive.py",
-    "core/filling/centre.py",
-    "core/strategies/solids/filling.py",
-)
 SEVERAL = 3
 SECTIONS = re.compile(r"^(Parameters|Returns|Yields)\n-+$", re.MULTILINE)
 ENTRY = re.compile(r"^([*\w, ]+?)(?: : .*)?$")
@@ -34,10 +29,10 @@ def functions(path):
 
 
 def files(*names):
-    """Files of packages, without those that are not documented yet."""
+    """Files of packages."""
     paths = [PACKAGE / name for name in names]
     found = [file for path in paths for file in ([path] if path.suffix else path.rglob("*.py"))]
-    return sorted(file for file in found if not place_of(file).startswith(NOT_YET))
+    return sorted(found)
 
 
 def place_of(file):

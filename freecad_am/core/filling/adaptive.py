@@ -75,13 +75,34 @@ class BeadLaw:
     widest: float
 
     def usual_radius(self, counts: Array | Index | int) -> Array:
-        """Half the thickness (n,), mm, that a given number of usual beads fills."""
+        """Return half the thickness that a number of usual beads fills.
+
+        Parameters
+        ----------
+        counts : (n,) array of int or int
+            Numbers of beads across.
+
+        Returns
+        -------
+        (n,) array
+            mm.
+        """
         return np.asarray(0.5 * (self.width + (np.asarray(counts) - 1.0) * self.spacing))
 
     def count_beads(self, radii: Array, in_pairs: Mask) -> Index:
-        """Number of beads (n,) across places with half a thickness of `radii` mm.
+        """Return the number of beads across places.
 
-        in_pairs: places (n,) without room for a single bead along the middle.
+        Parameters
+        ----------
+        radii : (n,) array
+            Half the thickness of each place, mm.
+        in_pairs : (n,) array of bool
+            Places without room for a single bead along the middle.
+
+        Returns
+        -------
+        (n,) array of int
+            Numbers; even in pairs, and 0 where not even the narrowest bead fits.
         """
         highest = int(np.max(radii, initial=0.0) / (0.5 * self.spacing)) + 3
         counts = np.searchsorted(self._limits(np.arange(highest), 1), radii, side="right")
@@ -123,9 +144,23 @@ class BeadLaw:
         return np.asarray(np.clip(share, self.narrowest, self.widest))
 
     def depths(self, pair: int, counts: Index, radii: Array) -> tuple[Array, Array]:
-        """Depths (n,), mm, of the middles of a pair of beads, and their widths as shares (n,).
+        """Return the depths and widths of a pair of beads.
 
-        pair: 0 for the outermost. counts, radii: (n,) as in `shares`.
+        Parameters
+        ----------
+        pair : int
+            Number of the pair, 0 for the outermost.
+        counts : (n,) array of int
+            Numbers of beads across.
+        radii : (n,) array
+            Half the thickness of each place, mm.
+
+        Returns
+        -------
+        depths : (n,) array
+            Distances of the middles of the beads from the border, mm.
+        shares : (n,) array
+            Widths as shares of the usual width.
         """
         share = self.shares(counts, radii)
         usual_pairs = np.where(counts <= 5, 0, counts // 2 - 2)

@@ -74,7 +74,20 @@ class PlaneCurve:
         return replace(self, points=points, share=share)
 
     def closed_points(self, period: Period | None = None) -> tuple[Array, Array | None]:
-        """Points and shares; of a closed curve with the first repeated at the end, a period on if it goes round."""
+        """Return points and shares, of a closed curve with the first repeated at the end.
+
+        Parameters
+        ----------
+        period : Period, optional
+            Of the hub, to repeat the first point a period on if the curve goes round.
+
+        Returns
+        -------
+        points : (n, 2) or (n + 1, 2) array
+            mm.
+        share : (n,) or (n + 1,) array or None
+            Shares of the usual width, as `share`.
+        """
         if not self.closed:
             return self.points, self.share
         start = self.points[:1]
@@ -214,7 +227,20 @@ class Beads:
             object.__setattr__(self, "chord_error", 0.005 * self.spacing)
 
     def ring(self, points: Array, number: int = 0) -> Array:
-        """A ring (n, 2) with the requested sense and start; number: of contours outside."""
+        """Return a ring with the requested sense and start.
+
+        Parameters
+        ----------
+        points : (n, 2) array
+            The ring, mm, its first point not repeated.
+        number : int, optional
+            Number of contours outside, which moves the start if starts are spread.
+
+        Returns
+        -------
+        (m, 2) array
+            The ring; it may have a new point at its start.
+        """
         turned = points[::-1] if (doubled_area(points) < 0.0) != self.clockwise else points
         started = start_at(turned, self.start_of(turned))
         behind = 0.0 if self.spread is None else (self.spread + NEXT * number) % 1.0
@@ -224,7 +250,18 @@ class Beads:
         return start_at(started, cut_at_length(loop, behind * length(started, True))[-1])
 
     def start_of(self, points: Array) -> Array:
-        """The place (2,) that a ring should begin nearest to."""
+        """Return the place that a ring should begin nearest to.
+
+        Parameters
+        ----------
+        points : (n, 2) array
+            The ring, mm.
+
+        Returns
+        -------
+        (2,) array
+            mm.
+        """
         if isinstance(self.start, tuple):
             return np.array(self.start, dtype=float)
         direction = np.array([np.cos(self.start), np.sin(self.start)])
@@ -268,7 +305,22 @@ def start_curve(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
 
 
 def contours_of(regions: Sequence[Strip | Region], beads: Beads, ring: int) -> list[PlaneCurve]:
-    """The borders of regions and strips as contours."""
+    """Return the borders of regions and strips as contours.
+
+    Parameters
+    ----------
+    regions : sequence of Strip or Region
+        The regions.
+    beads : Beads
+        Sense and start of closed beads.
+    ring : int
+        Number of the contours, 0 for the outermost.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Closed curves of kind 'contour', mm; of strips on the unrolled plane.
+    """
     curves = []
     for region in regions:
         if isinstance(region, Region):
@@ -306,9 +358,28 @@ ENDS = 0.5  # of the gap; a bead in it ends where it is that narrow
 def centre_beads(
     gaps: Sequence[Region], beads: Beads, ring: int, inner: Sequence[Region], kind: str = "centre"
 ) -> list[PlaneCurve]:
-    """Open beads along the middle of gaps, or closed ones in gaps that go round; no gap stays wider than stated.
+    """Return beads along the middle of gaps, until no gap is wider than stated.
 
-    inner: allowed positions of bead middles; beads are moved there, and short ones extended in there until they are long enough.
+    They are closed in gaps that go round, else open. Beads are moved into `inner`, and short ones
+    extended in there until they are long enough.
+
+    Parameters
+    ----------
+    gaps : sequence of Region
+        The gaps, mm.
+    beads : Beads
+        Spacing, allowed gap and shortest length, mm.
+    ring : int
+        Number that the curves get.
+    inner : sequence of Region
+        Allowed positions of bead middles; anywhere if empty.
+    kind : str, optional
+        Kind of the curves.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Those in small rooms may be too short.
     """
     curves: list[PlaneCurve] = []
     for _ in range(ROUNDS):
@@ -332,7 +403,22 @@ def centre_beads(
 def open_regions(
     curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Beads
 ) -> list[Region]:
-    """Regions that curves leave open, wider than the allowed gap, within reach of beads with their middles in `inner`."""
+    """Return the regions that curves leave open, wider than the allowed gap.
+
+    Parameters
+    ----------
+    curves : sequence of PlaneCurve
+        Beads.
+    inner : sequence of Region
+        Allowed positions of bead middles; what these beads cannot reach does not count.
+    beads : Beads
+        Spacing and allowed gap, mm.
+
+    Returns
+    -------
+    list of Region
+        mm.
+    """
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
     covered = covered_regions(curves, beads.spacing, error)
     return select_wider(
@@ -343,7 +429,22 @@ def open_regions(
 def covered_regions(
     curves: Sequence[PlaneCurve], width: float, chord_error: float
 ) -> tuple[Region, ...]:
-    """Regions that beads cover at their shares of a usual width, mm, with round ends."""
+    """Return the regions that beads cover at their widths, with round ends.
+
+    Parameters
+    ----------
+    curves : sequence of PlaneCurve
+        Middles of the beads.
+    width : float
+        The usual width, mm, that shares are relative to.
+    chord_error : float
+        Chord error of arcs, mm.
+
+    Returns
+    -------
+    tuple of Region
+        In the order of their leftmost points.
+    """
     lines, halves = [], []
     for curve in curves:
         if curve.share is None:
@@ -365,7 +466,26 @@ def closing_beads(
     ring: int,
     ends: Sequence[Region] = (),
 ) -> list[PlaneCurve]:
-    """Beads in the gaps within reach of beads with their middles in `inner`, except the ends, `lines.Frame`, that lines fill."""
+    """Return beads in the gaps within reach of beads with their middles in `inner`.
+
+    Parameters
+    ----------
+    inner : sequence of Region
+        Allowed positions of bead middles.
+    curves : sequence of PlaneCurve
+        Beads that leave the gaps.
+    beads : Beads
+        Spacing, allowed gap and shortest length, mm.
+    ring : int
+        Number that the curves get.
+    ends : sequence of Region, optional
+        Regions that lines fill later (`sparse.Frame`); gaps there do not count.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Of kind 'closing'.
+    """
     gaps = open_regions(curves, inner, beads)
     if ends:
         gaps = select_wider(subtract_regions(gaps, ends), beads.gap, beads.chord_error)
@@ -432,8 +552,21 @@ def dot(region: Region, beads: Beads) -> PlaneCurve:
 def bare_parts(
     region: Region, curves: Sequence[PlaneCurve], beads: Beads
 ) -> list[tuple[Region, float]]:
-    """Pieces of a region too narrow for any bead, with the distance (mm) each reaches from the beads: more than a bead is wide. A
-    region without beads is one piece.
+    """Return the pieces of a region too narrow for any bead.
+
+    Parameters
+    ----------
+    region : Region
+        The region, mm.
+    curves : sequence of PlaneCurve
+        Its beads; without any the region is one piece.
+    beads : Beads
+        Width and chord error, mm.
+
+    Returns
+    -------
+    list of tuple of Region and float
+        Pieces, and the distance that each reaches from the beads, mm: more than a bead is wide.
     """
     if not curves:
         return [(region, region.extent)]
@@ -457,11 +590,31 @@ def bare_parts(
 def outermost(
     region: Region, inner: tuple[Region, ...], beads: Beads
 ) -> tuple[tuple[Region, ...], list[PlaneCurve]]:
-    """The regions of `inner`, the allowed positions of bead middles, inside the outermost bead, and beads in regions too thin for it:
-    necks, or the whole region.
+    """Return the regions inside the outermost bead, and beads in regions too thin for it.
 
-    Places hardly wider than a bead, as where ribs meet, are left to the beads along the middle of the ribs. InfeasibleError
-    THIN_REGION if beads refuse thin regions.
+    These are necks, or the whole region. Places hardly wider than a bead, as where ribs meet, are
+    left to the beads along the middle of the ribs.
+
+    Parameters
+    ----------
+    region : Region
+        The region, mm.
+    inner : tuple of Region
+        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+    beads : Beads
+        Width, shortest length and what to do in thin places.
+
+    Returns
+    -------
+    inner : tuple of Region
+        Those with borders that are long enough for a bead.
+    thin : list of PlaneCurve
+        Beads in thin places.
+
+    Raises
+    ------
+    InfeasibleError
+        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
     """
     if beads.thin != "refuse":
         long = select_longer(inner, beads.shortest)
@@ -568,7 +721,20 @@ def _lengthened(points: Array, beads: Beads, inner: Sequence[Region]) -> Array:
 
 
 def move_into_regions(points: Array, inner: Sequence[Region]) -> Array:
-    """Points (n, 2), those outside of all regions moved to the nearest of them; as they are where there are none."""
+    """Move points outside of all regions to the nearest of them.
+
+    Parameters
+    ----------
+    points : (n, 2) array
+        mm.
+    inner : sequence of Region
+        The regions; without any the points stay.
+
+    Returns
+    -------
+    (n, 2) array
+        mm.
+    """
     if not inner:
         return points
     outside = np.flatnonzero(~np.any([region.contains(points) for region in inner], axis=0))
@@ -587,7 +753,26 @@ REACH = 3.0  # spacings around a window that decide about its open regions
 def strip_closing(
     strip: Strip, curves: Sequence[PlaneCurve], beads: Beads, ring: int, kind: str
 ) -> list[PlaneCurve]:
-    """Beads in what curves leave open, wider than the gap allowed; cut where windows meet."""
+    """Return beads in what curves leave open in a strip, cut where windows meet.
+
+    Parameters
+    ----------
+    strip : Strip
+        The strip.
+    curves : sequence of PlaneCurve
+        Its beads, on the unrolled plane.
+    beads : Beads
+        Spacing, allowed gap and shortest length, mm.
+    ring : int
+        Number that the curves get.
+    kind : str
+        Kind of the curves.
+
+    Returns
+    -------
+    list of PlaneCurve
+        On the unrolled plane, mm.
+    """
     return [
         replace(curve, points=points, sheet=sheet)
         for window, gaps, inner in open_windows(strip, curves, beads)
@@ -599,7 +784,23 @@ def strip_closing(
 def open_windows(
     strip: Strip, curves: Sequence[PlaneCurve], beads: Beads
 ) -> list[tuple[Window, list[Region], tuple[Region, ...]]]:
-    """Window by window, unrolled about its middle: the open regions and the room for bead middles."""
+    """Return the open regions of a strip, window by window.
+
+    Parameters
+    ----------
+    strip : Strip
+        The strip.
+    curves : sequence of PlaneCurve
+        Its beads, on the unrolled plane.
+    beads : Beads
+        Spacing and allowed gap, mm.
+
+    Returns
+    -------
+    list of tuple of Window, list of Region and tuple of Region
+        Windows with room for beads, their open regions and the allowed positions of bead middles,
+        both unrolled about the middle of the window.
+    """
     windows = []
     for window, adjacent in near_windows(strip, curves, REACH * beads.spacing):
         inner = grow_regions(strip.flat(window, with_margin=True), -beads.inset, beads.chord_error)
@@ -619,7 +820,24 @@ def open_windows(
 def near_windows(
     strip: Strip, curves: Sequence[PlaneCurve], reach: float
 ) -> Iterator[tuple[Window, list[PlaneCurve]]]:
-    """Windows of a strip with the sections of curves within `reach` mm, unrolled about the middle of the window."""
+    """Yield the windows of a strip with the sections of curves near each.
+
+    Parameters
+    ----------
+    strip : Strip
+        The strip.
+    curves : sequence of PlaneCurve
+        Beads on the unrolled plane.
+    reach : float
+        Distance from a window within which sections count, mm.
+
+    Yields
+    ------
+    window : Window
+        The window.
+    curves : list of PlaneCurve
+        Sections unrolled about its middle, mm, without shares.
+    """
     curves = [
         replace(curve, points=strip.period.unwrap_curve(curve.points, curve.sheet, curve.turns))
         for curve in curves

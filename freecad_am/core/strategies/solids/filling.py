@@ -367,9 +367,27 @@ def spaced(strategy: Same, process: ProcessParameters) -> Same:
 def bead_width(
     strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None
 ) -> float:
-    """How wide (mm) beads count: as `process.fill_width` says.
+    """Return how wide beads count, as `process.fill_width` says.
 
-    InputError BEAD_SPACING where the spacing is larger, so that stripes would stay open."""
+    Parameters
+    ----------
+    strategy : FilledParameters
+        Bead spacing, mm, and overlap.
+    process : ProcessParameters
+        Bead width, mm, and which of width and spacing counts.
+    model : BeadModel or None
+        The bead model.
+
+    Returns
+    -------
+    float
+        mm.
+
+    Raises
+    ------
+    InputError
+        BEAD_SPACING if the spacing is larger, so that stripes would stay open.
+    """
     spacing, width = strategy.bead_spacing, process.bead_width
     is_known = model is not None or strategy.bead_overlap is not None or width != DEFAULT_WIDTH_MM
     if process.fill_width == "spacing" or (process.fill_width == "auto" and not is_known):
@@ -391,10 +409,26 @@ def bead_width(
 def over_fed(
     strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None, width: float
 ) -> list[Issue]:
-    """A warning if beads that count as `width` mm wide are so close that the wire fills a layer more than MOST_FED times.
+    """Warn if beads are so close that the wire fills a layer more than MOST_FED times.
 
-    The feed is for their width, from the bead model or as given. If beads are not much wider than their spacing, `wire.set_wire_feed`
-    checks a given feed.
+    The feed is for their width, from the bead model or as given. If beads are not much wider than
+    their spacing, `wire.set_wire_feed` checks a given feed.
+
+    Parameters
+    ----------
+    strategy : FilledParameters
+        Bead spacing and layer height, mm.
+    process : ProcessParameters
+        Wire, speed and bead width.
+    model : BeadModel or None
+        The bead model.
+    width : float
+        How wide beads count, mm.
+
+    Returns
+    -------
+    list of Issue
+        A warning BEAD_SPACING, or none.
     """
     spacing, height = strategy.bead_spacing, strategy.layer_height
     section = _fed_section(process, model, width * height)
