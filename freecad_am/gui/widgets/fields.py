@@ -16,15 +16,8 @@ from ...core.issues import InputError
 from ...core.parameters import field as f
 from ...objects.fields import pendants, preferences
 from ...objects.fields.preferences import field_text, in_user_units, typed_text
-from ...objects.fields.rows import (
-    FOLLOW,
-    LENGTH_OR_POSE,
-    MIXED,
-    TEXT_LIST,
-    Row,
-    is_expression,
-    split,
-)
+from ...objects.fields.quantities import split
+from ...objects.fields.rows import FOLLOW, LENGTH_OR_POSE, MIXED, TEXT_LIST, Row, is_expression
 from ..colours import INVALID, PLAIN, set_role
 from ..in_language import tr, translated
 from . import choices
