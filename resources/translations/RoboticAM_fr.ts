@@ -330,6 +330,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>How far lines and other patterns reach into the beads of the walls around them, as a share of the bead width; auto: as far as neighbouring beads overlap. (%)</source>
+        <translation>Pénétration des lignes et autres motifs dans les cordons des parois qui les entourent, en part de la largeur de cordon ; auto : comme les cordons voisins se recouvrent. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far the direction of lines and zigzags turns from layer to layer.</source>
         <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
     </message>
@@ -3308,6 +3313,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>How far lines and other patterns reach into the beads of the walls around them, as a share of the bead width; auto: as far as neighbouring beads overlap.</source>
+        <translation>Pénétration des lignes et autres motifs dans les cordons des parois qui les entourent, en part de la largeur de cordon ; auto : comme les cordons voisins se recouvrent.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far the direction of lines and zigzags turns from layer to layer.</source>
         <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
     </message>
@@ -3360,6 +3370,11 @@
         <location filename="../../freecad_am/gui/path/infill_dock.py"/>
         <source>Infill</source>
         <translation>Remplissage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Infill overlap</source>
+        <translation>Recouvrement du remplissage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>

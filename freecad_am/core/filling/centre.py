@@ -188,7 +188,8 @@ class Beads:
     'refuse' rejects them. clockwise: sense of closed beads. start: a point (x, y) near which closed beads begin, or the direction
     (rad) in which they begin farthest out. chord_error: mm, of arcs; 0: 0.005 spacings. where: a point (2,) as text. spread: share
     of its length by which the outermost closed bead begins behind `start`, inner ones at further ones; None: none does.
-    narrowest: least share of the width of a bead.
+    narrowest: least share of the width of a bead. overlap: share of the width by which the ends of lines reach into the last
+    wall; None: as neighbours overlap.
     """
 
     spacing: float
@@ -202,6 +203,14 @@ class Beads:
     width: float = 0.0
     spread: float | None = None
     narrowest: float = 0.3
+    overlap: float | None = None
+
+    @property
+    def end_inset(self) -> float:
+        """Distance (mm) of the ends of lines from the middle of the last wall."""
+        return (
+            0.5 * self.spacing if self.overlap is None else self.inset * (1.0 - 2.0 * self.overlap)
+        )
 
     @property
     def inset(self) -> float:

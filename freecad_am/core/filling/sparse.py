@@ -280,7 +280,10 @@ def frame(region: Region, inner: tuple[Region, ...], beads: Beads, walls: int) -
         if not inner:
             break
     return Frame(
-        curves, grow_regions(inner, -2.0 * half, error), grow_regions(inner, -half, error), thin
+        curves,
+        grow_regions(inner, -2.0 * half, error),
+        grow_regions(inner, -beads.end_inset, error),
+        thin,
     )
 
 
@@ -315,7 +318,9 @@ def lines(
     list of PlaneCurve
         Lines or zigzags in the plane of the frame.
     """
-    inside = LINK_INSET_SPACINGS * beads.spacing if walls else 0.0
+    inside = 0.0
+    if walls:
+        inside = LINK_INSET_SPACINGS * beads.spacing + 0.5 * beads.spacing - beads.end_inset
     return in_rows(rows(framed, beads, angle), framed.ends, beads, walls, longest_link, inside)
 
 

@@ -40,7 +40,8 @@ def _frame(inner: tuple[Strip | Region, ...], beads: Beads, walls: int) -> _Fram
     curves, wall = contours_of(inner, beads, 0), 1
     while wall < walls and (further := grow_regions(inner, -2.0 * half, error)):
         curves, inner, wall = curves + contours_of(further, beads, wall), further, wall + 1
-    return _Frame(curves, grow_regions(inner, -half, error), beads.inset + 2.0 * half * wall)
+    ends = grow_regions(inner, -beads.end_inset, error)
+    return _Frame(curves, ends, beads.inset + 2.0 * half * wall)
 
 
 def lines_round(

@@ -223,6 +223,16 @@ class FilledParameters(LayerParameters):
         words=("auto",),
         advanced=True,
     )
+    infill_overlap: float | str = f.parameter(
+        "auto",
+        f.RATIO,
+        "How far lines and other patterns reach into the beads of the walls around them, as a share "
+        "of the bead width; auto: as far as neighbouring beads overlap.",
+        low=0.0,
+        high=0.5,
+        words=("auto",),
+        advanced=True,
+    )
     mend: float = f.parameter(5.0, f.LENGTH, MEND, low=0.0, high=10000.0, advanced=True)
     narrowest: float = f.parameter(
         0.3,
@@ -284,6 +294,11 @@ class FilledParameters(LayerParameters):
         return (
             min(LEAST_BEAD, self.bead_spacing) if self.shortest == "auto" else float(self.shortest)
         )
+
+    @property
+    def overlap_share(self) -> float | None:
+        """Share of the bead width by which patterns reach into walls; None: as neighbours overlap."""
+        return None if self.infill_overlap == "auto" else float(self.infill_overlap)
 
     @property
     def rounds_alone(self) -> bool:

@@ -11,7 +11,7 @@ import pytest
 
 from freecad_am.core.filling.centre import Beads
 from freecad_am.core.filling.fill import IN_FRAMES, ON_BORDERS, PATTERNS, fill
-from freecad_am.core.filling.sparse import Frame, levels_between, rows
+from freecad_am.core.filling.sparse import Frame, Infill, levels_between, rows
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InfeasibleError, InputError
 from freecad_am.core.parameters.filled import FILLS
@@ -330,3 +330,22 @@ def test_a_moved_section_has_the_same_beads(pattern):
         if wanted is None:
             wanted = (len(curves), total)
         assert len(curves) == wanted[0] and total == pytest.approx(wanted[1], abs=0.5)
+
+
+@pytest.mark.parametrize("pattern", ["lines", "zigzag", "honeycomb"])
+@pytest.mark.parametrize("overlap", [None, 0.0, 0.15, 0.5])
+def test_patterns_reach_into_their_walls_by_the_overlap(pattern, overlap):
+    """In a disc, where the distance of a point from the border is known, with beads wider than their spacing."""
+    radius, spacing, width = 60.0, 5.0, 6.0
+    (region,) = regions([shapes.circle(radius, 720)])
+    beads = Beads(spacing, 0.2 * spacing, 0.0, chord_error=0.005, width=width, overlap=overlap)
+    infill = Infill(0.4) if pattern == "honeycomb" else Infill()
+    curves = [
+        curve
+        for curve in fill(region, beads, pattern, angle=0.4, walls=2, infill=infill)
+        if curve.kind not in ("contour", "closing", "centre")
+    ]
+    depth = radius - np.hypot(*np.vstack([curve.points for curve in curves]).T)
+    wall = 0.5 * width + spacing  # depth of the middle of the second wall
+    reach = 0.5 * spacing if overlap is None else (0.5 - overlap) * width
+    assert depth.min() == pytest.approx(wall + reach, abs=0.03)

@@ -222,6 +222,7 @@ class Pictures:
             self._width,
             layer.number * OVER if strategy.starts == "spread" else None,
             strategy.narrowest,
+            strategy.overlap_share,
         )
         infill = Infill()
         if strategy.fill_density < 1.0:
