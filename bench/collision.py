@@ -29,7 +29,7 @@ from freecad_am.core.collision.obstacles import Obstacles
 from freecad_am.core.collision.scene import Scene, scene
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
-from freecad_am.core.strategies.clearance.tilt_back import keep_clear
+from freecad_am.core.strategies.clearance.clear_by_tilt import keep_clear
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 from rows import Row

@@ -17,7 +17,7 @@ from freecad_am import kdl
 from freecad_am.brep.files import read
 from freecad_am.brep.revolution import wall as revolution
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.inverse import spherical_wrist
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
@@ -52,7 +52,7 @@ def run() -> list[Row]:
         cell_parameters.platform_diameter,
     )
     cell = cells.resolve(cell_parameters, toolpath.frame)
-    task = Task(cell, opw.branch_index(("front", "up", "flip")), PARAMETERS)
+    task = Task(cell, spherical_wrist.branch_index(("front", "up", "flip")), PARAMETERS)
     beads = [bead for _, _, bead in toolpath]
 
     def ours() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from freecad_am import kdl
 from freecad_am.core.planning.points import gather
-from freecad_am.core.planning.rotation import search
+from freecad_am.core.planning.rotation import global_search
 from freecad_am.core.planning.task import Task
 from freecad_am.core.toolpath import Bead
 
@@ -25,11 +25,11 @@ def took(function: Callable[[], object]) -> float:
 def pose_by_pose(task: Task, beads: Sequence[Bead], sampled: int) -> Callable[[], None]:
     """Inverse kinematics by the fastest seeded solver, limits, Jacobian and singular values of the robot, one candidate in
     so many; seeded within 2 deg of the answer."""
-    points = gather(beads, task.cell, search.POINTS_PER_BEAD)
+    points = gather(beads, task.cell, global_search.POINTS_PER_BEAD)
     grid = [
         (offset, slope)
-        for offset in np.arange(search.OFFSETS) * (2 * np.pi / search.OFFSETS) - np.pi
-        for slope in search.SLOPES
+        for offset in np.arange(global_search.OFFSETS) * (2 * np.pi / global_search.OFFSETS) - np.pi
+        for slope in global_search.SLOPES
     ][::sampled]
     phi = np.array([offset + slope * points.parameter for offset, slope in grid])
     flange = points.frames.flange_poses(phi).reshape(-1, 4, 4)

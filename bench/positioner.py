@@ -18,7 +18,7 @@ from freecad_am import kdl
 from freecad_am.brep.files import read
 from freecad_am.brep.revolution import wall as revolution
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.inverse import spherical_wrist
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
@@ -112,5 +112,9 @@ def _pose_by_pose(
     cell: cells.Cell, toolpath: Toolpath, parameters: JointParameters
 ) -> Callable[[], None]:
     """The search of the robot alone, for the branch that the plan ends with, at the axes that the rule gives it."""
-    task = Task(cell, opw.branch_index(plan_joints(toolpath, cell, parameters).branch), parameters)
+    task = Task(
+        cell,
+        spherical_wrist.branch_index(plan_joints(toolpath, cell, parameters).branch),
+        parameters,
+    )
     return pose_by_pose(task, levelled(cell, toolpath)[0], SAMPLED)

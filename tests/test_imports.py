@@ -13,8 +13,8 @@ PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
 # folder or module -> what of our own it may import besides itself
 OURS = {
     "core/types": set(),
-    "core/quantities": set(),
-    "core/issues": {"core/quantities"},
+    "core/number_texts": set(),
+    "core/issues": {"core/number_texts"},
     "core/program": set(),
     "core/controller": set(),
     "core/orientation": {"core/geometry"},

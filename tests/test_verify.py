@@ -11,7 +11,7 @@ from freecad_am import verify as verification
 from freecad_am.core.geometry import frames
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.inverse.opw import branch_name
+from freecad_am.core.kinematics.inverse.spherical_wrist import branch_name
 from freecad_am.core.motion import Motion
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters

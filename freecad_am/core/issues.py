@@ -13,7 +13,7 @@ from math import inf
 from string import Formatter
 from typing import Any
 
-from .quantities import number_text
+from .number_texts import number_text
 
 ERROR, WARNING, NOTE = "error", "warning", "note"
 MAX_RANGES = 6  # of layers that a merged issue names

@@ -14,13 +14,13 @@ import FreeCADGui as Gui
 from ..core.families.registry import FAMILIES
 from ..core.issues import AmError, Text
 from ..core.kinematics.links.contact import BASE, DEPOSIT, NOZZLE, OWN_PREFIX, PART, PLATFORM, TORCH
+from ..core.number_texts import is_example, put_values
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters
 from ..core.parameters.inspection import InspectionParameters
 from ..core.parameters.joints import JointParameters
 from ..core.parameters.process import ProcessParameters
 from ..core.parameters.program import ProgramParameters
-from ..core.quantities import is_example, put_values
 from ..objects.fields.preferences import in_user_units
 from ..objects.fields.rows import group_of, rows
 

@@ -11,9 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ..core.issues import Text
+from ..core.number_texts import SPEEDS
 from ..core.process.bead_model import MINUTE, BeadModel
 from ..core.process.wire import Measured
-from ..core.quantities import SPEEDS
 from ..core.types import Array, Integers, Mask
 
 LINE, STEP, DOTS, MARKED, OUTLINE = "line", "step", "dots", "marked", "outline"

@@ -15,7 +15,7 @@ from ..core.geometry import frames
 from ..core.geometry.frames import TURN
 from ..core.issues import InputError
 from ..core.kinematics.cell import Cell
-from ..core.kinematics.inverse import opw
+from ..core.kinematics.inverse import spherical_wrist
 from ..core.kinematics.inverse.five_axis import FiveAxis
 from ..core.motion import Motion
 from ..core.program import Program
@@ -137,7 +137,7 @@ def _as_named(cell: Cell, text: ReadMoves, solutions: Array, words: Index, rows:
     """
     configuration = text.configuration
     assert configuration is not None
-    names = np.array([opw.branch_name(index) for index in range(8)])[words]
+    names = np.array([spherical_wrist.branch_name(index) for index in range(8)])[words]
     # what controllers call flip is which way axis 5 is bent as they count it
     controller_values = cell.robot.to_controller(solutions)
     named = (names[..., 0] == "front") == configuration.front[rows, None]

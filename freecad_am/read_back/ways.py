@@ -10,7 +10,7 @@ import numpy as np
 
 from ..core.issues import ERROR, Issue, Text
 from ..core.kinematics.cell import Cell
-from ..core.kinematics.inverse import opw
+from ..core.kinematics.inverse import spherical_wrist
 from ..core.program import FIRST_SHARE, FIRST_TIME, LINEAR_MOVE, SHORTEST_RAPID, Program
 from ..core.read_moves import Configuration, ReadMoves
 from ..core.types import Array, Mask
@@ -289,7 +289,9 @@ def _configuration_issues(
                 "the text names arm configurations, which the machine does not have",
             )
         ]
-    names = np.array([opw.branch_name(index) for index in range(8)])[arm.branch_of(planned.joints)]
+    names = np.array([spherical_wrist.branch_name(index) for index in range(8)])[
+        arm.branch_of(planned.joints)
+    ]
     controller_values = cell.machine.to_controller(planned.joints)
     last_axis = np.where(np.array(program.continuous)[-1], 0.0, controller_values[:, -1])
     turns_low, turns_high = (

@@ -14,7 +14,7 @@ import numpy as np
 from ..core.families.registry import family_of
 from ..core.issues import Issue, has_errors
 from ..core.kinematics.cell import Cell
-from ..core.kinematics.inverse import opw
+from ..core.kinematics.inverse import spherical_wrist
 from ..core.motion import Motion
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.cell import CellParameters
@@ -27,8 +27,8 @@ from ..core.planning.joint_path import JointPath
 from ..core.planning.task import Task
 from ..core.process import model_notes
 from ..core.process.deposit import balance as deposit_balance
-from ..core.process.deposit import infill
 from ..core.process.deposit import spacing as layer_spacing
+from ..core.process.deposit import void_and_double
 from ..core.process.deposit.balance import Balance
 from ..core.simulation import timeline as totals
 from ..core.simulation.timeline import timeline
@@ -124,7 +124,7 @@ def build(
                 strict=True,
             )
         ),
-        "infill": infill.as_dict(toolpath),
+        "infill": void_and_double.as_dict(toolpath),
         "scan": _scan(toolpath),
         "predicted_shape": _predicted_shape(toolpath),
         "joints": None,
@@ -216,7 +216,7 @@ def _external(cell: Cell, planned: JointPath, joints: JointParameters) -> dict[s
     axis_figures = level.figures(cell, planned)
     if planned.of_level is None:
         return axis_figures
-    task = Task(cell, opw.branch_index(planned.branch), joints)
+    task = Task(cell, spherical_wrist.branch_index(planned.branch), joints)
     return {
         **axis_figures,
         "rule": OPTIMISED,

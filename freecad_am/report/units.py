@@ -13,7 +13,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass
 
 from ..core.issues import Text
-from ..core.quantities import put_values
+from ..core.number_texts import put_values
 
 _LABEL = re.compile(r"(?P<name>.*, )?(?P<unit>mm|mm/s|mm/min|cm³|g|m)")
 _FIGURE = re.compile(r"-?[\d,]+(?:\.\d+)?(?:e[-+]\d+)?")

@@ -7892,7 +7892,7 @@
         <translation>si fort qu&apos;elle soit redressée, la buse touche le plateau ou le dépôt, des cordons de {0} mm, dans {1} couche(s), à partir de la couche {2} ; utilisez une buse plus fine, une autre paroi, ou un process.bead_width plus petit là où les cordons sont moins larges</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/look.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/nozzle_check.py"/>
         <source>at every possible tilt, the nozzle touches substrate, fixture, platform or deposit at {0} point(s) of layers {1} to {2}</source>
         <translation>quelle que soit l&apos;inclinaison de l&apos;outil, la buse touche le substrat, un montage, la plateforme ou le dépôt en {0} point(s) des couches {1} à {2}</translation>
     </message>
@@ -8102,7 +8102,7 @@
         <translation>les cordons changent de programme de soudage, et ce contrôleur met les sorties entre les mouvements en avance sur le mouvement, autant qu&apos;on sache ; ne donnez à start et end que d&apos;autres vitesses, ou prenez un autre contrôleur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit/infill.py"/>
+        <location filename="../../freecad_am/core/process/deposit/void_and_double.py"/>
         <source>beads leave {0} % of the section void, the largest place {1} mm wide at {2}; strategy.max_void allows {3} %; set strategy.widths to adaptive, use fill: contours, narrower beads, or another fill_angle</source>
         <translation>les cordons laissent {0} % de la section vide, l&apos;endroit le plus large, de {1} mm, en {2} ; strategy.max_void permet {3} % ; mettez strategy.widths à adaptive, prenez fill: contours, des cordons plus étroits ou un autre fill_angle</translation>
     </message>
@@ -8852,7 +8852,7 @@
         <translation>suivi des cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/look.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/nozzle_check.py"/>
         <source>for clearance, tool axes turn by up to {0} deg/mm, faster than build_direction.max_turn ({1} deg/mm); use a slimmer nozzle or allow a faster turn</source>
         <translation>pour tenir la buse éloignée, les axes de l&apos;outil tournent jusqu&apos;à {0} deg/mm, plus vite que build_direction.max_turn ({1} deg/mm) ; utilisez une buse plus fine ou permettez une rotation plus rapide</translation>
     </message>
@@ -9052,12 +9052,12 @@
         <translation>i, j, k sont 0 ; donnez une direction, comme 0, 0, 1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/look.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/nozzle_check.py"/>
         <source>in layer {0}, tool axes are tilted back for clearance, by up to {1} deg</source>
         <translation>dans la couche {0}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {1} deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/look.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/nozzle_check.py"/>
         <source>in layers {0} to {1}, tool axes are tilted back for clearance, by up to {2} deg</source>
         <translation>dans les couches {0} à {1}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {2} deg</translation>
     </message>
@@ -12882,7 +12882,7 @@
         <translation>la machine attend avant {0} de {1} couches, jusqu&apos;à {2} s et {3} s en tout, pour qu&apos;on ne revienne à aucun solide avant {4} s</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/order.py"/>
+        <location filename="../../freecad_am/core/process/cooling_waits.py"/>
         <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in total, so that every layer takes at least {4} s</source>
         <translation>la machine attend avant {0} des {1} couches, jusqu&apos;à {2} s et {3} s au total, afin qu&apos;aucune couche ne dure moins de {4} s</translation>
     </message>
@@ -13027,7 +13027,7 @@
         <translation>la buse touche le plateau ou la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/look.py"/>
+        <location filename="../../freecad_am/core/strategies/clearance/nozzle_check.py"/>
         <source>the nozzle touches {0} at {1} of {2} points; on parts of revolution it does not tilt away from fixtures: move them, or use a slimmer nozzle</source>
         <translation>la buse touche {0} en {1} de {2} points ; sur les pièces de révolution elle n&apos;est pas écartée des montages : déplacez-les, ou utilisez une buse plus fine</translation>
     </message>

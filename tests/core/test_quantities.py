@@ -4,7 +4,7 @@
 import pytest
 
 from freecad_am.core.issues import Text
-from freecad_am.core.quantities import exact_or_rounded, in_other_units
+from freecad_am.core.number_texts import exact_or_rounded, in_other_units
 
 
 def inches(value, unit):

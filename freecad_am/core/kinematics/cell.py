@@ -27,7 +27,7 @@ from ..parameters.cell_records import PART, TOUCHED_KEY, TouchedPoint
 from ..types import Array
 from .arrangement import Arrangement, arrangement_of, planned_of
 from .external import ExternalAxes, coupled, upward
-from .inverse import opw
+from .inverse import spherical_wrist
 from .limits import Limits, PoseFrames
 from .links.external_links import ExternalLink, external_links
 from .machines import machine as machines
@@ -276,7 +276,7 @@ class Cell:
     """A resolved cell: a machine with its limits, and what it must know of its surroundings.
 
     poses: of deposition point, platform, nozzle and part. branch: index of the branch
-    (opw.branch_index), or None to search all. external: external axes; the machine is then
+    (spherical_wrist.branch_index), or None to search all. external: external axes; the machine is then
     the robot together with them, and base_link of its chain is the face that carries the
     part, or the world if only the robot is carried. up: (3,) against gravity in the world,
     the manufacturer's base frame. shapes: what stands in the cell beside robot and part.
@@ -674,7 +674,9 @@ def resolve(
             mount,
             offset,
         ),
-        branch=None if isinstance(parameters.branch, str) else opw.branch_index(parameters.branch),
+        branch=None
+        if isinstance(parameters.branch, str)
+        else spherical_wrist.branch_index(parameters.branch),
         nozzle=parameters.nozzle,
         platform_diameter=parameters.platform_diameter,
         external=external,

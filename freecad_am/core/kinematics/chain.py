@@ -2,7 +2,7 @@
 """Forward kinematics of a serial chain of revolute and prismatic joints from its joint
 frames.
 
-Independent of the closed form in `opw`, so that one can check the other. Joint frames
+Independent of the closed form in `inverse.spherical_wrist`, so that one can check the other. Joint frames
 follow the machine file: T = product of Trans(origin) Rz(yaw) Ry(pitch) Rx(roll) Rot(axis,
 q_i), then the flange; a prismatic joint has Trans(axis q_i) in place of Rot(axis, q_i).
 """

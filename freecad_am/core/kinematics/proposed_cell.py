@@ -28,7 +28,7 @@ from ..parameters.records import Pose
 from ..types import Array
 from .arrangement import OF_ROBOTS, arrangement_of
 from .cell import Cell, resolve
-from .inverse import opw
+from .inverse import spherical_wrist
 from .limits import margins
 from .links import external_links
 from .links.contact import ArmContact
@@ -142,7 +142,11 @@ def search_cell(
     if parameters.external or machine.arm is None or not (arrangement.free and arrangement.planned):
         return parameters
     cell = resolve(parameters, np.eye(4), folders=folders)
-    branches = range(len(opw.BRANCHES)) if cell.branch is None or not own_branch else [cell.branch]
+    branches = (
+        range(len(spherical_wrist.BRANCHES))
+        if cell.branch is None or not own_branch
+        else [cell.branch]
+    )
     if arrangement.carries_part:
         leanings = [_directions(TILTS, 1)]
     else:
@@ -154,7 +158,9 @@ def search_cell(
         for axes in leanings:
             best = _best(cell, axes, branches, touched)
             if best is not None:
-                branch = parameters.branch if own_branch else opw.branch_name(best.branch)
+                branch = (
+                    parameters.branch if own_branch else spherical_wrist.branch_name(best.branch)
+                )
                 return replace(parameters, deposition_point=best.point, branch=branch)
     return parameters
 

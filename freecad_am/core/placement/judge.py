@@ -20,7 +20,7 @@ from ..geometry.cylinders import Cylinder
 from ..geometry.frames import TURN
 from ..issues import ERROR, AmError, Issue
 from ..kinematics.cell import Cell
-from ..kinematics.inverse import opw
+from ..kinematics.inverse import spherical_wrist
 from ..kinematics.links.contact import ArmContact, min_distance
 from ..motion import Motion
 from ..parameters.cell import CellParameters
@@ -258,7 +258,11 @@ class Judge:
             else [bead for _, _, bead in sampled_toolpath]
         )
         branch_name = job.joints.own_branch
-        branch = cell.branch if branch_name == OF_CELL else opw.branch_index(branch_name.split("-"))
+        branch = (
+            cell.branch
+            if branch_name == OF_CELL
+            else spherical_wrist.branch_index(branch_name.split("-"))
+        )
         return screen_points(cell, single_points(beads, cell), job.joints, branch).share
 
     def _figures(

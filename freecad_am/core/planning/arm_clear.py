@@ -24,9 +24,15 @@ from .arm_kept import ArmKept, Place, clearance_issue
 from .joint_path import BeadPath
 from .points import Points, gather
 from .rotation import refine_state
-from .rotation.refine import CONSTRAINT_TOLERANCE, INACTIVE_VALUE, Linear, Refined, refine_along
+from .rotation.global_search import Found
+from .rotation.local_optimisation import (
+    CONSTRAINT_TOLERANCE,
+    INACTIVE_VALUE,
+    Linear,
+    Refined,
+    refine_along,
+)
 from .rotation.refine_state import state_of
-from .rotation.search import Found
 from .task import MIN_MARGIN, UNREACHABLE, Task, condition_margin
 
 MAX_LINEARIZATIONS = 10

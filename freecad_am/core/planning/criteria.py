@@ -13,7 +13,7 @@ import numpy as np
 
 from ..kinematics import jacobian as jac
 from ..kinematics.cell import Cell
-from ..kinematics.inverse import opw
+from ..kinematics.inverse import spherical_wrist
 from ..parameters.joints import OBJECTIVES, JointParameters
 from ..types import Array, Integers, Mask
 from .joint_path import BeadPath, JointPath
@@ -399,7 +399,7 @@ def path_figures(path: JointPath, cell: Cell, parameters: JointParameters) -> di
         return _figures(
             cell, path.beads, {"condition_min": None, "objective_value": None, "criteria": {}}
         )
-    return figures(Task(cell, opw.branch_index(path.branch), parameters), path.beads)
+    return figures(Task(cell, spherical_wrist.branch_index(path.branch), parameters), path.beads)
 
 
 def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:

@@ -19,7 +19,7 @@ from ..issues import Issue, Text, has_errors
 from ..kinematics import cell as cells
 from ..kinematics import proposed_cell
 from ..kinematics.arrangement import arrangement_of
-from ..kinematics.inverse import opw
+from ..kinematics.inverse import spherical_wrist
 from ..kinematics.links.external_links import external_links
 from ..parameters.cell import CellParameters
 from ..parameters.joints import OF_CELL, JointParameters
@@ -200,7 +200,7 @@ def branches(job: Tried) -> Iterator[Tried]:
     )
     beads = levelled(cell, toolpath)[0] if cell.external else [bead for _, _, bead in toolpath]
     for branch in best_branches(beads, cell, job.joints, not toolpath.traits.has_axis):
-        words = opw.branch_name(branch)
+        words = spherical_wrist.branch_name(branch)
         if words != job.settings.branch:
             yield change_cell(job, f"`cell.branch: [{', '.join(words)}]`", branch=words)
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..issues import ERROR, NOTE, WARNING, Issue, Text, has_errors
 from ..kinematics.cell import Cell
-from ..kinematics.inverse import opw
+from ..kinematics.inverse import spherical_wrist
 from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
 from . import arm_clear, criteria
@@ -26,7 +26,7 @@ from .findings import findings, out_of_reach
 from .joint_path import BeadPath, JointPath
 from .methods import closed_form, constant, layer_by_layer, point_by_point
 from .points import gather
-from .rotation import given, search
+from .rotation import given, global_search
 from .task import Parts, Task
 from .turns import unwrap as turns
 from .turns.directed import as_held, lock_of
@@ -153,7 +153,11 @@ def _choices(task: Task) -> tuple[str, str, tuple[str, ...]]:
     """Method, objective and branch of a joint path; where nothing is free there is one method, and nothing to optimise."""
     if not task.cell.machine.free:
         return closed_form.METHOD, "none", ()
-    return task.parameters.method, task.parameters.objective, opw.branch_name(task.branch)
+    return (
+        task.parameters.method,
+        task.parameters.objective,
+        spherical_wrist.branch_name(task.branch),
+    )
 
 
 def _branch_wanted(cell: Cell, parameters: JointParameters) -> int | None:
@@ -166,7 +170,7 @@ def _branch_wanted(cell: Cell, parameters: JointParameters) -> int | None:
     return (
         cell.branch
         if parameters.own_branch == OF_CELL
-        else opw.branch_index(parameters.own_branch.split("-"))
+        else spherical_wrist.branch_index(parameters.own_branch.split("-"))
     )
 
 
@@ -328,11 +332,11 @@ def _ranked(
     branch.
     """
     sampled = np.unique(np.round(np.linspace(0, len(beads) - 1, SCREENED)).astype(int))
-    points = gather([beads[k] for k in sampled], base_task.cell, search.POINTS_PER_BEAD)
+    points = gather([beads[k] for k in sampled], base_task.cell, global_search.POINTS_PER_BEAD)
     ranks = []
     for branch in among:
         task = dataclasses.replace(base_task, branch=branch)
-        candidates = search.everywhere(
+        candidates = global_search.everywhere(
             task, points, task.thresholds(points), best_alone=task.kept is None
         )
         within = 0

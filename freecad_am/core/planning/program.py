@@ -13,7 +13,7 @@ from ..controller import Controller
 from ..geometry import frames
 from ..issues import InputError
 from ..kinematics.cell import Cell
-from ..kinematics.inverse import opw
+from ..kinematics.inverse import spherical_wrist
 from ..kinematics.machines.machine import Machine
 from ..motion import Motion
 from ..parameters.bead_classes import CLASSES
@@ -501,7 +501,7 @@ class _Blocks:
                 rotation = tool_poses[:, :3, :3]
                 robot_joints = motion.joints[rows, : cell.robot.chain.axes]
                 configuration = tuple(
-                    opw.branch_name(int(index)) for index in arm.branch_of(robot_joints)
+                    spherical_wrist.branch_name(int(index)) for index in arm.branch_of(robot_joints)
                 )
         wire = motion.wire[rows]
         with_wire = kind == DEPOSIT and not parameters.dry_run and bool(np.isfinite(wire).all())

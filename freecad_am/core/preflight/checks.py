@@ -21,7 +21,7 @@ from ..process.deposit.balance import MM3, Balance
 from ..simulation.payload import CODE, finished
 from ..simulation.rapid_look import RapidsLooked
 from ..simulation.watch import ArmTouches
-from ..strategies.clearance.look import Looked
+from ..strategies.clearance.nozzle_check import Looked
 from ..toolpath import Toolpath
 from ..types import Array
 from . import clearance

@@ -17,7 +17,7 @@ from ..motion import Motion
 from ..simulation.achievable_feed import speed_ratios
 from ..simulation.rapid_look import RapidsLooked
 from ..simulation.watch import ArmTouches, shown_margins
-from ..strategies.clearance.look import Looked
+from ..strategies.clearance.nozzle_check import Looked
 from ..types import Array
 from .promise import PERCENT, Place, Promise, issue_place, number, row_place, select_issues
 

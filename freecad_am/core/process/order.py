@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Order of deposit of the beads of several solids, and waits for the deposit below to cool.
+"""Order of deposit of the beads of several solids, and where beads about an axis start.
 
 Around the axis (Dai 2020, section 5) the heat is spread: the same layer of all solids on a base in turn, the same ring of
 each, the inner rings first. Solid by solid is the other order. A plane layer is deposited island by island, the nearest next,
@@ -15,9 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..issues import NOTE, Issue, Text
 from ..parameters.process import ProcessParameters
-from ..toolpath import Bead, Layer, Toolpath
+from ..toolpath import Bead, Layer
 from ..types import Array
 
 
@@ -141,105 +140,6 @@ def order_beads(beads: Sequence[RankedBead], order: str) -> Course:
         solids.append(tuple((ranked.group, ranked.solid) for ranked in layer))
         previous_stack, expected = stack, number + 1
     return Course(tuple(layers_), tuple(solids), numbers)
-
-
-def add_waits(
-    course: Course, wait: float, rapid_speed: float, min_layer_time: float = 0.0
-) -> tuple[Layer, ...]:
-    """Return the layers with waits before them.
-
-    Rapids count as straight moves between beads, so waits are rather too long.
-
-    Parameters
-    ----------
-    course : Course
-        Layers in the order of deposit.
-    wait : float
-        Shortest time before a solid is returned to, s.
-    rapid_speed : float
-        Speed of rapids, mm/s.
-    min_layer_time : float, optional
-        Shortest time of a layer, s.
-
-    Returns
-    -------
-    tuple of Layer
-        The layers.
-    """
-    now, layers = 0.0, []
-    end_times: dict[tuple[int, int], float] = {}
-    position: Array | None = None
-    time = min_layer_time
-    for layer, solids in zip(course.layers, course.solids, strict=True):
-        starts: dict[tuple[int, int], float] = {}
-        ends: dict[tuple[int, int], float] = {}
-        short = 0.0 if layer.first else min_layer_time - time  # of the layer before
-        time = 0.0
-        for bead, solid in zip(layer.beads, solids, strict=True):
-            if position is not None:
-                time += float(np.linalg.norm(bead.points[0] - position)) / rapid_speed
-            starts.setdefault(solid, time)
-            time += float(
-                (np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]).sum()
-            )
-            ends[solid], position = time, bead.points[-1]
-        pause = max(
-            (
-                end_times[solid] + wait - now - start
-                for solid, start in starts.items()
-                if solid in end_times
-            ),
-            default=0.0,
-        )
-        pause = max(pause, short, 0.0)
-        layers.append(dataclasses.replace(layer, wait=pause))
-        end_times.update({solid: now + pause + end for solid, end in ends.items()})
-        now += pause + time
-    return tuple(layers)
-
-
-def enforce_layer_time(toolpath: Toolpath, min_layer_time: float, rapid_speed: float) -> Toolpath:
-    """Return the toolpath with waits, so that no layer takes less than a time.
-
-    Parameters
-    ----------
-    toolpath : Toolpath
-        The toolpath.
-    min_layer_time : float
-        Shortest time of a layer, s; 0 for none.
-    rapid_speed : float
-        Speed of rapids, mm/s.
-
-    Returns
-    -------
-    Toolpath
-        The toolpath with a note about the waits.
-    """
-    if min_layer_time <= 0.0:
-        return toolpath
-    solids = tuple(((0, 0),) * len(layer.beads) for layer in toolpath.layers)
-    layers = add_waits(Course(toolpath.layers, solids), 0.0, rapid_speed, min_layer_time)
-    waits = [layer.wait for layer in layers if layer.wait > 0.0]
-    text = (
-        [
-            Issue(
-                NOTE,
-                "WAITS",
-                Text(
-                    "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in "
-                    "total, so that every layer takes at least {:g} s",
-                    len(waits),
-                    len(layers),
-                    max(waits),
-                    sum(waits),
-                    min_layer_time,
-                ),
-            )
-        ]
-        if waits
-        else []
-    )
-    return dataclasses.replace(toolpath, layers=layers, issues=(*toolpath.issues, *text))
 
 
 # ---- Where beads about an axis start and which way they run

@@ -15,7 +15,7 @@ from PySide import QtCore, QtGui
 from ...core.geometry import frames
 from ...core.issues import InputError
 from ...core.kinematics.chain import Chain
-from ...core.kinematics.inverse.opw import OpwArm
+from ...core.kinematics.inverse.spherical_wrist import OpwArm
 from ...core.kinematics.machines import draft as machine_draft
 from ...core.kinematics.machines import pendant
 from ...core.kinematics.machines.draft import Draft

@@ -14,8 +14,8 @@ from PySide import QtGui
 
 from ...core.geometry.formatting import place
 from ...core.geometry.section import Coverage
-from ...core.process.deposit import infill
-from ...core.process.deposit.infill import Picture
+from ...core.process.deposit import void_and_double
+from ...core.process.deposit.void_and_double import Picture
 from ...core.toolpath import Layer, Toolpath
 from ...core.types import Array, Index, Mask
 from ...objects.fields.preferences import in_user_units
@@ -286,7 +286,8 @@ class InfillDock(Follower):
         self.drawn = key
         self._show_stretch(obj, number)
         self.drawing.start(
-            lambda: infill.picture(toolpath, number), lambda worker: self._take(worker, obj, number)
+            lambda: void_and_double.picture(toolpath, number),
+            lambda worker: self._take(worker, obj, number),
         )
 
     def _take(self, worker: Worker, obj: Any, number: int) -> None:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ...core.number_texts import significant
 from ...core.placement.judge import UNREACHED
 from ...core.placement.place import Placed, outer, ranked
-from ...core.quantities import significant
 from ...core.types import Array, Integers
 from ...objects.fields.preferences import ORDINARY, scale_of
 from ..colours import ramp

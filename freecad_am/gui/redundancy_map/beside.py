@@ -10,7 +10,7 @@ import numpy as np
 from PySide import QtCore, QtGui
 
 from ...core.kinematics.cell import Cell as Station
-from ...core.kinematics.inverse import opw
+from ...core.kinematics.inverse import spherical_wrist
 from ...core.kinematics.machines.machine import Machine
 from ...core.parameters.joints import HIGHEST
 from ...core.planning import redundancy_curve as rotation_curve
@@ -210,7 +210,7 @@ class Controls(QtGui.QWidget):
         served = None if board.map is None else board.reachable_shares()
         texts = []
         for number in range(8):
-            text = " ".join(opw.branch_name(number))
+            text = " ".join(spherical_wrist.branch_name(number))
             text += "" if served is None else f"   {100.0 * served[number]:.0f} %"
             texts.append(text + ("   " + tr("(planned)") if number == board.source.branch else ""))
         if [self.branch.itemText(k) for k in range(self.branch.count())] != texts:

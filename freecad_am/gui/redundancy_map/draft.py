@@ -17,7 +17,7 @@ from ...core.collision.bead_ends import LINK_GRAIN, Beads
 from ...core.geometry.frames import TURN
 from ...core.issues import InputError
 from ...core.kinematics.cell import Cell
-from ...core.kinematics.inverse import opw
+from ...core.kinematics.inverse import spherical_wrist
 from ...core.kinematics.links import external_links
 from ...core.kinematics.links.contact import ArmContact
 from ...core.kinematics.links.external_links import Mesh
@@ -80,7 +80,7 @@ class Source:
     @property
     def branch(self) -> int:
         """The branch that was planned."""
-        return opw.branch_index(self.planned.branch)
+        return spherical_wrist.branch_index(self.planned.branch)
 
     def task(self, branch: int) -> Task:
         """What the planner has to do on a branch."""

@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from ...core.quantities import significant
+from ...core.number_texts import significant
 from ...core.simulation import watch
 from ...core.simulation.timeline import MM3_PER_CM3
 from ...core.simulation.watch import Finding

@@ -24,8 +24,8 @@ from ...core.process.deposit.balance import Balance
 from ...core.simulation import rapid_look
 from ...core.simulation.rapid_look import RapidsLooked
 from ...core.simulation.watch import ArmTouches
-from ...core.strategies.clearance import look as clearance_look
-from ...core.strategies.clearance.look import Looked
+from ...core.strategies.clearance import nozzle_check
+from ...core.strategies.clearance.nozzle_check import Looked
 from ...core.toolpath import Toolpath
 from ...core.types import Array
 from ...posts import catalogue
@@ -179,9 +179,9 @@ def _nozzle_looked(
     """What the nozzle touches on the features that ask for clearance."""
     bodies = (*toolpath.surroundings, *platforms(cell, toolpath)) if any(clearance_asked) else ()
     nozzle = NozzleParameters() if cell is None else cell.nozzle
-    return clearance_look.join_checks(
+    return nozzle_check.join_checks(
         [
-            clearance_look.check_nozzle(
+            nozzle_check.check_nozzle(
                 toolpath, bodies, nozzle, NOZZLE_PLACES // len(clearance_asked), number
             )
             for number, clear in enumerate(clearance_asked)

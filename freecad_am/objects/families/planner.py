@@ -117,11 +117,11 @@ def tilt_clear(
     build: BuildDirectionParameters | None = None,
     plane: Array | None = None,
 ) -> Toolpath:
-    """As `tilt_back.keep_clear`; reports its progress, and once that it takes long. build: in place
+    """As `clear_by_tilt.keep_clear`; reports its progress, and once that it takes long. build: in place
     of the feature's.
     """
     from ...core.strategies import size
-    from ...core.strategies.clearance import tilt_back
+    from ...core.strategies.clearance import clear_by_tilt
     from ...core.strategies.progress import Watch
 
     issues: list[Issue] = []
@@ -134,7 +134,7 @@ def tilt_clear(
     def share(fraction: float) -> None:
         progress.report(STRATEGY + fraction * (CHECKED - STRATEGY), CLEARING)
 
-    return tilt_back.keep_clear(
+    return clear_by_tilt.keep_clear(
         toolpath,
         bodies,
         inputs.nozzle,

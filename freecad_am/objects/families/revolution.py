@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core.geometry.obstacles import Body
 from ...core.process.deposit import on_part
-from ...core.strategies.clearance import look as clearance_look
+from ...core.strategies.clearance import nozzle_check
 from ...core.toolpath import Toolpath
 from ..shapes.bodies import Taken
 from .given import Given
@@ -47,14 +47,14 @@ class RevolutionPlanner(FeaturePlanner):
         """Check clearance to the surroundings and to other features; the strategy has kept clear of
         the rest."""
         if feature is None:
-            touch_issues = clearance_look.nozzle_issues(
+            touch_issues = nozzle_check.nozzle_issues(
                 toolpath, inputs.wall.surroundings, inputs.nozzle
             )
             return dataclasses.replace(toolpath, issues=(*toolpath.issues, *touch_issues))
         feature_part = toolpath.parts[feature][0]
         count = feature_part.point_count
-        alone = clearance_look.check_nozzle(feature_part, bodies, inputs.nozzle, count)
-        among = clearance_look.check_nozzle(toolpath, bodies, inputs.nozzle, count, feature)
+        alone = nozzle_check.check_nozzle(feature_part, bodies, inputs.nozzle, count)
+        among = nozzle_check.check_nozzle(toolpath, bodies, inputs.nozzle, count, feature)
         if among.touched <= alone.touched:
             return toolpath
         return tilt_clear(toolpath, inputs, bodies, feature)

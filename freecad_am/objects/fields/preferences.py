@@ -14,15 +14,15 @@ from typing import Any
 
 import FreeCAD as App
 
-from ...core.parameters.cell import CellParameters
-from ...core.parameters.process import ProcessParameters
-from ...core.quantities import (
+from ...core.number_texts import (
     UNITS,
     exact_or_rounded,
     expand_exponents,
     in_other_units,
     significant,
 )
+from ...core.parameters.cell import CellParameters
+from ...core.parameters.process import ProcessParameters
 from . import rows
 
 _NAMES = {'"': "in", "'": "ft", "sqft": "ft²", "cft": "ft³"}

@@ -16,11 +16,11 @@ from ...core.parameters.cell import CellParameters
 from ...core.parameters.filled import PLANES
 from ...core.process import classes, model_notes
 from ...core.process.bead_model import check_speeds
+from ...core.process.cooling_waits import enforce_layer_time
 from ...core.process.deposit.pieces import deposited_twice
-from ...core.process.order import enforce_layer_time
 from ...core.process.wire import set_wire_feed
 from ...core.strategies import support
-from ...core.strategies.clearance.look import CLEARANCE
+from ...core.strategies.clearance.nozzle_check import CLEARANCE
 from ...core.toolpath import MotionRules, Toolpath
 from ...core.toolpath import Toolpath as CoreToolpath
 from ..families.given import Given, platform_frame
@@ -151,9 +151,9 @@ def measure_infill(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
     max_void = getattr(inputs.strategy, "max_void", None)
     if max_void is None:
         return toolpath
-    from ...core.process.deposit import infill  # other families need none of it
+    from ...core.process.deposit import void_and_double  # other families need none of it
 
-    return infill.measure(toolpath, max_void)
+    return void_and_double.measure(toolpath, max_void)
 
 
 def bases_of(inputs: Given) -> list[Any]:

@@ -10,7 +10,7 @@ import pytest
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.chain import Chain
 from freecad_am.core.kinematics.inverse import opw_recognition, recognition
-from freecad_am.core.kinematics.inverse.opw import OpwArm
+from freecad_am.core.kinematics.inverse.spherical_wrist import OpwArm
 from freecad_am.core.kinematics.machines import denavit_hartenberg as dh
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.kinematics.urdf import read as urdf

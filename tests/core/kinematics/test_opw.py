@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.inverse import spherical_wrist
 from freecad_am.core.kinematics.machines import machine
 from tests.core.kinematics.arms import EXAMPLES
 
@@ -74,7 +74,7 @@ def test_one_branch_is_the_same_as_in_all(arm):
 
 
 def test_pieces_do_not_show(arm):
-    q = random_joints(arm, opw.CHUNK + 3)
+    q = random_joints(arm, spherical_wrist.CHUNK + 3)
     poses = arm.chain.forward(q)
     parts = np.concatenate([arm.opw.inverse(poses[:100]), arm.opw.inverse(poses[100:])], axis=1)
     assert np.array_equal(arm.opw.inverse(poses), parts, equal_nan=True)
@@ -144,12 +144,14 @@ def test_an_arm_folded_on_its_shoulder_is_not_reached():
 
 
 def test_words_of_a_branch():
-    assert opw.branch_index(("front", "up", "noflip")) == 0
-    assert opw.branch_index(("front", "up", "flip")) == 1
-    assert opw.branch_index(["back", "down", "flip"]) == 7
-    assert [opw.branch_index(opw.branch_name(index)) for index in range(8)] == list(range(8))
+    assert spherical_wrist.branch_index(("front", "up", "noflip")) == 0
+    assert spherical_wrist.branch_index(("front", "up", "flip")) == 1
+    assert spherical_wrist.branch_index(["back", "down", "flip"]) == 7
+    assert [
+        spherical_wrist.branch_index(spherical_wrist.branch_name(index)) for index in range(8)
+    ] == list(range(8))
     with pytest.raises(ValueError):
-        opw.branch_index(("front", "left", "flip"))
+        spherical_wrist.branch_index(("front", "left", "flip"))
 
 
 def test_branches_mean_what_the_words_say(arm):
@@ -158,7 +160,7 @@ def test_branches_mean_what_the_words_say(arm):
     poses = arm.chain.forward(q)
     solutions = arm.opw.inverse(poses)
     for branch in range(8):
-        shoulder, elbow, wrist = opw.branch_name(branch)
+        shoulder, elbow, wrist = spherical_wrist.branch_name(branch)
         joints = solutions[branch]
         joints = joints[np.isfinite(joints[:, 0])]
         frames = arm.chain.frames(joints)

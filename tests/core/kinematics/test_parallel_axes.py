@@ -8,7 +8,7 @@ import pytest
 
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics.chain import Chain
-from freecad_am.core.kinematics.inverse import opw, recognition
+from freecad_am.core.kinematics.inverse import recognition, spherical_wrist
 from freecad_am.core.kinematics.inverse.five_axis import is_five_axis
 from freecad_am.core.kinematics.inverse.parallel_axes import CHUNK, ParallelAxesArm
 from tests.core.kinematics.arms import (
@@ -116,7 +116,7 @@ def test_words_mean_what_the_arm_looks_like():
     q = np.radians(
         [[0, -120, 110, -80, -90, 0], [0, -60, -110, -10, -90, 0], [0, -120, 110, -80, 90, 0]]
     )
-    words = [opw.branch_name(int(index)) for index in inverse.branch_of(q)]
+    words = [spherical_wrist.branch_name(int(index)) for index in inverse.branch_of(q)]
     elbows = of.frames(q).origins[:, 2:4]
     for (_, elbow, wrist), joints, angles in zip(words, elbows, q, strict=True):
         middle = 0.5 * (joints[1] + of.frames(angles).origins[1])

@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.cell import resolve
-from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.inverse import spherical_wrist
 from freecad_am.core.kinematics.links import robot as robot_links
 from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.kinematics.proposed_cell import BALL, cell_of, proposed, search_cell
@@ -41,7 +41,7 @@ def test_every_robot_holds_a_dome_there_within_its_limits(name):
     assert np.abs(cell.machine.chain.forward(joints[good]) - poses[good]).max() < 1e-6
     within = (cell.limits.margin(joints)[:, :5] > 0.0).all(axis=1) & good
     assert within.reshape(91, 60).any(axis=0).all()
-    assert parameters.branch == opw.branch_name(cell.branch)
+    assert parameters.branch == spherical_wrist.branch_name(cell.branch)
 
 
 @pytest.mark.always(*OF_EACH_MAKER)

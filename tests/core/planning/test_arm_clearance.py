@@ -24,7 +24,7 @@ from freecad_am.core.planning import arm_clear, arm_kept
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
-from freecad_am.core.planning.rotation import search
+from freecad_am.core.planning.rotation import global_search
 from freecad_am.core.planning.task import Task
 from freecad_am.core.strategies.revolution import plan as revolution
 from freecad_am.kdl import KdlArm
@@ -317,7 +317,7 @@ def test_beads_that_no_rotation_serves_are_found_by_few_points_as_by_all(dome, m
     found, looked = [], []
     for branch in range(8):
         task = Task(cell, branch, JointParameters(), False, kept)
-        candidates = search.everywhere(task, points, task.thresholds(points))
+        candidates = global_search.everywhere(task, points, task.thresholds(points))
         for ends in (arm_clear.ENDS, arm_clear.POINTS_PER_BEAD):
             monkeypatch.setattr(arm_clear, "ENDS", ends)
             asked = []

@@ -6,7 +6,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.inverse import spherical_wrist
 from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
 from freecad_am.core.planning import criteria
 from freecad_am.core.planning.certificate import bound as certificate
@@ -29,7 +29,7 @@ def planned_on(sliced, cell_of, with_axis_6):
         cell = cell_of(toolpath) if half is None else with_axis_6(cell_of(toolpath), half)
         path = plan_joints(toolpath, cell, JointParameters())
         assert path.feasible
-        task = Task(cell, opw.branch_index(path.branch), JointParameters())
+        task = Task(cell, spherical_wrist.branch_index(path.branch), JointParameters())
         return task, [path.beads[k] for k in BEADS if k < len(path.beads)]
 
     return plan

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from freecad_am import kdl
-from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.inverse import spherical_wrist
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
-from freecad_am.core.planning.rotation import refine, search
-from freecad_am.core.planning.rotation.refine import evaluate_paths
+from freecad_am.core.planning.rotation import global_search, local_optimisation
+from freecad_am.core.planning.rotation.local_optimisation import evaluate_paths
 from freecad_am.core.planning.task import Task
 
 INSIDE = np.linspace(0.0, 1.0, 9)[1:-1]
@@ -22,13 +22,13 @@ def test_a_rotation_that_loses_a_bead_is_looked_at_for_all_others(sliced, cell_o
     beads = [bead for _, _, bead in toolpath]
     cell = cell_of(toolpath, deposition_point=(1530.0, -630.0, 650.0, 0.0, 0.0, 0.0))
     task = Task(cell, 0, JointParameters())
-    points = gather(beads, cell, search.POINTS_PER_BEAD)
-    together = search.everywhere(task, points, np.full(len(points), 0.02))
+    points = gather(beads, cell, global_search.POINTS_PER_BEAD)
+    together = global_search.everywhere(task, points, np.full(len(points), 0.02))
     lost = np.isinf(together.objective)
     assert (lost.any(axis=1) & ~lost.all(axis=1)).any()
     for k, bead in enumerate(beads):
-        own = gather([bead], cell, search.POINTS_PER_BEAD)
-        alone = search.everywhere(task, own, np.full(len(own), 0.02))
+        own = gather([bead], cell, global_search.POINTS_PER_BEAD)
+        alone = global_search.everywhere(task, own, np.full(len(own), 0.02))
         assert np.array_equal(lost[:, k], np.isinf(alone.objective[:, 0]))
         assert np.allclose(
             together.margin[~lost[:, k], k], alone.margin[~lost[:, k], 0], rtol=0.0, atol=1e-9
@@ -57,10 +57,10 @@ def test_limits_are_kept_at_all_points_and_between_however_few_are_searched(
     toolpath = sliced(part, 10.0)
     cell = with_axis_6(cell_of(toolpath, branch=branch), 200.0)
     asked = []
-    monkeypatch.setattr(search, "POINTS_PER_BEAD", looked)
-    others = search.find_rotations
+    monkeypatch.setattr(global_search, "POINTS_PER_BEAD", looked)
+    others = global_search.find_rotations
     monkeypatch.setattr(
-        search,
+        global_search,
         "find_rotations",
         lambda task, some, *at: asked.append(len(some)) or others(task, some, *at),
     )
@@ -90,7 +90,7 @@ def test_another_rotation_is_taken_before_a_seam_is_moved(
     toolpath = sliced("sphere", 10.0)
     cell = with_axis_6(cell_of(toolpath, branch=("front", "up", "noflip")), 200.0)
     asked = plan_joints(toolpath, cell, JointParameters())
-    monkeypatch.setattr(search, "POINTS_PER_BEAD", 4)
+    monkeypatch.setattr(global_search, "POINTS_PER_BEAD", 4)
     few = plan_joints(toolpath, cell, JointParameters())
     moved = [
         [issue.message for issue in found.issues if issue.code == "SEAM_MOVED"]
@@ -105,19 +105,21 @@ def test_another_rotation_is_taken_before_a_seam_is_moved(
 def test_what_falls_short_between_points_alone_is_seen(sliced, cell_of):
     toolpath, branch = sliced("sphere", 10.0, chord_error=0.3), ("front", "down", "noflip")
     cell, place = cell_of(toolpath, branch=branch), (0, 0)
-    task = Task(cell, opw.branch_index(branch), JointParameters())
+    task = Task(cell, spherical_wrist.branch_index(branch), JointParameters())
     wrong = 0
     for _, _, bead in list(toolpath)[2::4]:
         points, finer = gather([bead], cell), bead
         for _ in range(5):
             finer = finer.halved(np.arange(len(finer) - 1))
-        found = search.everywhere(task, points, task.thresholds(points))
+        found = global_search.everywhere(task, points, task.thresholds(points))
         dense = gather([finer], cell)
-        between = search.judge(task, dense, task.thresholds(dense), found.coefficients).margin[:, 0]
+        between = global_search.judge(
+            task, dense, task.thresholds(dense), found.coefficients
+        ).margin[:, 0]
         for k in np.flatnonzero(
             (found.margin[:, 0] >= 0.0) & ((between < -0.02) | (between > 0.0))
         ):
-            refined = refine.Refined(found.coefficients[k], np.zeros(1), ("",), (0,))
+            refined = local_optimisation.Refined(found.coefficients[k], np.zeros(1), ("",), (0,))
             path = evaluate_paths(
                 task,
                 [bead],
@@ -128,6 +130,8 @@ def test_what_falls_short_between_points_alone_is_seen(sliced, cell_of):
                 refined,
             )
             assert path[0].margin >= 0.0
-            assert search.find_infeasible(task, [bead], path) == ([0] if between[k] < 0.0 else [])
+            assert global_search.find_infeasible(task, [bead], path) == (
+                [0] if between[k] < 0.0 else []
+            )
             wrong += between[k] < 0.0
     assert wrong > 0

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from freecad_am import kdl
-from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.inverse import spherical_wrist
 from freecad_am.core.kinematics.limits import RESERVE
 from freecad_am.core.parameters.joints import OBJECTIVES, JointParameters
 from freecad_am.core.planning import criteria
@@ -15,10 +15,10 @@ from freecad_am.core.planning import plan as planner
 from freecad_am.core.planning.methods import constant
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
-from freecad_am.core.planning.rotation import refine_state, search
+from freecad_am.core.planning.rotation import global_search, refine_state
 from freecad_am.core.planning.task import Task
 
-FLIP = opw.branch_index(("front", "up", "flip"))
+FLIP = spherical_wrist.branch_index(("front", "up", "flip"))
 
 
 def ranges(joint_path):
@@ -84,9 +84,11 @@ def test_no_candidate_of_a_much_finer_grid_is_better(sliced, cell_of):
         if path.iterations == 0:
             continue
         points = gather([bead], cell, 40)
-        grid = search.everywhere(task, points, task.thresholds(points), np.linspace(-2, 2, 161), 90)
+        grid = global_search.everywhere(
+            task, points, task.thresholds(points), np.linspace(-2, 2, 161), 90
+        )
         best = grid.objective[grid.margin[:, 0] >= 0.0].min()
-        here = search.judge(
+        here = global_search.judge(
             task, points, task.thresholds(points), path.coefficients[None, None]
         ).objective[0, 0]
         assert here <= best * 1.02
@@ -98,12 +100,12 @@ def test_the_best_candidates_are_the_same_where_nothing_else_is_asked_for(
 ):
     toolpath = sliced("sphere", 5.0)
     beads, cell, kept = [bead for _, _, bead in toolpath], cell_of(toolpath), []
-    points = gather(beads, cell, search.POINTS_PER_BEAD)
+    points = gather(beads, cell, global_search.POINTS_PER_BEAD)
     for branch in range(8):
         task = Task(cell, branch, JointParameters(min_condition=min_condition))
         thresholds, each = task.thresholds(points), np.arange(points.beads)
-        every = search.everywhere(task, points, thresholds)
-        alone = search.everywhere(task, points, thresholds, best_alone=True)
+        every = global_search.everywhere(task, points, thresholds)
+        alone = global_search.everywhere(task, points, thresholds, best_alone=True)
         best = every.best()
         assert np.array_equal(alone.best(), best)
         assert np.array_equal(alone.objective[best, each], every.objective[best, each])
@@ -134,7 +136,7 @@ def test_the_valley_is_settled_where_the_margin_is_largest(sliced, cell_of):
     points = gather([bead for _, _, bead in toolpath], cell)
     candidates = np.repeat(np.array([path.coefficients for path in found.beads])[None], 720, axis=0)
     candidates[:, :, 0] += np.radians(np.arange(720) * 0.5)[:, None]
-    every = search.judge(task, points, task.thresholds(points), candidates).margin
+    every = global_search.judge(task, points, task.thresholds(points), candidates).margin
     assert (np.array([path.margin for path in found.beads]) > every.max(axis=0) - 0.02).all()
 
 

@@ -9,7 +9,7 @@ import pytest
 from freecad_am import kdl, verify
 from freecad_am.core.collision.bead_ends import Beads
 from freecad_am.core.issues import InputError, has_errors
-from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.inverse import spherical_wrist
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
@@ -289,7 +289,7 @@ def test_points_are_added_where_joint_motion_leaves_the_bead(sliced, cell_of):
     found = plan_joints(toolpath, cell, JointParameters())
     assert found.feasible, found.issues
     assert sum(len(path.bead) for path in found.beads) > toolpath.point_count
-    task = Task(cell, opw.branch_index(found.branch), JointParameters())
+    task = Task(cell, spherical_wrist.branch_index(found.branch), JointParameters())
     arm = kdl.KdlArm(cell.machine)
     for path in found.beads:
         share = np.linspace(0.0, 1.0, 21)[None, :, None]

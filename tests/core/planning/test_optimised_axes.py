@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.issues import InputError
-from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.inverse import spherical_wrist
 from freecad_am.core.parameters.joints import GivenPolynomial, JointParameters
 from freecad_am.core.planning.external import optimised
 from freecad_am.core.planning.external.freedom import IRRELEVANT_MARGIN
@@ -76,7 +76,7 @@ def test_less_motion_and_a_larger_least_margin(hemisphere, both):
         sum(path.objective for path in level.beads), rel=1e-12
     )
     assert better.of_level["least_margin"] == pytest.approx(share_left(cell, level), abs=1e-9)
-    task = Task(cell, opw.branch_index(better.branch), JointParameters())
+    task = Task(cell, spherical_wrist.branch_index(better.branch), JointParameters())
     assert least_margin(task, better.beads) == pytest.approx(share_left(cell, better), abs=1e-9)
 
 
@@ -138,7 +138,9 @@ def test_derivatives(hemisphere, external, objective):
     cell = cell_for(hemisphere, **({} if external is None else {"external": external}))
     planned = plan_joints(hemisphere, cell, JointParameters())
     task = Task(
-        cell, opw.branch_index(planned.branch), JointParameters(degree=2, objective=objective)
+        cell,
+        spherical_wrist.branch_index(planned.branch),
+        JointParameters(degree=2, objective=objective),
     )
     path = planned.beads[3]
     freedom = optimised._freedom(

@@ -17,7 +17,7 @@ from freecad_am.core.preflight.checks import Evidence, ReadBack, promises
 from freecad_am.core.process.deposit.balance import Balance
 from freecad_am.core.simulation.rapid_look import looked_at
 from freecad_am.core.simulation.watch import ArmTouches
-from freecad_am.core.strategies.clearance import look as clearance_look
+from freecad_am.core.strategies.clearance import nozzle_check
 
 WIDTH, HEIGHT = 3.0, 10.0
 LINKS = ("base", "q1", "q2", "q3", "q4", "q5", "q6", "part", "nozzle")
@@ -57,7 +57,7 @@ def sound(sliced, cell_of):
             ("UFRAME 1",),
             None,
             Balance("Part", 1e5, 0.0, 1e5, 0.0, twice=0.0),
-            clearance_look.Looked(100, 0, None),
+            nozzle_check.Looked(100, 0, None),
             driven(cell, path, motion),
         ),
     )
@@ -198,7 +198,7 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
         ("The wire feeds what the beads take", lambda e: {"toolpath": dataclasses.replace(
             e.toolpath, wire_feed=1.1 * e.toolpath.wire_feed)}),
         ("The nozzle stays clear of deposit, part and platform while it deposits", lambda e: {
-            "looked": clearance_look.Looked(100, 1, (2, 0, 7))}),
+            "looked": nozzle_check.Looked(100, 1, (2, 0, 7))}),
         ("The tool keeps away from singularities while it deposits", lambda e: {"condition": np.where(
             np.arange(len(e.condition)) == 40, 0.05, e.condition)}),
         ("The arm stays clear of part, deposit, platform, nozzle and itself", lambda e: {"arm": ArmTouches(

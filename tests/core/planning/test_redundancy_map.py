@@ -11,7 +11,7 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.geometry.obstacles import Body, disc
 from freecad_am.core.issues import ERROR, InputError
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.inverse import spherical_wrist
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links import robot as robot_links
 from freecad_am.core.kinematics.links.contact import ArmContact
@@ -150,7 +150,8 @@ def test_a_constant_rz_lies_in_good_cells_just_when_the_planner_finds_it_feasibl
     verdicts = []
     for branch in range(8):
         cell = cells.resolve(
-            CellParameters(limits="paper", branch=opw.branch_name(branch)), toolpath.frame
+            CellParameters(limits="paper", branch=spherical_wrist.branch_name(branch)),
+            toolpath.frame,
         )
         task = Task(cell, branch, JointParameters(method="constant", rz=rz))
         paths, issues = plan.METHODS["constant"](task, beads, places, lambda *_: None)
@@ -304,7 +305,7 @@ def test_what_is_given_is_judged_like_all_else(dome):
 def test_the_branch_of_a_joint_path_is_its_own(dome):
     _, path = planned(dome, own_branch="front-up-noflip")
     assert path.branch == ("front", "up", "noflip")
-    assert list(BRANCHES) == ["-".join(opw.branch_name(k)) for k in range(8)]
+    assert list(BRANCHES) == ["-".join(spherical_wrist.branch_name(k)) for k in range(8)]
 
 
 def test_given_texts_are_read_back():

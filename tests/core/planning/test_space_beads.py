@@ -8,16 +8,16 @@ import pytest
 from scipy.optimize import minimize
 
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.inverse import opw
+from freecad_am.core.kinematics.inverse import spherical_wrist
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
-from freecad_am.core.planning.rotation import refine, search
+from freecad_am.core.planning.rotation import global_search, local_optimisation
 from freecad_am.core.planning.task import Task
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
-FLIP = opw.branch_index(("front", "up", "flip"))
+FLIP = spherical_wrist.branch_index(("front", "up", "flip"))
 TURN = 2.0 * np.pi
 POINTS = 48
 SEEDS = (1, 2, pytest.param(3, marks=pytest.mark.long))
@@ -137,13 +137,16 @@ def test_a_second_solver_is_not_better_by_more_than_two_percent(cell, optima, se
         )
 
     def objective(free, turns):
-        found = search.judge(task, points, threshold, coefficients(free, turns))
+        found = global_search.judge(task, points, threshold, coefficients(free, turns))
         return float(np.nan_to_num(found.objective[0, 0], posinf=1e3))
 
     def margin(free, turns):
         return float(
             max(
-                search.judge(task, points, threshold, coefficients(free, turns)).margin[0, 0], -10.0
+                global_search.judge(task, points, threshold, coefficients(free, turns)).margin[
+                    0, 0
+                ],
+                -10.0,
             )
         )
 
@@ -178,7 +181,7 @@ def test_beads_of_revolution_need_not_join(cell):
 def test_gradients_along_what_may_change(cell):
     task = Task(cell, FLIP, JointParameters(degree=5), True)
     points = gather([bead_of(1, True), bead_of(2, False)], cell)
-    directions = refine.refine_state.changes(task, points, 5)
+    directions = local_optimisation.refine_state.changes(task, points, 5)
     assert np.abs(directions[0, :, 1]).max() == 0.0 and np.linalg.matrix_rank(directions[1]) == 6
     assert np.linalg.matrix_rank(directions[0]) == 5
     low, high = points.ends

@@ -15,7 +15,7 @@ from freecad_am.core.layers.stacking import prepare_stack
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.process.deposit import infill
+from freecad_am.core.process.deposit import void_and_double
 from freecad_am.core.strategies.solids.plan import plan
 from freecad_am.core.toolpath import Bead, Layer, SpeedLaw, Toolpath
 
@@ -70,7 +70,7 @@ def lines(*heights, **values):
 
 
 def coverage(one, number=0):
-    return infill.measure(one, 1.0).layers[number].coverage
+    return void_and_double.measure(one, 1.0).layers[number].coverage
 
 
 def test_lines_that_touch_leave_nothing_void():
@@ -134,29 +134,29 @@ def test_the_planned_overlap_of_beads_is_neither_void_nor_double():
 
 def test_sparse_layers_have_no_void_and_curved_layers_are_not_measured():
     one = toolpath(layer(*lines(2, 6, 7), is_sparse=True), Layer(tuple(lines(2))))
-    measured = infill.measure(one, 0.0)
+    measured = void_and_double.measure(one, 0.0)
     assert measured.issues == () and measured.layers[1].coverage is None
-    (row,) = infill.as_dict(measured)["layers"]
+    (row,) = void_and_double.as_dict(measured)["layers"]
     assert row["layer"] == 0 and math.isnan(row["void"]) and row["over"] > 0.2
-    assert infill.as_dict(measured)["void"]["worst"] is None
-    assert infill.as_dict(toolpath(Layer(tuple(lines(2))))) is None
+    assert void_and_double.as_dict(measured)["void"]["worst"] is None
+    assert void_and_double.as_dict(toolpath(Layer(tuple(lines(2))))) is None
 
 
 def test_issues_name_layer_place_share_and_remedy():
     one = toolpath(layer(*lines(2, 6, 10)), layer(*lines(2, 10)), layer(), layer(*lines(2, 6, 9.5)))
-    issues = infill.measure(one, 0.03).issues
+    issues = void_and_double.measure(one, 0.03).issues
     assert [(issue.code, issue.level, issue.layer) for issue in issues] == [
         ("VOIDS", "warning", 1),
         ("VOIDS", "warning", 3),
     ]  # a layer without a bead has an issue of its own
     assert "33.4 %" in issues[0].message and "at (7, " in issues[0].message
     assert "strategy.max_void allows 3 %" in issues[0].message
-    assert [issue.layer for issue in infill.measure(one, 0.05).issues] == [1]
+    assert [issue.layer for issue in void_and_double.measure(one, 0.05).issues] == [1]
 
 
 def test_the_report_has_median_and_worst():
     one = toolpath(layer(*lines(2, 6, 10)), layer(*lines(2, 10)), layer(*lines(2, 6, 9)))
-    figures = infill.as_dict(infill.measure(one, 0.03))
+    figures = void_and_double.as_dict(void_and_double.measure(one, 0.03))
     void, over = ([row[name] for row in figures["layers"]] for name in ("void", "over"))
     assert figures["void"]["median"] == sorted(void)[1]
     assert (figures["void"]["worst"], figures["void"]["layer"]) == (void[1], 1)
@@ -257,7 +257,7 @@ def test_planned_layers_against_areas(values):
     shape = solids.tube([(12.0, 0.0), (40.0, 0.0), (33.0, 47.0), (12.0, 47.0)], 60)
     stack = prepare_stack([shape], strategy, "part")
     path = plan(stack, strategy, BuildDirectionParameters(), ProcessParameters(), None)
-    measured = infill.measure(path, 0.03)
+    measured = void_and_double.measure(path, 0.03)
     numbers = [2, len(path.layers) // 2, len(path.layers) - 3]
     for number in numbers:
         one = measured.layers[number].coverage
@@ -269,16 +269,16 @@ def test_planned_layers_against_areas(values):
     )
     place, section = measured.layers[worst].coverage.void_place, path.layers[worst].section
     assert (place - section.frame[:3, 3]) @ section.frame[:3, 2] == pytest.approx(0.0, abs=1e-6)
-    picture = infill.picture(path, worst)
+    picture = void_and_double.picture(path, worst)
     assert picture.inside[picture.void].all()
 
 
 def test_equal_layers_are_measured_once(monkeypatch):
     calls = []
-    draw = infill._picture
-    monkeypatch.setattr(infill, "_picture", lambda *args: calls.append(1) or draw(*args))
+    draw = void_and_double._picture
+    monkeypatch.setattr(void_and_double, "_picture", lambda *args: calls.append(1) or draw(*args))
     one = layer(*lines(2, 6, 9))
     moved = replace(one, section=replace(one.section, frame=FRAME + 0.0))
-    measured = infill.measure(toolpath(*[one] * 5, moved), 1.0)
+    measured = void_and_double.measure(toolpath(*[one] * 5, moved), 1.0)
     assert len(calls) == 2  # once for all, and once for the place of the worst
     assert len({each.coverage.over for each in measured.layers}) == 1

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.parameters.cell import NozzleParameters
-from freecad_am.core.strategies.clearance import tilt_back
-from freecad_am.core.strategies.clearance.tilt_back import keep_clear
+from freecad_am.core.strategies.clearance import clear_by_tilt
+from freecad_am.core.strategies.clearance.clear_by_tilt import keep_clear
 from tests.core.strategies.test_wall_clearance import LOCAL, NOZZLE, bead, box, codes, toolpath
 
 ALONG = np.linspace(-10.0, 10.0, 5)[:, None] * [1.0, 0.0, 0.0]
@@ -77,7 +77,7 @@ def test_what_gives_room_at_the_points_and_not_to_the_bead_is_not_named(monkeypa
         remedy=False,
     )
     lost = made.issues
-    monkeypatch.setattr(tilt_back, "keep_clear", in_vain)
+    monkeypatch.setattr(clear_by_tilt, "keep_clear", in_vain)
     told = message(
         keep_clear(
             toolpath(bead(ALONG)), slot(4.0), NOZZLE, dataclasses.replace(LOCAL, max_tilt=np.pi)

@@ -16,16 +16,16 @@ from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import SurfaceParameters
+from freecad_am.core.strategies.clearance import clear_by_tilt as clearance_knots
 from freecad_am.core.strategies.clearance import (
-    look,
+    clear_by_tilt as wall_clearance,
+)
+from freecad_am.core.strategies.clearance import (
+    nozzle_check,
     tilt_search,
 )
-from freecad_am.core.strategies.clearance import tilt_back as clearance_knots
-from freecad_am.core.strategies.clearance import (
-    tilt_back as wall_clearance,
-)
-from freecad_am.core.strategies.clearance.look import nozzle_issues
-from freecad_am.core.strategies.clearance.tilt_back import keep_clear
+from freecad_am.core.strategies.clearance.clear_by_tilt import keep_clear
+from freecad_am.core.strategies.clearance.nozzle_check import nozzle_issues
 from freecad_am.core.strategies.progress import Watch
 from freecad_am.core.strategies.walls import plan as surface
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
@@ -443,14 +443,14 @@ def test_where_some_points_of_a_bead_have_no_way_the_rest_is_not_searched_for_ev
     )
     roof = [box([-90, -90, 8], [90, 90, 9], "roof"), box([-90, -90, -9], [90, 90, -8], "floor")]
     looks = []
-    scenes = look.Scene.find_touching
+    scenes = nozzle_check.Scene.find_touching
 
     def counted(self, solid, tip, *rest):
         looks.append(len(tip))
         return scenes(self, solid, tip, *rest)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(look.Scene, "find_touching", counted)
+        patch.setattr(nozzle_check.Scene, "find_touching", counted)
         found = keep_clear(path, roof, NOZZLE, LOCAL, remedy=False)
     assert codes(found) == ["CLEARANCE"] and sum(looks) < 110 * count
 

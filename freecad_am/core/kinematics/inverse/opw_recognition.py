@@ -2,7 +2,7 @@
 """The closed form of a chain of joint frames, recognised from its axes, and the chain of a
 closed form.
 
-Conditions of `opw` (Brandstoetter, Angerer, Hofbaur 2014): axis 1 normal to axis 2, axes
+Conditions of `spherical_wrist` (Brandstoetter, Angerer, Hofbaur 2014): axis 1 normal to axis 2, axes
 2 and 3 parallel, axis 4 normal to axis 3, axes 4, 5 and 6 through one point, 5 normal to
 both others. They are checked in this order, and the first that fails is the reason for
 having no closed form.
@@ -19,7 +19,7 @@ from ...geometry.formatting import format_differing
 from ...issues import InputError, Text, Word
 from ...types import Array
 from ..chain import Chain, JointFrames
-from .opw import OpwArm
+from .spherical_wrist import OpwArm
 
 # tolerances of directions (rad) and lines (mm), and maximum error of the closed form: those of machine files
 PARALLEL_TOLERANCE, NEAR_MM = 1e-8, 1e-5

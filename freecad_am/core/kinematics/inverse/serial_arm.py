@@ -12,7 +12,7 @@ class SerialArm(Protocol):
     """The inverse of an arm with six revolute joints. Poses are flange poses in base_link, mm;
     angles serial, rad.
 
-    Configurations follow the words of `opw.branch_name`, the first index of `inverse`; each
+    Configurations follow the words of `spherical_wrist.branch_name`, the first index of `inverse`; each
     kind of arm defines their meaning.
     """
 

@@ -17,8 +17,8 @@ from ...geometry import frames
 from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
-from ..inverse.opw import OpwArm
 from ..inverse.serial_arm import SerialArm
+from ..inverse.spherical_wrist import OpwArm
 from ..links.bodies import BASE, LinkShape, Pieces, Primitive
 from ..urdf import machine as urdf_machine
 from ..urdf.read import Description

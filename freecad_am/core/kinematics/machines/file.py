@@ -21,8 +21,8 @@ from ...types import Array
 from ..chain import Chain
 from ..inverse import recognition
 from ..inverse.five_axis import is_five_axis
-from ..inverse.opw import OpwArm
 from ..inverse.serial_arm import SerialArm
+from ..inverse.spherical_wrist import OpwArm
 from ..limits import Limits, Payload
 
 MAX_FILE_MB = 16  # MB

@@ -24,10 +24,10 @@ from ...types import Array, ArrayLike, Mask
 from ..arrangement import OF_FIVE_AXES, OF_ROBOTS, Arrangement
 from ..chain import Chain
 from ..inverse.five_axis import is_five_axis
-from ..inverse.opw import OpwArm
 from ..inverse.parallel_axes import ParallelAxesArm
 from ..inverse.recognition import CalibratedArm
 from ..inverse.serial_arm import SerialArm
+from ..inverse.spherical_wrist import OpwArm
 from ..limits import Limits, Payload
 from ..links.bodies import LinkShape, Pieces, link_bodies, link_shapes
 from ..urdf import machine as urdf_machine

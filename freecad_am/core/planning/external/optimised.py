@@ -24,9 +24,9 @@ from ...parameters.joints import LEVEL_METHOD, JointParameters
 from ...types import Array
 from ..joint_path import BeadPath
 from ..points import Points, gather, thinned
-from ..rotation import refine, refine_state, search
+from ..rotation import global_search, local_optimisation, refine_state
 from ..rotation.given import GIVEN
-from ..rotation.refine import evaluate_paths
+from ..rotation.local_optimisation import evaluate_paths
 from ..task import Task, condition_margin
 from .freedom import Freedom, largest_margin, least_objective, set_external_values
 from .level import allowed_by_layer, axes_figures
@@ -114,10 +114,10 @@ def _elsewhere(
     external = task.cell.external
     assert external is not None
     beads = [path.bead for path in paths]
-    points = gather(beads, task.cell, search.POINTS_PER_BEAD)
+    points = gather(beads, task.cell, global_search.POINTS_PER_BEAD)
     max_lean = np.array([allowed[path.layer] for path in paths])
     thresholds = np.concatenate(
-        [path.threshold[thinned(path.bead, search.POINTS_PER_BEAD)] for path in paths]
+        [path.threshold[thinned(path.bead, global_search.POINTS_PER_BEAD)] for path in paths]
     )
     best = _evaluate_shifts(
         task, points, thresholds, max_lean, directions, np.zeros((len(paths), external.axes))
@@ -159,7 +159,7 @@ def _evaluate_shifts(
     """
     assert points.external is not None
     values = points.external + shifts[points.bead]
-    candidates = search.everywhere(
+    candidates = global_search.everywhere(
         task, set_external_values(points, task.cell, values), thresholds, best_alone=True
     )
     best, bead_rows = candidates.best(), np.arange(points.beads)
@@ -274,7 +274,7 @@ def _evaluate_path(
         path.bead, external=points.external + shape @ rows[1:].T * freedom.unit
     )
     points = gather([bead], task.cell)
-    why = refine.Refined(coefficients[None], np.zeros(1), (OPTIMISED,), (iterations,))
+    why = local_optimisation.Refined(coefficients[None], np.zeros(1), (OPTIMISED,), (iterations,))
     (result,) = evaluate_paths(
         task,
         [bead],

@@ -17,7 +17,7 @@ from ...types import Array
 from .. import arm_clear, criteria
 from ..joint_path import BeadPath, numbered
 from ..points import Points, gather
-from ..rotation import search
+from ..rotation import global_search
 from ..task import Task, condition_margin
 
 Progress = Callable[[float, str], None]
@@ -57,7 +57,7 @@ def plan(
     threshold = task.thresholds(full)
     issues: list[Issue] = []
     if isinstance(requested, str):
-        coarse = gather(beads, task.cell, search.POINTS_PER_BEAD)
+        coarse = gather(beads, task.cell, global_search.POINTS_PER_BEAD)
         progress(0.1, "searching one RZ for all")
         clear = None if task.kept is None else _keeps_clear(task, beads, bead_ids)
         rz, margin, served = best_rz(task, coarse, task.thresholds(coarse), clear)

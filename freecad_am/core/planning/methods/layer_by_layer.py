@@ -17,8 +17,8 @@ from ...types import Array
 from .. import arm_clear
 from ..joint_path import BeadPath
 from ..points import Points, gather
-from ..rotation import given, refine, search
-from ..rotation.refine import evaluate_paths
+from ..rotation import given, global_search, local_optimisation
+from ..rotation.local_optimisation import evaluate_paths
 from ..task import MIN_MARGIN, Task
 from ..turns import unwrap
 
@@ -80,11 +80,11 @@ def _searched(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], progress: Progress
 ) -> tuple[list[BeadPath], dict[int, list[BeadPath]]]:
     """Return the path of every bead, and the replacements of beads that need another seam or a cut."""
-    coarse, full = gather(beads, task.cell, search.POINTS_PER_BEAD), gather(beads, task.cell)
+    coarse, full = gather(beads, task.cell, global_search.POINTS_PER_BEAD), gather(beads, task.cell)
     coarse_threshold, threshold = task.thresholds(coarse), task.thresholds(full)
     progress(0.1, "searching rotations")
     joined = task.joined & full.closed
-    candidates = search.everywhere(
+    candidates = global_search.everywhere(
         task, coarse, coarse_threshold, best_alone=task.kept is None and not joined.any()
     )
     if task.kept is not None:
@@ -104,7 +104,7 @@ def _searched(
     needs_search |= np.array(
         [len(helped.get(int(k), ())) > 1 and bool(joined[k]) for k in bead_rows]
     )
-    refined = refine.refine(
+    refined = local_optimisation.refine(
         task,
         full,
         threshold,
@@ -114,7 +114,7 @@ def _searched(
     )
     progress(0.7, "settling")
     paths = _resolved(task, beads, bead_ids, (coarse, coarse_threshold), (full, threshold), refined)
-    retried = search.replace_infeasible(
+    retried = global_search.replace_infeasible(
         task,
         beads,
         bead_ids,
@@ -166,15 +166,15 @@ def _resolved(
     bead_ids: Sequence[Place],
     coarse: tuple[Points, Array],
     full: tuple[Points, Array],
-    refined: refine.Refined,
+    refined: local_optimisation.Refined,
 ) -> list[BeadPath]:
     """Return the paths of all beads with ties between optima resolved.
 
     coarse, full: a few and all of their points, each with its smallest allowed conditions.
     """
-    resolved = search.resolve(task, *coarse, refined.coefficients)
+    resolved = global_search.resolve(task, *coarse, refined.coefficients)
     paths = evaluate_paths(task, beads, bead_ids, *full, resolved, refined)
-    equal = search.as_good(task, [path.objective for path in paths], refined.objective)
+    equal = global_search.as_good(task, [path.objective for path in paths], refined.objective)
     if equal.all() and all(path.margin >= MIN_MARGIN for path in paths):
         return paths
     # ties are resolved at a few points of a bead; if all points contradict, the original optimum
@@ -186,7 +186,7 @@ def _resolved(
     ]
 
 
-def _add_other_turns(start: Array, candidates: search.Found) -> Array:
+def _add_other_turns(start: Array, candidates: global_search.Found) -> Array:
     """Return the starts (S, B, degree + 1): the given ones and the best for each other number of
     whole turns.
 

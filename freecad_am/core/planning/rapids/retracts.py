@@ -20,7 +20,7 @@ import numpy as np
 from ...geometry.frames import TURN
 from ...kinematics import jacobian as jac
 from ...kinematics.cell import Cell
-from ...kinematics.inverse import opw
+from ...kinematics.inverse import spherical_wrist
 from ...kinematics.inverse.five_axis import FiveAxis
 from ...kinematics.limits import RESERVE
 from ...parameters.joints import JointParameters
@@ -609,4 +609,4 @@ class Retracts:
 
 def branch_of(words: Sequence[str]) -> int | None:
     """The index of a joint path's branch; None of a machine with five axes."""
-    return opw.branch_index(words) if words else None
+    return spherical_wrist.branch_index(words) if words else None

@@ -13,8 +13,8 @@ from ...toolpath import Bead
 from ..joint_path import BeadPath
 from ..points import gather
 from ..task import Task
-from . import refine
-from .refine import evaluate_paths
+from . import local_optimisation
+from .local_optimisation import evaluate_paths
 
 Place = tuple[int, int]
 
@@ -78,7 +78,7 @@ def paths(
     given_beads = [beads[k] for k in numbers]
     points = gather([beads[k] for k in numbers], task.cell)
     count = len(numbers)
-    none = refine.Refined(rows, np.zeros(count), (GIVEN,) * count, (0,) * count)
+    none = local_optimisation.Refined(rows, np.zeros(count), (GIVEN,) * count, (0,) * count)
     bead_paths = evaluate_paths(
         task,
         given_beads,

@@ -23,8 +23,8 @@ from ...toolpath import Bead
 from ...types import Array
 from ..joint_path import BeadPath, numbered
 from ..points import gather
-from ..rotation import refine, search
-from ..rotation.refine import evaluate_paths
+from ..rotation import global_search, local_optimisation
+from ..rotation.local_optimisation import evaluate_paths
 from ..task import MIN_MARGIN, Task
 
 # an axis that moves this much between two beads is said to turn back, rad
@@ -300,7 +300,7 @@ def for_beads(
         return result
     free = dataclasses.replace(task, cell=_last_continuous(task.cell))
     for most in (
-        search.POINTS_PER_BEAD,
+        global_search.POINTS_PER_BEAD,
         None,
     ):  # what suits few points may not suit those between them
         if not left:
@@ -308,11 +308,11 @@ def for_beads(
         points = gather([beads[k] for k in left], task.cell, most)
         threshold = task.thresholds(points)
         # only with slopes of whole turns can a seam be moved after the planning
-        found = search.everywhere(
-            free, points, threshold, search.CLOSING_SLOPES, OFFSETS, best_alone=True
+        found = global_search.everywhere(
+            free, points, threshold, global_search.CLOSING_SLOPES, OFFSETS, best_alone=True
         )
         best, each = found.best(), np.arange(len(left))
-        resolved = search.resolve(free, points, threshold, found.coefficients[best, each])
+        resolved = global_search.resolve(free, points, threshold, found.coefficients[best, each])
         serving = np.flatnonzero(found.margin[best, each] >= 0.0).tolist()
         for number in serving:
             k = left[number]
@@ -371,10 +371,11 @@ def _would_fit_continuous(task: Task, path: BeadPath) -> bool:
     if turning_axis(task, path.joints) is not None:
         return True
     free = dataclasses.replace(task, cell=_last_continuous(task.cell))
-    coarse = gather([path.bead], task.cell, search.POINTS_PER_BEAD)
+    coarse = gather([path.bead], task.cell, global_search.POINTS_PER_BEAD)
     return bool(
         (
-            search.everywhere(free, coarse, task.thresholds(coarse), best_alone=True).margin >= 0.0
+            global_search.everywhere(free, coarse, task.thresholds(coarse), best_alone=True).margin
+            >= 0.0
         ).any()
     )
 
@@ -403,16 +404,21 @@ def _piece(task: Task, bead: Bead, place: Place, coefficients: Array) -> BeadPat
     path = _one(task, bead, place, coefficients, SPLIT)
     if path.margin >= MIN_MARGIN:
         return path
-    coarse, full = gather([bead], task.cell, search.POINTS_PER_BEAD), gather([bead], task.cell)
-    found = search.everywhere(task, coarse, task.thresholds(coarse), best_alone=True)
+    coarse, full = (
+        gather([bead], task.cell, global_search.POINTS_PER_BEAD),
+        gather([bead], task.cell),
+    )
+    found = global_search.everywhere(task, coarse, task.thresholds(coarse), best_alone=True)
     threshold = task.thresholds(full)
-    refined = refine.refine(task, full, threshold, found.coefficients[None, found.best()[0]])
+    refined = local_optimisation.refine(
+        task, full, threshold, found.coefficients[None, found.best()[0]]
+    )
     return evaluate_paths(task, [bead], [place], full, threshold, refined.coefficients, refined)[0]
 
 
 def _one(task: Task, bead: Bead, place: Place, coefficients: Array, reason: str) -> BeadPath:
     points = gather([bead], task.cell)
-    given = refine.Refined(coefficients, np.zeros(1), (reason,), (0,))
+    given = local_optimisation.Refined(coefficients, np.zeros(1), (reason,), (0,))
     return evaluate_paths(
         task, [bead], [place], points, task.thresholds(points), coefficients, given
     )[0]

@@ -23,7 +23,7 @@ from ...parameters.cell import NozzleParameters
 from ...toolpath import Toolpath
 from ...types import Array, Index, Mask
 from ..progress import Watch
-from .look import CAP, Space, space_of
+from .nozzle_check import CAP, Space, space_of
 
 BARRED = 1e9  # cost of a state that is not allowed; finite, so that a chain without a way through has a least bad one
 AT_ONCE = 1_000_000  # pairs of states worked on at once
@@ -445,7 +445,7 @@ class Change(NamedTuple):
 
 class Touching(NamedTuple):
     """A toolpath with the axes asked for, and the points (k,) that no tilt clears. plane, feature: as of
-    `tilt_back.keep_clear`."""
+    `clear_by_tilt.keep_clear`."""
 
     toolpath: Toolpath
     rows: Index

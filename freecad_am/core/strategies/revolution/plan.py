@@ -23,7 +23,7 @@ from ...slicing import revolution
 from ...toolpath import Bead, BeadRole, Layer, MotionRules, Toolpath
 from ...types import Array, Index
 from .. import size
-from ..clearance.look import SEAM
+from ..clearance.nozzle_check import SEAM
 from ..progress import Progress, silent
 from . import clearance
 from .clearance import Deposit, Tips

@@ -34,7 +34,8 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.bead_model import BeadModel
-from ...process.order import Course, IslandOrder, RankedBead, add_waits, order_beads
+from ...process.cooling_waits import add_waits
+from ...process.order import Course, IslandOrder, RankedBead, order_beads
 from ...toolpath import Bead, Checks, Layer, MotionRules, Toolpath
 from ...types import Array, Mask
 from .. import size

@@ -24,8 +24,8 @@ from .. import criteria
 from ..joint_path import BeadPath
 from ..points import Points, gather, in_pieces, steps
 from ..task import MIN_MARGIN, UNREACHABLE, Task, condition_margin
-from . import refine
-from .refine import evaluate_paths
+from . import local_optimisation
+from .local_optimisation import evaluate_paths
 
 POINTS_PER_BEAD = 10
 OFFSETS = 24
@@ -583,7 +583,7 @@ def find_rotations(
     best, bead_rows = judged_candidates.best(), np.arange(len(beads))
     start = judged_candidates.coefficients[best, bead_rows]
     serves = judged_candidates.margin[best, bead_rows] >= 0.0
-    refined = refine.refine(task, points, thresholds, start[None], serves)
+    refined = local_optimisation.refine(task, points, thresholds, start[None], serves)
     as_found = dataclasses.replace(refined, coefficients=start)
     paths: list[BeadPath | None] = [None] * len(beads)
     for solution in (refined, as_found):

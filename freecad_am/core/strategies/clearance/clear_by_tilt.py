@@ -26,7 +26,7 @@ from ...slicing.wall_directions import limit_turns, turn_rates
 from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 from ..progress import Watch
-from .look import (
+from .nozzle_check import (
     CLEARANCE,
     Space,
     beads_of,
