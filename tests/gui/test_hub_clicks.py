@@ -199,7 +199,10 @@ def test_blades_by_the_mouse_from_the_hub_to_the_program(person, hand, blades, t
         "up to date"
     }
     assert opened.Toolpath.ViewObject.Colouring == "width"
-    assert [scale.title for scale in legend.visible_scales(opened)] == ["joint margin"]
+    person.until(
+        lambda: [scale.title for scale in legend.visible_scales(opened)] == ["joint margin"],
+        "the legend of the joint path",
+    )
 
 
 def test_without_a_selection_solids_and_hub_are_waited_for(person, hand, blades):
