@@ -101,7 +101,7 @@ def _format(value: Any, kind: str) -> str:
 
 
 def _machine(name: str, folder: str) -> str:
-    """What names a machine, as a job file says it."""
+    """Return the name of a machine as a job file gives it."""
     measured = calibration.named(name)
     if measured is not None:
         return f"{{name: {_machine(measured.machine, folder)}, calibration: {_file(measured.file, folder)}}}"
@@ -432,11 +432,11 @@ class Line:
 
     @property
     def name(self) -> str:
-        """Such as L003 B01 or L003 rapid, from 0 as everywhere."""
+        """Return a name such as L003 B01 or L003 rapid; numbers start at 0."""
         return f"L{self.layer:03d} B{self.bead:02d}" if self.deposit else f"L{self.layer:03d} rapid"
 
     def chosen(self, rows: Index) -> Line:
-        """The line through some of its points, the speed towards each kept."""
+        """Return the line through some of its points, with the speed towards each."""
         return Line(
             self.layer,
             self.bead,
@@ -543,7 +543,7 @@ def _angle(directions: Array, reference: Array) -> Array:
 
 DECIMALS = 6
 RAPID = "RAPID"
-_RED, _COLOURS = 1, (3, 4, 5, 6, 30, 140)  # AutoCAD's numbers of colours; layers take turns
+_RED, _COLOURS = 1, (3, 4, 5, 6, 30, 140)  # AutoCAD colour numbers, assigned to layers in turn
 _POLYLINE_3D, _VERTEX_3D = 8, 32
 
 
@@ -571,7 +571,8 @@ def dxf_text(lines: Sequence[Line]) -> Iterator[str]:
 
 
 def _polyline(line: Line) -> str:
-    # closed beads end where they begin: FreeCAD 1.0 leaves out the last side of a polyline that says it is closed
+    # closed beads end where they begin: FreeCAD 1.0 drops the last side of a polyline marked as
+    # closed
     layer = _layer(line)
     head = _pairs(
         [

@@ -392,7 +392,7 @@ def test_parts_of_revolution_wait_for_no_splines_and_no_optimiser():
         "strategies.size",
         "strategies.revolution.plan",
         "strategies.sequence",
-        "strategies.clearance.look",
+        "strategies.clearance.nozzle_check",
         "planning.plan",
         "planning.motion",
         "planning.program",

@@ -46,7 +46,7 @@ def _main(argv: list[str]) -> int:
         except KeyboardInterrupt:
             return _interrupted(session)
         except BrokenPipeError:
-            return SUCCESS  # the reader has closed the pipe, which is its decision
+            return SUCCESS  # the reader has closed the pipe, which is no error
         except Exception as error:
             # modules of FreeCAD 1.0 that are interrupted while they are imported raise something else, or end up empty
             return _interrupted(session) if session.interrupted else _failed(error, session)

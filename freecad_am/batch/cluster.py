@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Rows of a batch planned by the workers of a Dask cluster, a third-party engine (decision 0018).
 
-Code and files go with the rows, and outputs come back with the results, so that workers need no folder of ours. Rows whose
-worker is lost are done again by Dask.
+Code and files are sent with the rows, and outputs come back with the results, so workers need no
+access to our folders. Dask repeats the rows of a lost worker.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ MAX_FILE_BYTES = 1 << 30  # bytes of a file that goes along
 
 
 class Cluster:
-    """The workers of a scheduler, ready for the rows of one batch. Use as a context."""
+    """The workers of a scheduler, ready for the rows of one batch; a context manager."""
 
     def __init__(self, address: str, session: Session) -> None:
         """Raises InputError NO_DASK, or SCHEDULER if it does not answer, if it or a worker has
@@ -180,7 +180,7 @@ class Cluster:
     def _result(
         self, future: Any, row: Row, folder: str, dry: bool, journal: Journal
     ) -> dict[str, Any]:
-        """What a row has come to, its outputs in place and written down, Ctrl-C or not."""
+        """Return the result of a row; its outputs are moved and recorded even on Ctrl-C."""
         if future.status != "finished":
             if future.status == "error" and type(future.exception()).__name__ == "KilledWorker":
                 message = (

@@ -108,7 +108,7 @@ class Session:
             self._progress = text
 
     def check(self) -> None:
-        """Raise KeyboardInterrupt where Ctrl-C was pressed while FreeCAD was working, which swallows it."""
+        """Raise KeyboardInterrupt if FreeCAD has swallowed a Ctrl-C while it was working."""
         if self.interrupted:
             raise KeyboardInterrupt
 

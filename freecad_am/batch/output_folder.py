@@ -30,9 +30,9 @@ LARGEST_REPORT = 1 << 28  # bytes of a report that is looked into for what an ea
 class Outputs:
     """Collects the files of a run in a hidden folder of the target and moves them into place at the end.
 
-    Use as a context: leaving it without `publish` removes everything that was collected, and the
-    target folder is as it was. Raises InputError UNWRITABLE at once where the target cannot be
-    written, or a link leads outside. `session` receives messages about other runs in the same
+    Use it as a context manager: leaving it without `publish` removes everything that was collected
+    and leaves the target folder unchanged. Raises InputError UNWRITABLE at once if the target is
+    not writable or a link leads outside. `session` receives messages about other runs in the same
     folder, and about the files.
     """
 
@@ -130,7 +130,7 @@ class Outputs:
 
 
 def earlier_programs(folder: str) -> set[str]:
-    """Names of the programs and applications of ours in program/ with their parts."""
+    """Return the names of our programs and applications in program/ with their parts."""
     if os.path.islink(os.path.join(folder, PROGRAMS)):
         return set()
     programs_by_post = earlier_posts.programs(os.path.join(folder, PROGRAMS)).values()
@@ -138,8 +138,8 @@ def earlier_programs(folder: str) -> set[str]:
 
 
 def earlier_outputs(folder: str) -> set[str]:
-    """Names of the outputs of an earlier run: the files listed in its report, and programs of ours
-    in program/.
+    """Return the names of the outputs of an earlier run: the files listed in its report, and our
+    programs in program/.
     """
     names = earlier_programs(folder)
     report = _earlier_report(folder)

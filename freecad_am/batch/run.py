@@ -120,7 +120,7 @@ def _check_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None
 
 @dataclass(frozen=True)
 class Result:
-    """What a run wrote (absolute paths) and how it ended: exit status 0 or 3."""
+    """The files of a run (absolute paths) and its exit status, 0 or 3."""
 
     paths: list[str]
     report: dict[str, Any]
@@ -159,7 +159,7 @@ class Stages:
 
 
 def default_folder(job: Job) -> str:
-    """Where the outputs go when nothing else is asked for."""
+    """Return the default output folder of a job."""
     return os.path.join(job.folder, "out", job.name)
 
 

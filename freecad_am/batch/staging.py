@@ -31,7 +31,7 @@ HELD_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 
 
 class Linked(OSError):
-    """A link in place of a folder of ours."""
+    """A link in place of one of our folders."""
 
 
 class Staging:

@@ -22,7 +22,7 @@ from .walls.patch_wall import sampled
 from .walls.wall import faces_by_name
 
 MIN_EDGE_MM = 1e-4  # mm; shorter edges are none
-ON_FACE = 0.01  # mm that a curve may be off its faces
+ON_FACE = 0.01  # mm; maximum distance of a curve from its faces
 STEP = 2.0  # mm from point to point at most where normals are taken
 
 

@@ -69,8 +69,8 @@ SHARE = 0.4  # of the chord error, between solids and their triangles
 CROSSED = (
     5.0  # chord errors; triangles of a sound solid may cut one another by some where it is thin
 )
-TOLERANCE = 1e-6  # relative; surfaces of faces that differ less are one
-FITTED = 1e-3  # mm that a spline may be off the cylinder or cone it is taken for
+TOLERANCE = 1e-6  # relative; surfaces that differ less count as one
+FITTED = 1e-3  # mm; maximum deviation of a spline from its cylinder or cone
 EDGE_SAMPLES = 361  # points of an edge, that may go round
 MIN_GAP_RAD = math.radians(
     3.0

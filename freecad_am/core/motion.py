@@ -18,10 +18,11 @@ import numpy as np
 
 from .types import Array, Integers, Mask
 
-# what the move that ends at a row is for: with deposit; away from the bead before; over to the next; onto its start
+# purpose of the move that ends at a row: deposit; away from the previous bead; over to the next
+# bead; onto its start
 DEPOSIT, RETRACT, TRAVEL, APPROACH = range(4)
-UNKNOWN = -1  # class of a bead
-MIDDLE, AT_START, AT_END = PHASES = range(3)  # of the segment of a bead that ends at a row
+UNKNOWN = -1  # unknown class of a bead
+MIDDLE, AT_START, AT_END = PHASES = range(3)  # phase of the bead segment that ends at a row
 
 
 @dataclass(frozen=True, eq=False)

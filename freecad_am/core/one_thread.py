@@ -32,8 +32,8 @@ ENVIRONMENT = dict.fromkeys(
     ),
     "1",
 )
-# functions that get and set the number in OpenBLAS (wheels of numpy and scipy rename them), MKL
-# and OpenMP, where the number is one of the calling thread
+# functions that get and set the number of threads in OpenBLAS (renamed in the wheels of numpy and
+# scipy), MKL and OpenMP, where each calling thread has its own number
 _FUNCTIONS = (
     *(
         (f"{before}openblas_get_num_threads{after}", f"{before}openblas_set_num_threads{after}")

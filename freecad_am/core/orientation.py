@@ -68,7 +68,7 @@ def about_fixed(rotation: Array, still: str) -> Array:
     (n, 3) array
         Angles about X, Y and Z, rad.
     """
-    # entry by entry in memory: numpy's arc tangent of strided ones is not the same bits everywhere
+    # contiguous entries: numpy's arctan2 of strided arrays is not bit-identical on all machines
     entry = np.array(rotation.transpose(1, 2, 0), order="C")
     across = np.hypot(entry[0, 0], entry[1, 0])
     upright = across > 1e-9

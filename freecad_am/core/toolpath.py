@@ -174,7 +174,9 @@ class Bead:
         )
 
     def started_at(self, index: int) -> Bead:
-        """The closed bead started at another of its points; the parameter goes on across the old seam."""
+        """Return the closed bead started at another point; the parameter continues across the old
+        seam.
+        """
         if not self.closed:
             raise ValueError("only a closed bead can be started elsewhere")
         n = len(self) - 1
@@ -197,7 +199,9 @@ class Bead:
         )
 
     def _external_from(self, index: int) -> Array | None:
-        """Values of external axes of the closed bead started at another point; they go on across the old seam."""
+        """Return the external axis values of the closed bead started at another point; they
+        continue across the old seam.
+        """
         if self.external is None:
             return None
         moved = self.external[-1] - self.external[0]
@@ -246,7 +250,7 @@ class Bead:
         )
 
     def run_on(self, overlap: float) -> Bead:
-        """A closed bead with its beginning repeated over `overlap` mm, at most once round; then it is open."""
+        """Return a closed bead as an open one that repeats up to `overlap` mm of its start."""
         if overlap <= 0.0 or not self.closed:
             return self
         along = np.r_[0.0, np.cumsum(lengths(np.diff(self.points, axis=0)))]

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The names of array types that all of the package uses. numpy.typing is for those who check types: to load it takes a
-process as long as thirty modules of ours."""
+"""Array types used throughout the package.
+
+numpy.typing is imported only for type checking: it takes as long to import as thirty of our
+modules.
+"""
 
 from typing import TYPE_CHECKING, Any
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Long work while the window stays alive: how far it is, and a button that cancels it.
+"""Runs long work while the window stays responsive, with its progress and a cancel button.
 
-The work is in another thread; this one goes on handling events, so that the window is drawn and FreeCAD's timers run. What
-the user does meanwhile is not lost: it waits for a moment, and when the work takes longer a dialog has it.
+The work runs in another thread, and this one keeps handling events, so that the window is redrawn
+and FreeCAD's timers run. User input in the meantime is queued for a moment; if the work takes
+longer, a modal dialog receives it.
 """
 
 from __future__ import annotations
@@ -22,10 +23,10 @@ from .signals import connect
 from .worker import Worker
 
 NAME = "RoboticAM_Progress"
-AT_ONCE = 0.04  # s that are waited for without handling events
+AT_ONCE = 0.04  # s; wait this long without handling events
 SHOWN_AFTER = 0.5  # s
 LOOK_EVERY = 40  # ms
-GRACE = 0.15  # s that work is waited for once it is cancelled
+GRACE = 0.15  # s; wait this long for cancelled work
 STEPS = 1000
 _WIDTH = 420  # px
 
@@ -119,11 +120,11 @@ class _Dialog:
 
     @property
     def visible(self) -> bool:
-        """Whether it is to be seen."""
+        """Whether the progress dialog is visible."""
         return self.box is not None
 
     def show(self, title: str, doing: str) -> None:
-        """Show it, unless it is there already."""
+        """Show the progress dialog unless it is already visible."""
         if self.box is not None:
             return
         self.box = QtGui.QProgressDialog(Gui.getMainWindow())

@@ -112,7 +112,7 @@ _SIDE_AREAS = (QtCore.Qt.LeftDockWidgetArea, QtCore.Qt.RightDockWidgetArea)
 
 @dataclass
 class _Part:
-    """A dock of ours, and the pixels it asks for: at least these, or just these where the user has given them by hand."""
+    """One of our docks, and its size in pixels: a minimum, unless the user has set it by hand."""
 
     dock: Any
     extent: int
@@ -339,7 +339,7 @@ class Dock(QtGui.QDockWidget):
             content.deleteLater()
 
     def closeEvent(self, event: Any) -> None:
-        """It is closed: the room it took is given back."""
+        """Return the space of the dock to its neighbours when it is closed."""
         for area in _areas:
             area.leave(self)
         super().closeEvent(event)

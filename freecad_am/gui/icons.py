@@ -39,12 +39,12 @@ _made: dict[tuple[str, str], str] = {}
 
 
 def path(name: str) -> str:
-    """The path of an icon of ours."""
+    """Return the path of one of our icons."""
     return os.path.join(FOLDER, f"{name}.svg")
 
 
 def player_icon(name: str, colour: Any) -> Any:
-    """The icon of a button of a player, such as "play", in a colour."""
+    """Return the icon of a player button, such as "play", in a colour."""
     icon = QtGui.QIcon()
     for size in _SIZES:
         pixmap = QtGui.QPixmap(size, size)

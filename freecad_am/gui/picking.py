@@ -64,7 +64,7 @@ def _single_member(obj: Any) -> Any:
 
 
 def usable(obj: Any) -> bool:
-    """Whether an object has a shape or a mesh, and is not a stage of ours."""
+    """Whether an object has a shape or a mesh and is not one of our stages."""
     if obj is None or stage_of(obj) is not None:
         return False
     shape = getattr(obj, "Shape", None)

@@ -300,7 +300,7 @@ def show(obj: Any) -> None:
 
 
 def renew(obj: Any) -> None:
-    """The program has changed: show it in its window, if that is open."""
+    """Show the changed program in its window, if the window is open."""
     program = _of(obj)
     if program is not None:
         program.load()

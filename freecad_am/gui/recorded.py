@@ -21,18 +21,26 @@ IMPORT = "import freecad_am.api as am"
 
 
 def make(document: Any, function: str, arguments: dict[str, str]) -> None:
-    """Call a function that creates an object in a document. Raises its errors, ReferenceError if the document is
-    closed."""
+    """Call a function that creates an object in a document.
+
+    Raises the errors of the function, and ReferenceError if the document is closed.
+    """
     _run(document, function, _document(document), arguments)
 
 
 def change(obj: Any, arguments: dict[str, str]) -> None:
-    """Change parameters and inputs of a stage. Raises what `api.change` raises, ReferenceError when it is gone."""
+    """Change parameters and inputs of a stage.
+
+    Raises the errors of `api.change`, and ReferenceError if the stage is deleted.
+    """
     act(obj, "change", arguments)
 
 
 def act(obj: Any, function: str, arguments: dict[str, str]) -> None:
-    """Call a function on a stage. Raises its errors, ReferenceError if the stage is deleted."""
+    """Call a function on a stage.
+
+    Raises the errors of the function, and ReferenceError if the stage is deleted.
+    """
     target = reference(obj)
     _run(obj.Document, function, target, arguments)
 

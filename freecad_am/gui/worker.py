@@ -63,8 +63,11 @@ class Worker:
         return self._value
 
     def cancel(self) -> None:
-        """End it, as soon as it can be; its result is of no use any more. Compiled code may swallow the order to end: it is
-        given again until it is followed."""
+        """Cancel the work as soon as possible and discard its result.
+
+        Compiled code may swallow the exception that cancels it, so it is raised until it takes
+        effect.
+        """
         self._cancelled = True
         self._stop()
 
@@ -216,7 +219,7 @@ class Background:
             self.timer.stop()
 
     def at_once(self) -> None:
-        """Show ended work now, without waiting for the next check."""
+        """Show the result of finished work now instead of at the next check."""
         self._look()
 
     def _look(self) -> None:
@@ -254,17 +257,17 @@ class Work:
 
     @property
     def runs(self) -> bool:
-        """Whether it goes on."""
+        """Whether the work is running."""
         return self.background.worker is not None
 
     def start(self, work: Callable[[], Any]) -> None:
-        """Begin it."""
+        """Start the work."""
         self.background.start(work, self._show)
         self.timer.start()
         self._show_progress()
 
     def cancel(self) -> None:
-        """End it, if it goes on."""
+        """Cancel the work if it is running."""
         self.timer.stop()
         self.background.cancel()
 

@@ -389,7 +389,7 @@ def checked_stage(obj: Any) -> stages.Stage:
 
 
 def in_order(objects: Sequence[Any]) -> list[Any]:
-    """The stages among objects, inputs first."""
+    """Return the stages among the objects, inputs first."""
     return sorted(
         (obj for obj in objects if stages.stage_of(obj)), key=lambda obj: len(obj.OutListRecursive)
     )

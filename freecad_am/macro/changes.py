@@ -87,7 +87,7 @@ def change(obj: Any, **values: Any) -> Any:
 
 @contextlib.contextmanager
 def _unmarked_where_refused(obj: Any) -> Iterator[None]:
-    """FreeCAD marks what a step was taken back of as to be recomputed, though it is as it was before."""
+    """Clear the recompute mark that FreeCAD sets when a step is undone, as nothing has changed."""
     marked = "Touched" in obj.State
     try:
         yield

@@ -342,7 +342,7 @@ def _heights_as_run(
 def _sums(
     motion: Motion, process: ProcessParameters, toolpath: Toolpath
 ) -> tuple[tuple[str, float], ...]:
-    """What the job takes and deposits, by property name."""
+    """Return the duration and deposit of the job, by property name."""
     times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
     sums = totals(motion, times, process, toolpath)
     return (

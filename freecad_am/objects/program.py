@@ -44,7 +44,7 @@ class Written:
 
 @dataclass(frozen=True)
 class Job:
-    """What a program is written of, away from the document. planned, toolpath: read them."""
+    """The inputs of a program without the document. planned, toolpath: functions that read them."""
 
     planned: Callable[[], Planned]
     toolpath: Callable[[], Toolpath]
@@ -121,7 +121,7 @@ class Program(Stage):
     def refuse_early(
         self, obj: Any, cell: cells.Cell, process: ProcessParameters, toolpath: Any
     ) -> None:
-        """Say at once, before joints are planned, what makes the program impossible in the cell, or of a toolpath."""
+        """Report before joints are planned why the cell or the toolpath allows no program."""
         try:
             parameters = self.parameters(obj, ProgramParameters)
             refuse(cell, process, parameters)

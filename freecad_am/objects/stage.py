@@ -358,7 +358,7 @@ def _lost_link(obj: Any, label: str, link: str) -> Text:
 
 
 def stage_of(obj: Any) -> Stage | None:
-    """The proxy of an object of ours, None for any other object."""
+    """Return the proxy of one of our objects, None for any other object."""
     proxy = getattr(obj, "Proxy", None)
     return proxy if isinstance(proxy, Stage) else None
 

@@ -33,10 +33,10 @@ class Points:
     text: str
 
     def read(self, label: str, chord_error: float, roles: str, rotary: str) -> ReadCurves:
-        """Its beads, arcs within the chord error (mm), and the content that is not read.
+        """Return the beads, with arcs within the chord error (mm), and the ignored content.
 
-        roles, rotary: for G-code, as in `gcode.read`. Raises InputError BAD_TABLE, BAD_GCODE, BAD_ADA3DP;
-        BAD_VALUE for missing roles; NOT_USED for roles and rotary words with other files.
+        roles, rotary: as in `gcode.read`. Raises InputError BAD_TABLE, BAD_GCODE or BAD_ADA3DP;
+        BAD_VALUE for missing roles; NOT_USED if roles or rotary are set for other files.
         """
         if self.form == GCODE:
             return gcode.read(self.text, label, chord_error, roles, rotary)
@@ -68,7 +68,7 @@ def open_points(document: Any, path: str) -> Any:
 
 
 def refuse_gcode_keys(label: str, roles: str, rotary: str) -> None:
-    """InputError NOT_USED where keys that are for G-code are given for something else."""
+    """Raise InputError NOT_USED if keys for G-code are given for another kind of file."""
     defaults = {
         "strategy.roles": (roles, (gcode_roles.PART, gcode_roles.ALL)),
         "strategy.rotary": (rotary, (gcode.NO_ROTARY, gcode.ANY_ROTARY)),

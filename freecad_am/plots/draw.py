@@ -68,13 +68,13 @@ def named(axes: Any, chart: Chart, colour: str, size: float) -> None:
 DPI = 100.0
 # margins of a frame, px: at its sides, above for its title, below for its scale
 LEFT_MARGIN, RIGHT_MARGIN, TOP_MARGIN, BOTTOM_MARGIN, BARE_MARGIN = 66.0, 14.0, 24.0, 37.0, 6.0
-NUMBERS = 12.0  # above a frame that has the numbers of layers
-KEYS = 12.0  # px of a row of curve names that do not fit next to the title
-TEXT, TITLE, SMALL_TEXT = 7.6, 8.6, 6.4  # points
-CHARACTER = 6.0  # pixels, about, of a text
-TITLE_SCALE = 1.2  # of a title, which is larger
+NUMBERS = 12.0  # px above a frame for the layer numbers
+KEYS = 12.0  # px; height of a row of curve names that do not fit next to the title
+TEXT, TITLE, SMALL_TEXT = 7.6, 8.6, 6.4  # font sizes, points
+CHARACTER = 6.0  # px; approximate width of a character
+TITLE_SCALE = 1.2  # size of a title relative to the other texts
 MOST_BORDERS, FEW_WRONG = 80, 40
-MIN_LABEL_GAP = 26.0  # pixels between the numbers of layers, at least
+MIN_LABEL_GAP = 26.0  # px; minimum distance between layer numbers
 BORDER, FRAME, FORBIDDEN, WANTED, BEAD = 0.35, 0.5, 0.13, 0.14, 0.35  # opacities
 Range = tuple[float, float]
 
@@ -297,7 +297,7 @@ class _Frame:
         )
 
     def _grounds(self, axes: Any) -> None:
-        """What limits forbid, and the band that is wanted."""
+        """Draw the ranges that limits forbid, and the target band."""
         (low, high), (lower, upper) = self.panel.up, self.chart.limits
         for start, end in ((low, min(lower, high)), (max(upper, low), high)):
             if np.isfinite(end - start) and end > start:

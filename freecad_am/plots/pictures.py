@@ -27,9 +27,12 @@ LENGTHS: tuple[tuple[float, str], ...] = ((1000.0, "m"), (1.0, "mm"))
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """k places along a job. index: (k,) the row of the motion each is about. x: (k,), never falling, in the unit of
-    `quantity`. standing: (k,) bool, where the machine has stood at its row since the place before. borders: x of the
-    beginnings of layers, and layers, their numbers."""
+    """k places along a job.
+
+    index: (k,) row of the motion at each place. x: (k,) in the unit of `quantity`, never
+    decreasing. standing: (k,) bool, where the machine has waited at its row since the previous
+    place. borders: x at which layers begin. layers: the numbers of these layers.
+    """
 
     index: Index
     x: Array
@@ -40,13 +43,15 @@ class Rows:
     layers: Integers
 
     def select(self, values: Array) -> Array:
-        """(k, ...) values (n, ...) of rows, such as where the axes are."""
+        """Return values (n, ...) of rows, such as axis positions, at the places (k, ...)."""
         selected: Array = values[self.index]
         return selected
 
     def select_rates(self, values: Array) -> Array:
-        """(k, ...) values (n, ...) of the segments that end at the rows, such as speeds; 0 during
-        waits."""
+        """Return values (n, ...) of segments, such as speeds, at the places (k, ...).
+
+        A row has the value of the segment that ends there, and 0 during waits.
+        """
         selected = values[self.index]
         selected[self.standing] = 0.0
         return selected
@@ -279,7 +284,7 @@ BINS = 48
 # g/s in kg/h, and mm^3 in cm^3
 KG_PER_HOUR, MM3_PER_CM3 = 3.6, 1000.0
 VOID_COLOUR, DOUBLE_COLOUR = "#d42020", "#2050d0"
-LEAST_PART = 1e-3  # of the largest layer; a share of less means nothing
+LEAST_PART = 1e-3  # of the largest layer; a smaller share is noise
 
 
 def travel(source: Source, rows: Rows) -> tuple[Chart, ...]:
@@ -397,13 +402,15 @@ def distributions(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
 
 
 def heights(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """Predicted heights against the layer height, layer by layer, and how far the layers are off by them; none without a
-    bead model."""
+    """Chart predicted and nominal height per layer, and the resulting offset of the layers.
+
+    Empty without a bead model.
+    """
     return height_charts(model_notes.beads(source.toolpath), layers)
 
 
 def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """Chart the figures that `predicted.beads` finds."""
+    """Chart the figures of `predicted.beads`."""
     rows = (
         []
         if figures is None

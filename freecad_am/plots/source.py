@@ -50,7 +50,7 @@ class Source:
 
     @cached_property
     def slabs(self) -> Slabs | None:
-        """What part and deposit have in each plane layer."""
+        """Return the sections of part and deposit in each planar layer."""
         if self.group is None:
             return None
         return slabs(self.group, self.toolpath.layer_height, self.motion.position, self.volumes)
@@ -72,7 +72,7 @@ class Source:
 
     @cached_property
     def feed(self) -> AchievableFeed | None:
-        """What the machine keeps of the speeds; None without one."""
+        """Return the feed that the machine achieves; None without a machine."""
         if self.cell is None:
             return None
         return achievable_feed(

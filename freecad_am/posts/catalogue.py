@@ -150,8 +150,7 @@ NAMES = (
     "abb",
     "kuka",
 )
-_MOTIONS = ("joint", "cartesian")  # the usual one first
-# of the modules next to this one
+_MOTIONS = ("joint", "cartesian")  # the default first
 
 # the parameters below `program.nc` that each post reads; other posts read none
 NC_PARAMETERS: Mapping[str, tuple[str, ...]] = {
@@ -357,8 +356,8 @@ class Lines:
 
 
 def lines_of(post: str, files: dict[str, bytes]) -> Lines:
-    """The lines of the moves of a program of ours. Parts of a program are run in the order of their
-    numbers.
+    """Return the lines of the moves of one of our programs. The parts of a program run in the order
+    of their numbers.
     """
     pattern = load(post).MOVE_LINE
     names = tuple(

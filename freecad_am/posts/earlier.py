@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Programs of ours in a folder, recognised by their content: no other files are taken for ours.
+"""Finds our own programs in a folder by their content, so no other file is mistaken for one.
 
 A main program begins with remarks common to our programs, has the name of its file, and names its
 parts. Links are not followed.

@@ -136,17 +136,18 @@ def refuse_setup(post: str, motion: str, setup: str) -> None:
 
 
 def dwell(address: str, seconds: float) -> list[str]:
-    """Standing still for a time, to 0.001 s; nothing for no time."""
+    """Return the dwell command for a time, rounded to 0.001 s; empty for 0 s."""
     return [f"G4 {address}{max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
 
 
-# of mm and deg; Siemens' manual on 5-axis machining asks for 5 of positions and 6 of direction vectors
+# of mm and deg; Siemens' manual on 5-axis machining requires 5 decimals for positions and 6 for
+# direction vectors
 DECIMALS, VECTOR_DECIMALS = 5, 6
 # significant digits of a feed, within the range of every controller; digits of the wire speed
 # output
 FEED_DIGITS, WIRE_DIGITS = 7, 5
 SLOWEST, FASTEST = 0.001, 999_999.0
-# mm: where the linear axes go less than this, their speed is no measure of the time of a move
+# mm; if the linear axes move less, their speed does not determine the duration of a move
 SHORTEST_WAY = 0.01
 # feed as one over the time of the move, and as a speed
 TIME, PATH = "G93", "G94"
@@ -259,7 +260,7 @@ def insert_wire_statements(
 
 
 class Feeds:
-    """Feed words of the moves of a program, asked for run by run in the order of motion.
+    """Feed words of the moves of a program, built run by run in the order of motion.
 
     Moves of axes last as long as planned: F is one over that time in minutes (G93). With
     `program.nc.path_feed` it is the speed of the linear axes in mm/min (G94) wherever these move.

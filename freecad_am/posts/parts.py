@@ -54,8 +54,7 @@ def grouped(
     program : Program
         The program.
     words : callable
-        Returns the words of the moves of a block, which are asked for in the order of
-        motion.
+        Returns the words of the moves of a block; called in the order of motion.
     instructions : callable
         Returns the lines of every other block.
 

@@ -204,7 +204,7 @@ def schedule_refused(by: str, why: str) -> InputError:
 
 
 def trigger_refused(why: str) -> InputError:
-    """The error for a controller, or a program, in which the deposit cannot be switched ahead of a place."""
+    """Return the error if a controller or program cannot switch the deposit ahead of a point."""
     return InputError(
         "TRIGGER", "program.trigger.lead", "{}; remove it, or use another controller", why
     )

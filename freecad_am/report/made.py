@@ -128,7 +128,7 @@ def compared_walls(job: Job, toolpath: Toolpath, distances: Sequence[Array]) -> 
 def add_motion(
     job: Job, wall: OfFeature, results: Results, cell: Cell | None, tell: Tell
 ) -> list[dict[str, Any]]:
-    """The rows about the wall of a single feature, with how the robot moves where that was asked for."""
+    """Return the rows about the wall of a single feature, with the robot motion on request."""
     rows: list[dict[str, Any]] = list(wall.rows)
     if rows and results.planned is not None and cell is not None:
         from . import spacing_comparison

@@ -82,7 +82,7 @@ class Content:
 
     @property
     def toolpath(self) -> Toolpath:
-        """As it is run."""
+        """The toolpath as it is executed."""
         return self.source.toolpath
 
 

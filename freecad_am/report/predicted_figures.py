@@ -22,7 +22,7 @@ MM3 = 1000.0  # in a cm3
 
 
 def as_dict(shape: PredictedShape) -> dict[str, Any]:
-    """Return the key `predicted_shape` of a report. `layers` lists only layers with beads."""
+    """Return the report key `predicted_shape`; `layers` lists only layers with beads."""
     return {
         "fed_cm3": shape.fed / MM3,
         "laid_cm3": shape.laid / MM3,

@@ -34,7 +34,7 @@ MAX_DOTS = 4000  # dots of a picture
 
 
 def as_dict(fitted: Fitted) -> dict[str, Any]:
-    """The key `scan` of a report."""
+    """Return the value of the report key `scan`."""
     return {
         "file": fitted.file,
         "points": fitted.points,

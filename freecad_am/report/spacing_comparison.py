@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What each spacing of a wall's layers costs and gains: the rows of the report, with the robot's motion where asked for."""
+"""Compares the layer spacings of a wall for the report, with the robot motion on request."""
 
 from __future__ import annotations
 

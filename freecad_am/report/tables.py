@@ -83,7 +83,7 @@ def figure_text(value: Any) -> str:
 
 
 def classes_of(rows: list[dict[str, Any]]) -> str:
-    """What there is of each class of beads."""
+    """Return the totals for each class of beads."""
     if not rows:
         return ""
     woven = ["weave"] if any("weave" in row for row in rows) else []

@@ -10,7 +10,7 @@ from pathlib import Path
 from string import Template
 
 _FOLDER = Path(__file__).resolve().parent
-NO_SCRIPTS = "default-src 'none'; style-src 'unsafe-inline'"  # a page that only shows itself
+NO_SCRIPTS = "default-src 'none'; style-src 'unsafe-inline'"  # policy of a static page
 
 
 @lru_cache(maxsize=8)

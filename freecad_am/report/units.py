@@ -48,7 +48,7 @@ def text(words: str) -> str:
 
 
 def scale(largest: float, unit: str) -> tuple[float, str]:
-    """How many of the page's unit make one `unit`, for values of up to `largest`, and its name."""
+    """Return the factor from `unit` to the page's unit for values up to `largest`, and its name."""
     return _units.get().scale(largest, unit)
 
 

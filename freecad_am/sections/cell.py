@@ -35,7 +35,7 @@ PAPERS = "paper"  # limits
 
 
 def read(section: Any, folder: str) -> CellParameters | None:
-    """The cell of a job file in `folder`, of its section or of the cell file that this names; None where there is none.
+    """Read the cell of a job file in `folder`, from its section or the cell file it names.
 
     Raises InputError about a key of the job or of the cell file.
     """
@@ -92,7 +92,7 @@ def _proposed(cell: CellParameters, own_branch: bool) -> CellParameters:
     within the limits of the papers their robot works where it did there."""
     if (cell.machine, cell.limits) == (CellParameters().machine, PAPERS):
         return cell
-    with contextlib.suppress(InputError):  # of the machine, which is told where it is planned for
+    with contextlib.suppress(InputError):  # errors of the machine are reported when it is planned
         from ..objects import user_machines  # with FreeCAD, which may still be loading
 
         return proposed_cell.proposed(cell, user_machines.folders(), own_branch)

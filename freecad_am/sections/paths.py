@@ -35,7 +35,7 @@ def folder_of(path: str) -> str:
 def absolute(file: str, folder: str) -> str:
     """`file` as an absolute path; relative ones start at the absolute `folder`."""
     path = os.path.normpath(os.path.join(folder, expanded(file)))
-    locate(path)  # who collects what a job is made of is told of it
+    locate(path)  # notifies whoever collects the files of a job
     return path
 
 
@@ -93,7 +93,7 @@ def _changed(
 
 
 def _table(resolve: Callable[[str], str], name: str) -> str:
-    """A bead table that is none of ours."""
+    """Resolve the path of a bead table that is not built in."""
     return name if name in ("none", *wire.BUILT_IN) else resolve(name)
 
 

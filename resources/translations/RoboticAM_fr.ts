@@ -331,7 +331,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far lines and other patterns reach into the beads of the walls around them, as a share of the bead width; auto: as far as neighbouring beads overlap. (%)</source>
-        <translation>Pénétration des lignes et autres motifs dans les cordons des parois qui les entourent, en part de la largeur de cordon ; auto : comme les cordons voisins se recouvrent. (%)</translation>
+        <translation>Pénétration des lignes et autres motifs dans les cordons des parois qui les entourent, en part de la largeur de cordon ; auto : comme les cordons voisins se recouvrent. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -3314,7 +3314,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>How far lines and other patterns reach into the beads of the walls around them, as a share of the bead width; auto: as far as neighbouring beads overlap.</source>
-        <translation>Pénétration des lignes et autres motifs dans les cordons des parois qui les entourent, en part de la largeur de cordon ; auto : comme les cordons voisins se recouvrent.</translation>
+        <translation>Pénétration des lignes et autres motifs dans les cordons des parois qui les entourent, en part de la largeur de cordon ; auto : comme les cordons voisins se recouvrent.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>

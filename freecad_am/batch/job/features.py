@@ -122,9 +122,8 @@ class JobFeature:
     build_direction: BuildDirectionParameters
     process: ProcessParameters
     guide: PartSource | None = None
-    sections: Any = dataclasses.field(
-        default=None, repr=False, compare=False
-    )  # of the job, where the family is left to us
+    # sections of the job, if it leaves the choice of the family to us
+    sections: Any = dataclasses.field(default=None, repr=False, compare=False)
     start_faces: tuple[str, ...] = ()
     scan: ScanSource | None = None
 

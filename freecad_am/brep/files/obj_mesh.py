@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Triangles of a Wavefront OBJ file.
 
-FreeCAD's own reader leaves out, without a message, faces of more than four corners or with a corner that does not exist,
-points with a weight or a comment, and lines that go on in the next one; and it cuts polygons with a dent across it.
+FreeCAD's own reader silently drops faces with more than four corners or with a missing corner,
+points with a weight or a comment, and continued lines. It also triangulates concave polygons
+wrongly.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from ...core.issues import NOTE, InputError, Issue, Text
 from ...core.types import Array, Index
 
 CONTENT = "FILE_CONTENT"
-CONTINUED = re.compile(rb"\\[ \t]*\r?\n")  # a line that goes on in the next one
+CONTINUED = re.compile(rb"\\[ \t]*\r?\n")  # end of a line that continues on the next one
 VERTEX_NUMBERS = (3, 4, 6, 7, 8)  # with a weight, or a colour
 # statements that say nothing of the shape of faces
 HARMLESS = {

@@ -26,9 +26,8 @@ from .sandbox import read_in_sandbox
 
 STEP, IGES = (".step", ".stp"), (".iges", ".igs")
 READABLE = (*STEP, *IGES, ".brep", ".brp")
-MAX_COORDINATE_MM = (
-    1e7  # mm; what reaches farther has a damaged coordinate, on which the kernel works without end
-)
+# mm; a larger part has a damaged coordinate, on which the kernel hangs
+MAX_COORDINATE_MM = 1e7
 
 
 class FileContent(NamedTuple):

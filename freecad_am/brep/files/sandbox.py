@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Files from outside, read in a sandboxed worker, with limits of time and memory.
+"""Reads external files in a sandboxed worker with limits on time and memory.
 
-FreeCAD and the geometry kernel crash on some damaged files, and read others without end. If no
-worker can be started, this process reads the file.
+FreeCAD and the geometry kernel crash on some damaged files and hang on others. If no worker can be
+started, this process reads the file.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def read_to_folder(
 
 
 def _limits(name: str, size: float, patience: float) -> tuple[float, float]:
-    """Limits of processor time, s, and memory, MB, for reading a file of `size` MB."""
+    """Return the limits of CPU time, s, and memory, MB, for reading a file of `size` MB."""
     seconds = patience * (SECONDS + SECONDS_PER_MB * size)
     if name.lower().endswith(".3mf"):
         seconds += SECONDS_TO_CUT

@@ -22,8 +22,8 @@ from ...core.geometry.mesh.solid import SolidMesh
 from ...core.issues import Text
 from ...core.types import Array, Index
 
-MAX_TRIANGLES = 2000  # of both that are cut; these take about 2 s of the processor
-SEWN = 1e-4  # mm; points of a file nearer to each other than this are one
+MAX_TRIANGLES = 2000  # of both cut meshes together; they take about 2 s of CPU time
+SEWN = 1e-4  # mm; closer points of a file count as one
 EXACT = 1e-6  # of a volume
 
 

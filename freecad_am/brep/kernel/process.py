@@ -277,14 +277,14 @@ class Worker:
         return Outcome(0, self.memory, sound, value)
 
     def end(self) -> None:
-        """End the process even while it works."""
+        """Kill the process, even while it is working."""
         self.kill()
         for stream in (self.popen.stdin, self.popen.stdout):
             with contextlib.suppress(OSError, ValueError):
                 stream.close()
 
     def leave_to_parent(self) -> None:
-        """In a fork: let go of the process, which ends with the parent.
+        """In a fork: detach from the process, which ends with the parent.
 
         Its answers stay open: a lock that the listening thread holds in the parent guards them.
         """
@@ -337,7 +337,7 @@ def _listen(stream: Any, answers: queue.Queue[Any]) -> None:
     try:
         while True:
             answers.put((pickle.load(stream),))
-    except Exception:  # the process has ended, during an answer or between two
+    except Exception:  # the process has ended, during an answer or between answers
         answers.put(None)
 
 

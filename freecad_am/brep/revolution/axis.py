@@ -141,11 +141,11 @@ def from_normals(faces: list[Any]) -> Axis | None:
     middle = p.mean(axis=0)
     size = np.abs(p - middle).max()
     rows = np.hstack([np.cross((p - middle) / size, n), n])
-    values, vectors = np.linalg.svd(rows, full_matrices=False)[
-        1:
-    ]  # or it is as wide as the samples are many
+    # without full_matrices=False the first factor would be a square matrix over all samples
+    values, vectors = np.linalg.svd(rows, full_matrices=False)[1:]
     exact = int((values < 1e-6 * values[0]).sum())
-    # a cylinder that is not quite round still slides along itself exactly: then the next best motion is asked for
+    # a cylinder that is not quite round is still exactly invariant to sliding along its axis, so
+    # the next best motion is tried too
     for count in (max(exact, 1), max(exact, 1) + 1):
         null = vectors[-count:]
         directions = null[:, :3]

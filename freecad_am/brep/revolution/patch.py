@@ -27,7 +27,7 @@ from .cylindrical import (
     smooth_pieces,
 )
 
-MERIDIAN_MM = 1e-3  # mm between meridians that are one
+MERIDIAN_MM = 1e-3  # mm; closer meridians count as one
 SAME_AZIMUTH = 1e-4  # rad
 
 Turn = tuple[float, float]
@@ -385,7 +385,7 @@ def _deviation(face: Any, frame: AxisFrame, curves: list[tuple[Array, Array]]) -
         return 0.0
     off = _distance(frame, _grid(face, False), curves)
     if off > TOLERANCE:
-        # the surface goes on past the face's edges: only the face itself counts
+        # the surface extends past the edges of the face: only the face itself counts
         off = _distance(frame, _grid(face, True) or _grid(face, False), curves)
     return max(
         off, _distance(frame, np.vstack([edge_points(edge, 9) for edge in face.Edges]), curves)

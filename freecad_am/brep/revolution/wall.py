@@ -21,7 +21,7 @@ from .patch import Patch, common_turn, merged, patch_of, planar
 # ---- Faces of a shape that are certainly not of revolution about an axis, judged by a few normals
 
 SAMPLES_ACROSS = 5  # places along each parameter of a face that is not flat
-SLOPE = 0.2  # of a normal around the axis; rounding of files is far below
+SLOPE = 0.2  # component of a normal around the axis; rounding in files is far smaller
 NARROW = 0.1  # mm; a face as narrow as this may be of revolution within its tolerance all the same
 ON_AXIS = 1e-3  # mm
 
@@ -40,7 +40,7 @@ class Normals(NamedTuple):
 
 
 def normals_of(faces: Sequence[Any]) -> Normals:
-    """A few normals of each face, taken where the face is and not only its surface."""
+    """Return a few normals of each face, at points inside the trimmed face."""
     flat = np.array([planar(face) for face in faces], dtype=bool)
     points: list[Any] = []
     directions: list[Any] = []
@@ -97,10 +97,10 @@ ACROSS = 1e-3  # mm an edge may leave the half plane of the wire
 
 
 def pieces_of_edges(shape: Any, frame: AxisFrame, label: str) -> list[Piece]:
-    """The edges as meridian pieces, each a full turn. Edges along the axis itself are left out.
+    """Return the edges as meridian pieces of a full turn each, without edges on the axis itself.
 
-    Raises InputError 'NOT_REVOLUTION' where the edges cross the axis or are not in one plane with it, 'NO_WALL' where
-    none is left.
+    Raises InputError 'NOT_REVOLUTION' if the edges cross the axis or are not coplanar with it,
+    'NO_WALL' if no edge remains.
     """
     edges = [
         (f"Edge{i}", edge) for i, edge in enumerate(shape.Edges, start=1) if not edge.Degenerated
@@ -389,7 +389,7 @@ def _loops(chain: Chain) -> bool:
 
 
 def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridian]:
-    """The wall asked for of a closed contour: its pieces and its meridian."""
+    """Return the requested wall of a closed contour: its pieces and its meridian."""
     walls = contour.walls(chain)
     if not walls:
         raise InputError(

@@ -25,10 +25,11 @@ from .tessellate import triangles_of
 
 DEFLECTION, FINE = 0.05, 0.005  # mm
 DEFLECTION_SHARE = 1e-4  # share of the size of shapes larger than half a metre: the kernel's time grows faster than the area
-MAX_KERNEL_POINTS = 200  # places that triangles are not sure of and the kernel is asked about, the farthest ones first
-FAILURES = 3  # of the kernel; it is not asked on then
+# places at which the triangles are not conclusive, so that the kernel is called; farthest first
+MAX_KERNEL_POINTS = 200
+FAILURES = 3  # kernel failures after which it is not called again
 ALWAYS = 5  # and as many in any case
-MAX_EDGE_POINTS = 500  # places that the kernel is asked about whose edges are the part
+MAX_EDGE_POINTS = 500  # places for kernel calls on parts that consist of edges
 INSIDE_DEPTH = 1e-6  # mm
 PIECE = 1000  # places done together; bounds the memory
 

@@ -66,7 +66,7 @@ def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
     """
     import MeshPart  # slow to import
 
-    # all at once, so that shared edges are divided alike; coarser around than the faces' own call would have it
+    # all faces at once, so that shared edges are divided alike; coarser than a call per face
     MeshPart.meshFromShape(
         Shape=shape, LinearDeflection=chord, AngularDeflection=angle, Relative=False
     )

@@ -112,7 +112,7 @@ MIN_BEND_SHARE = (
 
 
 def _remedy(wall: PatchWall, triangles: tuple[int, int]) -> str:
-    """What to do where two triangles of a wall cut each other."""
+    """Return the remedy for triangles of a wall that intersect."""
     patch, other_patch = (int(wall.patch[k]) for k in triangles)
     if patch != other_patch:
         return Text(

@@ -143,7 +143,7 @@ class _Curves:
         return feet
 
 
-ERROR = 5e-5  # mm that a patch may be off its face
+ERROR = 5e-5  # mm; maximum deviation of a patch from its face
 KINK = np.radians(1.0)  # a surface that turns more across a line of knots has an edge there
 
 

@@ -217,7 +217,7 @@ class BeadEnds:
 
 @dataclass(frozen=True, eq=False)
 class _Asked(ByNumbers):
-    """What ends of beads follow from; the same numbers are the same question."""
+    """The inputs that determine the ends of beads, as a cache key."""
 
     beads: Beads
     size: Size

@@ -18,7 +18,8 @@ from ..types import Array, Index, Mask
 from .frustum import Frustum
 from .obstacles import Obstacles
 
-BENT = 0.2  # rad that joined pieces turn at most: so they are as near to the bead as its own chords
+# rad; maximum turn of joined pieces, so that they are as close to the bead as its own chords
+BENT = 0.2
 CORNER = np.cos(
     np.radians(10.0)
 )  # of the turn from one segment to the next, beyond which the outer side is filled

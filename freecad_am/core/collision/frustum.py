@@ -280,7 +280,7 @@ class Frustum:
             nearest = -mixed / square
             off = np.maximum(squared - mixed * mixed / square, 0.0)
             vertex = nearest + pull * np.sqrt(off / (square * (square - pull * pull)))
-        # where the cone opens faster than the segment leaves the axis, the deepest place is the end that is higher up
+        # where the cone opens faster than the segment leaves the axis, the upper end is deepest
         deepest = np.where(
             bent,
             np.clip(np.where(bent, vertex, 0.0), begin, stop),

@@ -476,7 +476,7 @@ class Obstacles:
     def _nearest(
         self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float
     ) -> tuple[Array, Index]:
-        low, best = np.full((2, len(tip)), reach)  # bounds of the least distance yet
+        low, best = np.full((2, len(tip)), reach)  # bounds of the smallest distance so far
         nearest_ids = np.full(len(tip), NONE, dtype=np.intp)
         top = len(self._levels[-1].since)
         query, node = tree.each_with_each(len(tip), top)

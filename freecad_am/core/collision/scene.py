@@ -189,7 +189,7 @@ def _halves(corners: Array, edge: Index) -> Array:
     return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
 
-LEAST_UPRIGHT = 0.25  # mm that the lower side of a nozzle at least rises with a mm along its axis, where it leans
+LEAST_UPRIGHT = 0.25  # minimum rise of the lower side of a leaning nozzle per mm along its axis
 
 
 @dataclass(frozen=True)

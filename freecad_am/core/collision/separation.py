@@ -487,12 +487,12 @@ class PlacedCylinders:
     radius: float
 
     def of(self, rows: Index) -> PlacedCylinders:
-        """It in some of the places."""
+        """Return the cylinders at some of the places."""
         return PlacedCylinders(self.start[rows], self.axis[rows], self.length, self.radius)
 
     @property
     def solid(self) -> Frustum:
-        """It about its axis, seen from where it starts."""
+        """Return the cylinder as a solid about its axis, from its start."""
         return Frustum(self.radius, 0.0, 0.0, self.length)
 
 
@@ -546,7 +546,7 @@ def nearer(cylinders: PlacedCylinders, others_at: PlacedCylinders, gap: float) -
         )
         middle = adjacent.cylinders.start + 0.5 * second_cylinders.length * second_cylinders.axis
         start = first_cylinders.solid.nearest(middle, first_cylinders.axis) - middle
-        # where that middle is in the cylinder the way is none, and they meet
+        # where that middle is inside the cylinder the distance is 0, and they intersect
         inside = dots(start, start) <= CONVERGED**2
         are_nearer[doubtful[inside]] = True
         rows = np.flatnonzero(~inside)

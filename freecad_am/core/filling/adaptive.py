@@ -40,21 +40,19 @@ GAP_WEDGE = math.radians(120.0)  # the same in a gap between beads
 STEP = 0.5  # of the spacing, between spokes
 RADIUS_TOLERANCE = 0.01  # of the spacing
 SHORTEST_CENTRE = 1.0  # of the spacing; where the axis of a thick place is shorter, pairs fill it
-FORK_RATIO, FORK = (
-    4.0,
-    0.5,
-)  # times the way along the axis, and of the spacing: a jump that is greater
-SUMMIT = 0.1  # of the spacing; summits that near to each other are one
-BRIDGE = 0.99  # of the radius at its ends; where a stretch gets narrower it runs into a corner
-SHORT_CHANGE = 2.0  # of the spacing; where another number of beads holds for less, it does not
+# a fork is a jump of more than FORK_RATIO times the distance along the axis and FORK of the spacing
+FORK_RATIO, FORK = 4.0, 0.5
+SUMMIT = 0.1  # of the spacing; closer summits count as one
+BRIDGE = 0.99  # of the radius at its ends; a stretch that gets narrower ends in a corner
+SHORT_CHANGE = 2.0  # of the spacing; shorter changes of the number of beads are ignored
 RAMP = 1.5  # of the spacing, along a bead, over which its depth changes with the number of beads
 MOUTH = 0.35  # of the spacing; how far inside a thick place its beads turn before a thin one
 SHARE_TOLERANCE = 0.02  # of the usual width; shares within this of a straight line need no point
 SAME = 1e-9  # of the spacing
 SHORTEST_PIECE = 0.1  # of the spacing; shorter pieces of the axis are ends of branches into corners
 CAP = 0.25  # of the radius of a bead's round end, which has no more volume, kept off the bead it ends on
-MEET = 0.8  # of the usual width; about as wide are beads that others end on
-JOINT = 1.3  # steps; ends of middle beads that near to each other meet
+MEET = 0.8  # of the usual width; approximate width of beads on which others end
+JOINT = 1.3  # steps; closer ends of middle beads are joined
 
 
 @dataclass(frozen=True)

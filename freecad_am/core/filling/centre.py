@@ -36,14 +36,12 @@ NEXT, OVER = (
     0.7548776662,
     0.5698402910,
 )  # of a length: starts of the next contour, of the next layer (the sequence R2)
-THINNEST = (
-    0.6  # of a bead's width; ribs that wide get a bead even if all beads have the usual width
-)
-ROUND_END = 0.25 * math.pi  # of the radius: length of a rectangle with the area of a round end
-LONGEST_ENDS = 0.4995  # of a bead's length, for each of its round ends
-SHARES = 0.02  # of a bead's usual width; widths in a step of that are one
-SHARE_STEP = 0.05  # of the usual width; along an edge of a bead the width changes no more
-FARTHEST_TOLERANCE = 1e-9  # of a ring's extent; points less apart are equally far out
+THINNEST = 0.6  # of a bead's width; wider ribs get a bead even if all beads have the usual width
+ROUND_END = 0.25 * math.pi  # in radii: length of a rectangle with the area of a round end
+LONGEST_ENDS = 0.4995  # maximum share of a bead's length for each of its round ends
+SHARES = 0.02  # of a bead's usual width; widths within this step count as equal
+SHARE_STEP = 0.05  # of the usual width; maximum change of the width along an edge of a bead
+FARTHEST_TOLERANCE = 1e-9  # of a ring's extent; points within it count as equally far out
 
 
 @dataclass(frozen=True, eq=False)
@@ -355,13 +353,15 @@ def contours_of(regions: Sequence[Strip | Region], beads: Beads, ring: int) -> l
 ROUNDS = 12  # of beads within one gap
 FINE = 0.04  # of the spacing, mm between the places that the middle is found from
 MAX_EXTENSIONS = 8  # attempts to make a bead long enough
-COARSE = 0.01  # of the gap; what is open is found no finer
-NETWORK = 12.0  # squares of half a bead's width: a region that large, without room for contours, is not a dot but ribs
-RIB = 0.6  # of a bead's width; what stands out thicker than that in the mean is a rib
-SLIVER = 1.0  # of the chord error; of what is narrower its border is as good as its middle, which takes long to find there
-DOT = 5.0  # of half a bead's width; round regions narrower than a bead are no larger than that
+COARSE = 0.01  # of the gap; resolution at which open regions are found
+# squares of half a bead's width; a larger region without room for contours consists of ribs
+NETWORK = 12.0
+RIB = 0.6  # of a bead's width; a protrusion with a larger mean thickness is a rib
+# of the chord error; in narrower places the border replaces the centreline, which is slow to find
+SLIVER = 1.0
+DOT = 5.0  # of half a bead's width; maximum size of a round region narrower than a bead
 LEAST_BARE = 0.01  # of the square of half a bead's width; rounding leaves thousands of smaller places between beads
-ENDS = 0.5  # of the gap; a bead in it ends where it is that narrow
+ENDS = 0.5  # of the gap; a bead in a gap ends where the gap is this narrow
 
 
 def centre_beads(
@@ -502,8 +502,10 @@ def closing_beads(
 
 
 def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
-    """Beads along the middle of the branches of regions narrower than a bead, the longest first; none begins inside of others.
-    Raises InfeasibleError THIN_REGION if beads refuse thin regions.
+    """Return beads along the centrelines of regions narrower than a bead, longest first.
+
+    No bead starts inside another. Raises InfeasibleError THIN_REGION if thin regions are not
+    allowed.
     """
     curves: list[PlaneCurve] = []
     for region in thin:
@@ -807,8 +809,8 @@ def open_windows(
     Returns
     -------
     list of tuple of Window, list of Region and tuple of Region
-        Windows with room for beads, their open regions and the allowed positions of bead middles,
-        both unrolled about the middle of the window.
+        Windows with room for beads, their open regions, and the allowed positions of bead
+        centrelines, both unrolled about the middle of the window.
     """
     windows = []
     for window, adjacent in near_windows(strip, curves, REACH * beads.spacing):

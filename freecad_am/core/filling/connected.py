@@ -58,7 +58,7 @@ class Ring:
         Parameters
         ----------
         arcs : (n,) array
-            Arc lengths from the first point, mm, any number of times round.
+            Arc lengths from the first point, mm; they wrap around the ring.
 
         Returns
         -------
@@ -294,7 +294,7 @@ def centres(contour_levels: Levels, beads: Beads) -> list[PlaneCurve]:
 
 REACH = 1.7  # spacings; contours farther apart are not joined
 TRIES = 64  # places at which two contours may be joined
-THINNEST = 0.3  # of the width; no bead is narrower
+THINNEST = 0.3  # of the width; minimum width of a bead
 LOOP = (
     0.05,
     0.25,

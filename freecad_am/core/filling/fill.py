@@ -236,7 +236,7 @@ def _centre(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
     ]
 
 
-LESS = 0.98  # of the area of a region; what feeds less is not enough
+LESS = 0.98  # of the area of a region; beads that feed less do not fill it
 EXACT = 1e-4  # of half a bead's width
 
 

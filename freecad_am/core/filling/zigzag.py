@@ -12,9 +12,11 @@ from ..geometry.regions.region import Region, simplified
 from ..types import Array
 from .centre import Beads, PlaneCurve
 
-LINK = 3.0  # of the spacing
-BOWED = 1.02  # of the straight way between its ends; a longer link stays on the border, for farther in it might leave it
-FLOOR = 4.0  # chord errors; no edge is shorter
+LINK = 3.0  # maximum length of a link, in spacings
+# length of a link relative to its chord; a longer link stays on the border, because an inset link
+# might leave the region
+BOWED = 1.02
+FLOOR = 4.0  # minimum edge length, in chord errors
 
 
 def in_rows(

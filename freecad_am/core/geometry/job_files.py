@@ -125,8 +125,7 @@ def read_content(path: str | Path, largest: int, code: str, where: str) -> bytes
     Raises
     ------
     InputError
-        `code` for larger files and for devices, pipes and folders, which could be read
-        without end.
+        `code` for larger files, and for devices, pipes and folders, which may never end.
     OSError, ValueError
         If the file cannot be opened.
     """

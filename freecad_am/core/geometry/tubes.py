@@ -37,7 +37,9 @@ SECTIONS = {
 
 
 class Frames(NamedTuple):
-    """At every point the unit vectors `side` and `up` (n, 3) across the course, and how much longer mitres are (n,)."""
+    """Unit vectors `side` and `up` (n, 3) across the path at every point, and the elongation (n,)
+    of the mitres there.
+    """
 
     side: Array
     up: Array

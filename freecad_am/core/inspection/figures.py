@@ -17,9 +17,7 @@ from ..types import Array, Integers, Mask
 from .planned import Planned
 
 ROUNDS = 60
-MIN_EXTENT_RATIO = (
-    1e-6  # of the largest extent: points that are all in a line, or a plane, have no centre
-)
+MIN_EXTENT_RATIO = 1e-6  # of the largest extent; collinear or coplanar points have no centre
 STILL = 1e-13  # of the radius
 
 
@@ -215,7 +213,9 @@ class Circle:
 
 @dataclass(frozen=True)
 class Ball:
-    """The spheres of least squares and of the narrowest zone, their centres in part coordinates; planned: mm, its radius."""
+    """The least-squares and minimum-zone spheres, with centres in part coordinates. planned:
+    planned radius, mm.
+    """
 
     count: int
     fitted: Round

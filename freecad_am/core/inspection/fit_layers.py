@@ -27,7 +27,7 @@ Ways = Callable[[Bead], Array]
 Off = Callable[[Array, Array], Array]  # points (n, 3) and directions (n, 3): mm (n,) along these
 
 MAX_SEGMENT_MM, MIN_SEGMENT_MM = 8.0, 0.5  # mm between points, where the scan bends between them
-NOISE_MM = 0.02  # mm that a scan may be off between points; less is within its noise
+NOISE_MM = 0.02  # mm; noise of a scan between points
 STEP = 0.25  # mm between samples
 ROUNDS = 12
 CORNER = 1e-6  # of the cosine: tangents that differ by more make a corner

@@ -80,7 +80,7 @@ def inspect(
     parameters : InspectionParameters
         Fit, probe, tolerance and heights.
     report : Report
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------

@@ -61,8 +61,8 @@ TRIAL_POINTS = 400  # points that each start is tried with
 FIRST_ROUNDS, TRIAL_ROUNDS, ROUNDS = 4, 10, 100
 HOPE = 30.0  # starts whose mean square is more than this of the best are tried no longer
 EQUAL_RATIO = 1.02  # mean squares that differ by no more are alike
-CONVERGED = 1e-9  # mm that the last round moved any point by
-STILL = 1e-6  # mm that the last round may have moved a point by for the fit to count
+CONVERGED = 1e-9  # mm; the fit has converged if the last iteration moves no point farther
+STILL = 1e-6  # mm; the fit is valid if the last iteration moved no point farther
 MIN_INFLUENCE = (
     1e-5  # of the stiffest motion's: a singular value of a motion that distances do not feel
 )
@@ -380,7 +380,7 @@ def _converged(
         next_square = _square(next_distance - radius, trim)
         if next_square > square * (1.0 + 1e-12):
             damping = max(10.0 * damping, 1e-3)
-            if damping > 1e9:  # nothing is nearer, as on facets
+            if damping > 1e9:  # no step reduces the distance, as on facets
                 moved = 0.0
                 break
             continue

@@ -169,7 +169,7 @@ MIN_POINTS = 12  # points of a patch that need weight
 BIWEIGHT = (
     4.685  # times the spread of points about their patch beyond which they do not count (Tukey)
 )
-SPREAD = 1.4826  # of the standard deviation to the median of amounts
+SPREAD = 1.4826  # ratio of the standard deviation to the median absolute value
 ROUNDS = 4
 OFF_CENTRE = 0.5  # of a patch's radius, offset of its points' middle beyond which the position is past an edge
 MAX_RADIUS_RATIO = 3.0  # times wider than patches are as a rule: a hole in the scan

@@ -89,8 +89,8 @@ def offset_of_cell(parameters: CellParameters, arrangement: Arrangement) -> Work
 def work_offset(points: Sequence[TouchedPoint], tolerance: float) -> WorkOffset:
     """Return the pose of the part.
 
-    Raises InputError TOUCHED for fewer than three points, points on a line, of another size,
-    and if one is farther than `tolerance` mm from where it was touched.
+    Raises InputError TOUCHED for fewer than three points, collinear points, points at another
+    scale, and a point that is farther than `tolerance` mm from its touched position.
     """
     if len(points) < MIN_POINTS:
         raise InputError(

@@ -77,7 +77,7 @@ class ExternalAxes:
 
     @property
     def axes(self) -> int:
-        """How many there are, k."""
+        """Return the number of axes, k."""
         return self.to_robot.axes
 
     def base(self, values: Array) -> Array:

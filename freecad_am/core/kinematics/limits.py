@@ -99,9 +99,9 @@ class Smallest(NamedTuple):
 class Limits:
     """One set of joint limits, rad, on the serial angles.
 
-    `lower` and `upper` (axes,) are infinite where an axis is endless. Each of the m coupled limits holds
-    `coefficients` (m, axes) @ q between `coupled_lower` and `coupled_upper` (m,); `labels` names the axes first,
-    then the coupled limits.
+    `lower` and `upper` (axes,) are infinite where an axis is continuous. Each of the m coupled
+    limits holds `coefficients` (m, axes) @ q between `coupled_lower` and `coupled_upper` (m,);
+    `labels` names the axes first, then the coupled limits.
     """
 
     name: str
@@ -130,7 +130,7 @@ class Limits:
 
     @property
     def continuous(self) -> Mask:
-        """Which axes (axes,) turn without end."""
+        """Which axes (axes,) are continuous."""
         without: Mask = ~np.isfinite(self.upper - self.lower)
         return without
 
@@ -145,8 +145,8 @@ class Limits:
         Returns
         -------
         (..., axes + m) array
-            Distances, rad or mm; negative outside, infinite for an endless axis, NaN
-            where q is.
+            Distances, rad or mm; negative outside, infinite for a continuous axis, NaN
+            where q is NaN.
         """
         angles = np.asarray(q, float)
         result = np.empty(angles.shape[:-1] + (self.axes + len(self.coupled_lower),))
@@ -242,25 +242,25 @@ class Limits:
 
 
 def margins(joints: Array, lower: Array, upper: Array) -> Array:
-    """Return the share of half the range that is left to the nearer limit.
+    """Return the distance to the nearer limit as a share of half the range.
 
     Parameters
     ----------
     joints : (..., a) array
         Joints, rad or mm.
     lower, upper : (a,) array
-        Limits, infinite where an axis is endless.
+        Limits, infinite where an axis is continuous.
 
     Returns
     -------
     (..., a) array
-        1 in the middle and for endless axes, 0 at a limit, less beyond; NaN where the
-        joints are.
+        1 in the middle and for continuous axes, 0 at a limit, negative beyond it; NaN
+        where a joint is NaN.
     """
     share = np.empty_like(joints)
     for axis, (low, high) in enumerate(
         zip(lower, upper, strict=True)
-    ):  # arrays as large as the joints take long to allocate
+    ):  # temporary arrays of this size are slow to allocate
         share[..., axis] = _share(joints[..., axis], low, high)
     return share
 

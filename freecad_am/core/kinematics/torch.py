@@ -24,9 +24,9 @@ Piece = tuple[Array, Integers]
 CODE, WHERE = "TORCH", "cell.nozzle.shape"
 MAX_TIP_DISTANCE_MM = 50.0  # mm from the tip to the torch, which a wire is not longer; a file that is farther off has another origin
 MAX_BEYOND_TIP_MM = (
-    0.5  # mm that it may reach beyond its tip: anything there would be in the deposit
+    0.5  # mm; allowed reach beyond the tip: anything there would be inside the deposit
 )
-MAX_EXCESS_MM = 0.05  # mm that it may exceed the cone, the error of triangles on round sides
+MAX_EXCESS_MM = 0.05  # mm; allowed excess over the cone, the error of triangles on round sides
 MAX_CYLINDERS, MIN_SAVED_SHARE = (
     16,
     0.02,

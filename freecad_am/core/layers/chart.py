@@ -231,7 +231,7 @@ class Charted:
 
     @property
     def bends_freely(self) -> bool:
-        """It bends as the faces do."""
+        """False: it bends as the faces do."""
         return False
 
     def unroll(self, points: Array) -> Array:
@@ -251,7 +251,7 @@ class Charted:
         )
 
     def heights(self, flat: Array) -> None:
-        """The layer height everywhere."""
+        """Return None: the layer height is the same everywhere."""
 
     def for_sheet(self: Same, flat: Array, sheet: float) -> Same:
         """Return the same surface: it does not overlap itself."""
@@ -262,7 +262,7 @@ class Charted:
         return 0.0
 
     def pieces(self, flat: Array, chord_error: float) -> Index:
-        """Return the number of pieces that the bend of each edge, sampled every `look` mm, requires."""
+        """Return the number of pieces each edge needs for its bend, sampled every `look` mm."""
         edge = np.diff(flat, axis=0)
         length = np.linalg.norm(edge, axis=1)
         looks = step_counts(length, self.look, 2)

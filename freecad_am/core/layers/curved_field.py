@@ -43,7 +43,7 @@ class ChartLayer(Charted):
 
     @property
     def bends_freely(self) -> bool:
-        """It bends as ways through the part lead round corners."""
+        """True: it bends where paths through the part turn corners."""
         return True
 
     def in_part(self, location: Place) -> tuple[Array, Array]:

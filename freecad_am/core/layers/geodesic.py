@@ -265,11 +265,11 @@ def _mean(values: Array) -> Array:
     return mean
 
 
-EXACT_STEPS = 2.5  # steps; nodes so near to the start know their distance from its triangles
-DEEP = 3  # nodes; farther inside nothing asks how far the surface is
-STRETCH = 0.15  # maximum stretch or squeeze of a piece; a piece with more is flattened in two
+EXACT_STEPS = 2.5  # steps; nodes this close to the start get their distance from its triangles
+DEEP = 3  # nodes; farther inside, the distance to the surface is not needed
+STRETCH = 0.15  # maximum stretch or compression of a piece; beyond it the piece is flattened in two
 HALVINGS = 6
-MARGIN = 2.0  # steps that pieces reach past where they are cut in two
+MARGIN = 2.0  # steps by which pieces extend past the cut between them
 
 
 class Piece(NamedTuple):

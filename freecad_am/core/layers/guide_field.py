@@ -102,9 +102,8 @@ def between(guide: Guide, low: float, high: float, share: float = 0.5) -> AlongL
     return AlongLayer(start, height, slope)
 
 
-BENDS = np.cos(
-    np.radians(10.0)
-)  # between the planes of the ends of an edge; edges that see more of a bend are halved
+# between the planes at the ends of an edge; edges across a sharper bend are halved
+BENDS = np.cos(np.radians(10.0))
 MAX_OUTSIDE_SHARE = 0.02  # of the extent of a section: how far the guide may be outside its hull
 HEIGHT = "LAYER_HEIGHT"
 

@@ -230,9 +230,7 @@ def _make_rigid(mesh: Mesh, local: Array, weights: Array, flat: Array) -> Array:
     return flat
 
 
-IGNORED_SHARE = (
-    0.02  # share of the area whose stretch does not count: slivers, and the very corners of fans
-)
+IGNORED_SHARE = 0.02  # share of the area whose stretch is ignored: slivers, and the tips of fans
 MAX_OVERLAP_SHARE = 0.01  # share of the area by which a picture may overlap itself
 HALVINGS = 8
 SNAP_SHARE, MIN_OFFSET_SHARE = (

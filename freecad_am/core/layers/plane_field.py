@@ -35,7 +35,7 @@ class Flat:
 
     @property
     def bends_freely(self) -> bool:
-        """It does not bend."""
+        """False: a plane does not bend."""
         return False
 
     def plane_rotation(self, azimuth: float) -> float:
@@ -66,7 +66,7 @@ class PlaneLayer(Flat):
         return Wrapped(points, np.tile([0.0, 0.0, 1.0], (count, 1)), np.zeros(count))
 
     def heights(self, flat: Array) -> None:
-        """The layer height everywhere."""
+        """Return None: the layer height is the same everywhere."""
 
     def for_sheet(self, flat: Array, sheet: float) -> PlaneLayer:
         """Return the same plane."""

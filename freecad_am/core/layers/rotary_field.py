@@ -43,7 +43,7 @@ class RoundLayer:
 
     @property
     def bends_freely(self) -> bool:
-        """It bends as its hub does."""
+        """False: it bends as its hub does."""
         return False
 
     def unroll(self, points: Array) -> Array:
@@ -51,7 +51,7 @@ class RoundLayer:
         return self.surface.unroll(points, self.middle)
 
     def wrap(self, flat: Array) -> Wrapped:
-        """Azimuths are counted on where the curve goes far round."""
+        """Wrap a flat curve; its azimuths are unwrapped beyond a full turn."""
         theta, z = _unwrapped(flat, self.surface)
         rho = (
             np.full(len(z), self.surface.radius)
@@ -63,7 +63,7 @@ class RoundLayer:
         return Wrapped(points, self.surface.normals(points), theta * math.sin(self.surface.taper))
 
     def heights(self, flat: Array) -> None:
-        """The layer height everywhere."""
+        """Return None: the layer height is the same everywhere."""
 
     def for_sheet(self, flat: Array, sheet: float) -> RoundLayer:
         """Return the surface for a curve about `sheet`: on a wide cone a curve may pass behind the

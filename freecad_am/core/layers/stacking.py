@@ -33,8 +33,9 @@ AREA_TOLERANCE = 0.01  # of the area of the part; areas nearer together are the 
 HEIGHT_TOLERANCE = (
     1e-3  # of a height; heights nearer together are the same, whatever chords a mesh has
 )
-SAMPLES = 20_000  # on all facets of a part of several bodies, at which it is looked whether others cover them, about
-MAX_PIECES = 64  # parts of an edge of a facet between such places
+# approximate number of points on the facets of several bodies at which mutual cover is checked
+SAMPLES = 20_000
+MAX_PIECES = 64  # maximum number of parts of a facet edge between these points
 
 
 class Stacked(NamedTuple):
@@ -181,7 +182,8 @@ def _stability(corners: Array, direction: Array, standing: float, middle: Array)
 def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Array]:
     """Return all triangles that have an area.
 
-    Area covered by another body, within a slit, does not count: touching bodies are one.
+    Area that another body covers, within the slit width, does not count: touching bodies form one
+    part.
 
     Parameters
     ----------
@@ -353,7 +355,7 @@ def _note(ranking: Sequence[Stacked], label: str, lean: float) -> Issue:
 
 # ---- Overhang of the facets of a part, before it is cut
 
-MIN_LEAN_RAD = 1e-9  # rad; what leans by less is a wall
+MIN_LEAN_RAD = 1e-9  # rad; facets that lean less are walls
 
 
 class Leaning(NamedTuple):

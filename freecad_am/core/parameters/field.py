@@ -211,7 +211,7 @@ def check_value(spec: Spec, value: Any, key: str) -> None:
                 "BAD_VALUE", key, "{!r} is not true or false; use true or false", value
             )
     elif spec.kind in (RECORDS, VECTOR):
-        return  # checked when they are made
+        return  # their constructors check them
     elif spec.kind == TEXT:
         if not isinstance(value, str):
             raise InputError("BAD_VALUE", key, "{!r} is not a text; put it in quotes", value)

@@ -47,7 +47,7 @@ class SeamParameters:
 
 @dataclass(frozen=True)
 class WireParameters:
-    """The feedstock; carried to the report and to the deposit commands of a post."""
+    """The feedstock; the report and the deposit commands of a post use it."""
 
     diameter: float = f.parameter(1.2, f.LENGTH, "Diameter of the wire.", low=0.001, high=1000.0)
     feed: float | str = f.parameter(
@@ -314,7 +314,7 @@ class ProcessParameters:
         bead_classes.check_twice(self.classes)
 
     def of_class(self, name: str) -> BeadClass:
-        """What beads of a class have of their own; nothing of a class that is not named."""
+        """Return the own settings of a bead class; none for a class that is not listed."""
         named = (bead_class for bead_class in self.classes if bead_class.name == name)
         return next(named, BeadClass())
 

@@ -187,7 +187,7 @@ class SurfaceParameters(LayerParameters):
 
 @dataclass(frozen=True)
 class CurvesParameters(LayerParameters):
-    """How to print curves as beads. mm."""
+    """How to print curves as beads; lengths in mm."""
 
     direction: Point = f.parameter(
         (0.0, 0.0, 1.0),

@@ -179,7 +179,7 @@ def place_part(
     parameters : PlaceParameters
         The box, the criterion and the number of points.
     progress : callable
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------

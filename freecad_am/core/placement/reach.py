@@ -45,7 +45,7 @@ def reach(cell: Cell, step: float, progress: Progress = lambda share, text: None
     step : float
         Distance between grid points, mm; larger if needed to stay within MOST_PLACES.
     progress : callable, optional
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------
@@ -102,7 +102,7 @@ def _share(cell: Cell, rows: LimitRows, points: Array, hold: Array) -> Array:
     poses[..., :3, 3] += points[:, None, None]
     robot_axes, count = cell.robot.chain.axes, cell.machine.chain.axes
     served = np.zeros(poses.shape[:3], dtype=bool)
-    with np.errstate(invalid="ignore"):  # axes without end
+    with np.errstate(invalid="ignore"):  # continuous axes have infinite limits
         middle = 0.5 * (cell.limits.lower + cell.limits.upper)[:robot_axes]
     for branch in range(8) if cell.branch is None else (cell.branch,):
         remaining = np.nonzero(~served.any(axis=2))

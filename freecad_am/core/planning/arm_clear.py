@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Rotations at which the links of the robot stay clear.
 
-Those at which a link comes too near are not candidates of the search. What the local search makes of one that is clear may
-come too near again: then it is made once more with how far links are off, and how that changes, among its constraints, from
-the polynomial that goes furthest towards the first and stays clear. Where that finds nothing clear, this one is taken.
+The search drops candidates at which a link gets too close to an obstacle. The local search may
+move a clear candidate too close again. It then runs once more, with the linearized distances of the
+links as constraints, from the polynomial that goes furthest towards its first result and stays
+clear. If this run finds no clear result, that polynomial is used.
 """
 
 from __future__ import annotations
@@ -38,8 +39,8 @@ from .task import MIN_MARGIN, UNREACHABLE, Task, condition_margin
 MAX_LINEARIZATIONS = 10
 GAP_RANGE_MM = 50.0  # mm; pairs with more than this extra clearance are no constraint
 EXTRA_GAP_MM = 0.01  # mm of extra clearance, so that the result is clear
-REACH = 0.3  # rad that a polynomial may change by from the first look to the second
-UNCHANGED = 1e-4  # rad, and share of the objective, less than which is no change
+REACH = 0.3  # rad; largest change of a polynomial between two checks
+UNCHANGED = 1e-4  # rad, and share of the objective; smaller changes do not count
 STOPPED = "the path to a better solution comes too near"
 
 
@@ -164,10 +165,10 @@ TOUCHING = (
 def exclude_touching(
     task: Task, arm_clearance: ArmKept, points: Points, bead_ids: Sequence[Place], candidates: Found
 ) -> Found:
-    """Return the candidates, without a margin where a link comes too near.
+    """Return the candidates, without a margin where a link gets too close.
 
     The best candidates of each bead are checked directly, until one is clear; if the first few
-    are not, all are checked by a map of the rotations at which links come too near.
+    are not, all are checked by a map of the rotations at which links get too close.
 
     Parameters
     ----------
@@ -185,7 +186,7 @@ def exclude_touching(
     Returns
     -------
     Found
-        The same candidates; margin -inf where a link comes too near. If no candidate of a
+        The same candidates; margin -inf where a link gets too close. If no candidate of a
         bead is clear, the best one keeps a margin just below 0.
     """
     margin, bead_rows = candidates.margin.copy(), np.arange(points.beads)
@@ -219,8 +220,9 @@ def _mapped(
     coefficients: Array,
     selected: Mask,
 ) -> Mask:
-    """(C, B) for which of the candidates (C, B, degree + 1) of beads asked about a link comes too near at a rotation next to
-    one of theirs."""
+    """Return for which candidates (C, B, degree + 1) of the selected beads a link gets too close at
+    a mapped rotation adjacent to theirs, as a mask (C, B).
+    """
     joints = task.raw_joints(
         points, np.broadcast_to(np.arange(TURNS)[:, None] * (TURN / TURNS), (TURNS, len(points)))
     )
@@ -240,7 +242,7 @@ def _mapped(
 def _map(
     arm_clearance: ArmKept, points: Points, bead_ids: Sequence[Place], joints: Array, selected: Mask
 ) -> tuple[Mask, Mask]:
-    """Return the rotations at which a link comes too near, and the beads without a clear rotation.
+    """Return the rotations at which a link gets too close, and the beads without a clear rotation.
 
     The first is a mask (TURNS, T) for the joints (TURNS, T, axes) at all rotations of the selected
     beads. The second is a mask (B,): beads with a point at which no rotation is clear. At most ENDS
@@ -375,7 +377,7 @@ def _stepped_back(
 
 
 def findings(arm_clearance: ArmKept, paths: Sequence[BeadPath]) -> list[Issue]:
-    """Report each bead at whose points a link comes too near, with the link and its obstacle."""
+    """Report each bead at whose points a link gets too close, with the link and its obstacle."""
     issues = []
     for path in paths:
         sampled = np.unique(
@@ -403,7 +405,7 @@ def _find_touching(
     coefficients: Array,
     selected: Mask,
 ) -> Mask:
-    """(B,) on which of the beads asked about a link comes too near."""
+    """Return on which of the selected beads a link gets too close, as a mask (B,)."""
     joints = task.joints(points, task.rotation(points, points.polynomial(coefficients))[0])
     met = arm_clearance.touches(
         np.where(selected[points.bead, None], joints, np.nan), points, bead_ids

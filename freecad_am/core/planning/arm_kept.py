@@ -59,7 +59,7 @@ class ArmKept:
         )
 
     def rotations_near(self, joints: Array, bead: Index, bead_ids: Sequence[Place]) -> Mask:
-        """Return at which rotations a link comes too near.
+        """Return at which rotations a link gets too close.
 
         Parameters
         ----------
@@ -73,7 +73,7 @@ class ArmKept:
         Returns
         -------
         (R, T) bool array
-            True where a link comes too near.
+            True where a link gets too close.
         """
         when = np.array([self.moment(bead_id) for bead_id in bead_ids], dtype=np.int64)[bead]
         met = self.contact.touches(joints.reshape(-1, joints.shape[2]), np.tile(when, len(joints)))
@@ -157,7 +157,7 @@ def contact_of(
 def check_moves(
     contact: ArmContact, start: Array, end: Array, deposited: Index
 ) -> tuple[Index, Touches]:
-    """Find links that come too near on moves that are straight in the joints.
+    """Find links that get too close on moves that are straight in the joints.
 
     Parameters
     ----------
@@ -185,7 +185,7 @@ def check_moves(
 def clearance_issue(
     cell: Cell, link: str, what: str, layer: int, bead: int, on_way: bool = False
 ) -> Issue:
-    """Build the issue for a link that comes too near to an obstacle.
+    """Build the issue for a link that gets too close to an obstacle.
 
     Parameters
     ----------

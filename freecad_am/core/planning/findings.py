@@ -149,7 +149,8 @@ def _limit_findings(task: Task, path: BeadPath, bead_fields: dict[str, int]) -> 
 def _condition_findings(path: BeadPath, bead_fields: dict[str, int]) -> list[Issue]:
     short = path.threshold - path.condition
     point = int(short.argmax())
-    if not short[point] > ROUNDING:  # or nothing is free, and there is no condition
+    # `not >` also holds for NaN: without redundancy the condition is undefined
+    if not short[point] > ROUNDING:
         return []
     return [
         Issue(

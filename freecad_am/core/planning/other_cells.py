@@ -34,7 +34,7 @@ from .motion import assemble
 from .plan import Progress, best_branches, plan_joints
 
 LAYERS = 3  # layers of a job that are planned with each change
-POINTS = 12_000  # planned so in all
+POINTS = 12_000  # total number of points planned with each change
 
 
 # returns the issues of a joint path in a cell; the path may cover only some layers of the toolpath
@@ -87,7 +87,7 @@ class Tried:
         whole : bool
             Whether the toolpath is complete; only then are rapids checked.
         progress : callable
-            Receives share and text; may raise to cancel.
+            Called with the completed share and a text; may raise to cancel.
 
         Returns
         -------

@@ -91,7 +91,7 @@ def plan_joints(
     parameters : JointParameters
         Method, objective, branch and thresholds.
     progress : callable, optional
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
     cylinders : Cylinders, optional
         Cylinders about each link of the robot, kept clear if `cell.arm_clearance` asks for
         it.
@@ -218,7 +218,7 @@ def _in_branches(
     )
     optimality = None
     if parameters.certificate and not has_errors(issues):
-        from .certificate import bound  # few jobs ask for it
+        from .certificate import bound  # few jobs need it
 
         optimality, notes = bound.summed(
             task, paths, lambda share: progress(share, "bounding the objective")
@@ -405,7 +405,7 @@ def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], li
     """Return the paths with the points that straight motion needs and unwrapped turns, and their
     issues.
     """
-    from .certificate import bound  # few jobs ask for it
+    from .certificate import bound  # few jobs need it
 
     straight = bound.close_gaps(task, _as_run(task, paths))
     paths, notes = turns.unwrapped(task, [path for path, _ in straight])

@@ -289,7 +289,7 @@ def compared(
     bead_ids : Sequence[tuple[int, int]]
         Layer and index of each bead.
     progress : callable
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------

@@ -72,7 +72,7 @@ def remedies(
     issues : sequence of Issue
         Its issues.
     progress : callable
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
     longest : float, optional
         Wall-clock time after which the search stops, s.
 
@@ -275,7 +275,7 @@ def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) 
     job : Tried
         The job.
     progress : callable
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
     failed_layers : iterable of int, optional
         Layers that failed in the plan of the complete job.
 

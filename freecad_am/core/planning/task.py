@@ -29,7 +29,7 @@ UNREACHABLE = -np.inf
 
 @dataclass(frozen=True, eq=False)
 class LimitRows:
-    """The limits as m rows lower <= matrix q <= upper, endless axes left out. Angles in rad."""
+    """The limits as m rows lower <= matrix q <= upper, without continuous axes. Angles in rad."""
 
     matrix: Array
     lower: Array
@@ -132,8 +132,9 @@ Parts = tuple[
     tuple[Toolpath, Index], ...
 ]  # the toolpath of each feature, and its layers in the full toolpath
 
-# Eq. 17 divides by the stroke. An axis without end would weigh nothing and could spin as it likes, so it counts
-# with this stroke: large enough to leave the other axes still on a part of revolution (docs/decisions).
+# Eq. 17 divides by the stroke. A continuous axis would have no weight and could spin freely, so it
+# gets this stroke: large enough to leave the other axes still on a part of revolution
+# (docs/decisions).
 CONTINUOUS_STROKE = 1e6 * TURN
 CONDITION_FLOOR = 0.02
 CONDITION_SHARE = 0.25
@@ -243,7 +244,7 @@ class Task:
         points : Points
             T points.
         value : (T,) array
-            The rotation itself, or RZ of the paper, rad.
+            The rotation itself, or RZ as in Chalvin 2020, rad.
 
         Returns
         -------

@@ -220,7 +220,7 @@ def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
 
 
 def beads_supported(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
-    """Promise on unsupported beads."""
+    """Return the promise that every bead is supported."""
     what = "Every bead is supported from below"
     if toolpath.checks.unsupported is None:
         return Promise(what, "not checked: it is not known how wide the beads count", None)

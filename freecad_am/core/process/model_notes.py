@@ -348,7 +348,7 @@ def _outside(
     return issues
 
 
-MIN_TURN_RAD = 1e-9  # rad of turn over the window; less is none
+MIN_TURN_RAD = 1e-9  # rad; a smaller turn over the window counts as none
 
 
 def radii(flat: Array, closed: bool, window: float) -> Array:

@@ -15,7 +15,8 @@ from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..types import Index
 
-# mm between two looks along the way of any point of the nozzle, at the least, and at how many shares a move is measured
+# mm; maximum distance between checks along the path of any point of the nozzle, and the shares at
+# which a move is measured
 STEP, SHARES = 0.5, np.linspace(0.0, 1.0, 9)
 PIECE = 2048  # moves or looks done together
 

@@ -162,10 +162,11 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class Timeline:
-    """The times of a motion of n rows, s from its first row.
+    """The times of a motion of n rows, in s after its start.
 
-    arrive, leave: (n,) when each row is reached and left. lit: (n,) s of the stay with the deposit on, which come first.
-    layer_rows: (layers,) the first row of each layer that is run, its rapids included, and layers their numbers.
+    arrive, leave: (n,) times at which each row is reached and left. lit: (n,) s of the wait at each
+    row with the deposit on, before any wait with it off. layer_rows: (layers,) first row of each
+    executed layer, including its rapids. layers: the numbers of these layers.
     """
 
     motion: Motion
@@ -197,7 +198,7 @@ class Timeline:
         Parameters
         ----------
         time : (...) array_like
-            s; before the start and after the end the first and last row count.
+            s; times before the start or after the end give the first or last row.
 
         Returns
         -------

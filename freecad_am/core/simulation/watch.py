@@ -164,9 +164,8 @@ def places(
     total = float(travelled[-1]) if n else 0.0
     step = max(STEP, total / (MAX_LOOKS if max_places is None else max_places))
     positions = np.arange(step, total, step)
-    inner = np.searchsorted(
-        travelled, positions, side="left"
-    )  # rows that move, so that both of their ends are known
+    # moving rows only, so that both of their ends are known
+    inner = np.searchsorted(travelled, positions, side="left")
     share = (positions - travelled[inner - 1]) / moved[inner]
     ends = np.flatnonzero(reachable & ~(goes_on & np.append(goes_on[1:], False)[:n]))
     row = np.concatenate([inner, ends])
@@ -178,7 +177,7 @@ def places(
     return sampled[order], row[order], step
 
 
-# nearer to a limit than this many degrees or mm counts as near
+# deg or mm; a smaller distance to a limit counts as near
 NEAR_LIMIT_MARGIN = 0.5
 # programs keep 0.05 deg; what rounding leaves is not a violation, degrees or mm
 _ROUNDING = 1e-6

@@ -45,7 +45,9 @@ def refuse_too_many(layers: int, height: float, label: str) -> None:
 
 
 WEIGHTS = 10.0 ** np.arange(-2, 10)  # of smoothness against the exact distance
-HEAVY = 7  # from this weight on the turn is much less, or the band stops it: GAIN by IDLE more is what a search goes on for
+# from this weight on the turn is much smaller, or the band limits it: the search ends when IDLE
+# further weights gain less than GAIN
+HEAVY = 7
 GAIN, IDLE = 0.02, 2
 AIM = 0.8  # of the limit; layers above sharpen round corners, so a reserve is kept for them
 MARGIN = 0.02  # of the band, kept free for what the curve does between its points

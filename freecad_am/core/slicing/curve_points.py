@@ -107,7 +107,8 @@ def _space_evenly(
     rate = np.linalg.norm(slope, axis=1)
     curvature = np.linalg.norm(np.cross(slope, bend), axis=1) / rate**3
     length = rate * np.diff(w)
-    # where the curve hardly bends, a share of the length still counts, so segments do not become much longer than others
+    # on nearly straight stretches a share of the length counts, so that no segment becomes much
+    # longer than others
     density = length * np.maximum(
         np.sqrt(curvature / (8.0 * chord_error)), MIN_SEGMENTS / curve.length
     )

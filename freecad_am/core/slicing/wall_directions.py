@@ -185,7 +185,7 @@ def lean_tool(build: Array, forward: Array, normal: Array, lead: float, tilt: fl
 
 
 def cap_lean(directions: Array, max_lean: float) -> tuple[Array, float]:
-    """Turn directions back that lean more than allowed from the vertical.
+    """Limit how far directions lean from the vertical.
 
     Parameters
     ----------
@@ -199,7 +199,7 @@ def cap_lean(directions: Array, max_lean: float) -> tuple[Array, float]:
     directions : (n, 3) array
         Unit vectors.
     excess : float
-        Largest angle by which one was turned back, rad.
+        Largest angle by which a direction was turned back, rad.
     """
     x, y, z = columns(directions)
     level = np.hypot(x, y)

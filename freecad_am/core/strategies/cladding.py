@@ -231,7 +231,7 @@ def plan(
     model : BeadModel or None
         Bead model that sets the speeds; None if the travel speed applies everywhere.
     progress : callable, optional
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------

@@ -27,7 +27,8 @@ ALONG = np.cos(
 
 
 STEP = 1.01  # layer heights that a bead may climb straight up, plus the rounding of slicers
-TURNED_BACK = 0.05  # of the shorter segment: a mean of two segments that is less says nothing
+# of the shorter segment; a shorter mean of two segments has no reliable direction
+TURNED_BACK = 0.05
 
 
 def plan(
@@ -39,7 +40,7 @@ def plan(
 ) -> Toolpath:
     """Return the toolpath of curves.
 
-    Layer k has the curves k layer heights further along their deposit directions.
+    Layer k contains the curves offset by k layer heights along their deposit directions.
 
     Parameters
     ----------
@@ -52,7 +53,7 @@ def plan(
     process : ProcessParameters
         Speeds.
     progress : callable, optional
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------

@@ -46,25 +46,25 @@ GIGABYTES_A_POINT = 1.5e-6  # at the peak, all stages
 GIGABYTES_A_VERTEX = (
     9e-6  # at the peak, of the mesh of a wall; measured 8.7 to 9.6 on walls of 9,000 to 35,000
 )
-# of a bead on a wall that is a mesh, whatever the chord error; measured are 1.5 on smooth walls to 4.4 on one with folds
+# points per mesh edge of a bead on a mesh wall, whatever the chord error; measured: 1.5 on smooth
+# walls to 4.4 on a wall with folds
 POINTS_AN_EDGE = 2.5
-SECONDS_A_MESH_POINT = (
-    7e-4  # s of the processor for a point on a mesh; measured 0.41 to 0.56 ms for the toolpath
-)
+# CPU seconds for a point on a mesh; measured: 0.41 to 0.56 ms for the toolpath
+SECONDS_A_MESH_POINT = 7e-4
 MIN_CHORDS = 24  # points of a bead on a wall
 PLACES = 181  # samples along meridians and tubes
 MAX_SAMPLES = 20_000  # sampled vertices for the reach of a wall
-SECONDS_A_LAYER = (
-    0.05  # s of the processor through all stages, however few points its beads have, measured at 25
-)
-SECONDS_A_SQUARE = 1.5e-4  # s of the processor that filling layers that differ takes by the square of the spacing, measured
-SECONDS_A_TILT = 9e-3  # s of the processor that finding a tilt takes at a point of a bead that needs some, measured
-# s of the processor that finding layers takes by the mm of folds in a mesh: measured are 0.0018 where layers run along those
-# of an even mesh to 0.011 where they meet those of an uneven one at all angles
+# CPU seconds for a layer in all stages, however few points it has; measured with 25 points
+SECONDS_A_LAYER = 0.05
+# CPU seconds for filling unequal layers, per square of the bead spacing, measured
+SECONDS_A_SQUARE = 1.5e-4
+SECONDS_A_TILT = 9e-3  # CPU seconds to find a tilt at a point that needs one, measured
+# CPU seconds to find layers, per mm of folds in a mesh; measured: 0.0018 where layers run along
+# the folds of an even mesh, to 0.011 where they cross those of an uneven mesh at all angles
 SECONDS_A_FOLD = 5e-3
-SECONDS_A_NODE = 5e-5  # s of the processor that curved layers take by the node of their grid, measured: flat ones a third
-# s of the processor that a point takes through all stages, measured; walls on parts march from layer to
-# layer, and layers of cladding are flattened for filling
+SECONDS_A_NODE = 5e-5  # CPU seconds per grid node of curved layers, measured; a third if planar
+# CPU seconds for a point in all stages, measured; walls on parts march from layer to layer, and
+# layers of cladding are flattened for filling
 _SECONDS_A_POINT: dict[type, float] = {
     RevolutionParameters: 5.5e-5,
     SurfaceParameters: 2e-3,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a family adds to the window: its tool, its panel and view, its entry in New Job."""
+"""The part of the window that belongs to a family: its tool, panel, view and entry in New Job."""
 
 from __future__ import annotations
 

@@ -60,7 +60,7 @@ class Page(QtGui.QWizardPage):
             self.fill()
 
     def cleanupPage(self) -> None:
-        """Called by Qt for Back: nothing is forgotten."""
+        """Called by Qt for Back; keep all entries."""
 
     def validatePage(self) -> bool:
         """Called by Qt for Next."""
@@ -111,7 +111,7 @@ def axis_names(owner: Any) -> list[str]:
 
 CELL_PADDING = 12  # pixels in a cell next to its text
 ROW_HEIGHT = 24
-MOST_SHOWN = 9  # rows that are to be seen at once
+MOST_SHOWN = 9  # maximum number of visible rows
 
 
 class FigureTable:
@@ -231,7 +231,9 @@ class FigureTable:
 
 
 class _Table(QtGui.QTableWidget):
-    """A table into which figures can be pasted; Enter goes on to the cell below, and does not press the window's button."""
+    """A table that accepts pasted figures; Enter moves to the cell below instead of closing the
+    dialog.
+    """
 
     def __init__(self, paste: Callable[[], None]) -> None:
         super().__init__()

@@ -271,7 +271,7 @@ class NamePage(Page):
 
 
 class LimitsPage(Page):
-    """One row per axis. A range is left empty for an endless axis, the others where they are not known."""
+    """One row per axis. An empty range means a continuous axis; other empty cells are unknown."""
 
     def __init__(self, wizard: Any) -> None:
         super().__init__(

@@ -208,7 +208,7 @@ class ExternalLinkNodes:
             move(matrix, frame)
 
     def paint(self, bad: Mask) -> None:
-        """bad: (k,) of the external axes, those whose links are to be red; the others get their own colours back."""
+        """Show the links of bad external axes (k,) in red, and the others in their own colours."""
         red = np.array([link.link > 0 and bool(bad[link.axis]) for link in self.links], dtype=bool)
         for index in np.flatnonzero(red != self.bad):
             self.materials[index].diffuseColor.setValue(
@@ -369,7 +369,7 @@ class CellNodes:
             self.nozzle.addChild(holder_node(value))
 
     def move_nozzle(self, pose: Array) -> None:
-        """Move the nozzle that is drawn to a pose (4, 4)."""
+        """Move the drawn nozzle to a pose (4, 4)."""
         if self.standing is not None:
             move(self.standing.matrix, pose)
 
@@ -434,7 +434,7 @@ def coloured(look: tuple[tuple[float, float, float], float], node: Any) -> Any:
 
 
 def platform_nodes(value: CellParameters, mount: Array) -> list[Any]:
-    """The platform of a cell on the frame that sits on it (4, 4), none without a diameter."""
+    """Return the nodes of the platform below the frame on it (4, 4); none if its diameter is 0."""
     if value.platform_diameter <= 0.0:
         return []
     radius = 0.5 * value.platform_diameter

@@ -19,7 +19,7 @@ OUTLINE, TINT = (0.0, 0.45, 0.45), (0.1, 0.62, 0.6)
 SIDES = 96
 MARGIN_RATIO = 0.15  # of the way along the axis from contour to contour, by which a base is drawn longer on either side
 OUTSIDE = (
-    0.003  # of its radius; the base is drawn that far out, to be seen before the hub's own face
+    0.003  # of its radius; the base is drawn this far out to be visible in front of the hub face
 )
 APEX_RATIO = 0.98  # of the way to the apex
 

@@ -57,12 +57,12 @@ class Lines:
         self.switch.whichChild = coin.SO_SWITCH_ALL if visible else coin.SO_SWITCH_NONE
 
     def set(self, points: Any, counts: Any) -> None:
-        """points (n, 3), counts (m,) points of each polyline."""
+        """Set the polylines: points (n, 3), and counts (m,) of points per polyline."""
         fill(self.coordinates.point, np.asarray(points, dtype=np.float32).reshape(-1, 3))
         fill(self.lines.numVertices, np.asarray(counts, dtype=np.int32))
 
     def paint(self, colours: Any) -> None:
-        """colours (n, 3) 0..1 of the points, instead of one colour."""
+        """Give each point its own colour: colours (n, 3) from 0 to 1."""
         fill(self.colour.diffuseColor, np.asarray(colours, dtype=np.float32))
         self.binding.value = coin.SoMaterialBinding.PER_VERTEX
 
@@ -96,8 +96,9 @@ class Faces:
         material, hints, offset = coin.SoMaterial(), coin.SoShapeHints(), coin.SoPolygonOffset()
         material.diffuseColor.setValue(*colour)
         material.transparency = transparency
-        hints.vertexOrdering = coin.SoShapeHints.UNKNOWN_ORDERING  # both sides are seen
-        offset.factor, offset.units = 0.5, 0.5  # FreeCAD's own faces have 1, and lines none
+        hints.vertexOrdering = coin.SoShapeHints.UNKNOWN_ORDERING  # both sides are visible
+        # FreeCAD uses 1 for its faces and no offset for lines
+        offset.factor, offset.units = 0.5, 0.5
         self.coordinates = coin.SoCoordinate3()
         self.triangles = coin.SoIndexedFaceSet()
         group = coin.SoSeparator()

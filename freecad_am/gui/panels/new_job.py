@@ -81,7 +81,7 @@ def arguments(job: JobProposal, machine: str, is_chosen: bool) -> dict[str, str]
 
 
 def machine(document: Any) -> str:
-    """The machine of the last cell of a document, else the one by default."""
+    """Return the machine of the last cell of a document, else the default machine."""
     cells = api.stages_of(document, "cell")
     return str(cells[-1].Machine) if cells else preferences.machine()
 
@@ -275,9 +275,8 @@ class JobPanel:
                 )
 
     def _receive_left_out(self, worker: Worker) -> None:
-        with contextlib.suppress(
-            AmError, Cancelled, RuntimeError
-        ):  # so is this; or the panel is closed
+        # errors are reported when the job is made; RuntimeError if the panel is closed
+        with contextlib.suppress(AmError, Cancelled, RuntimeError):
             self._show_left_out(worker.result())
 
     def _show_left_out(self, issues: Sequence[Issue]) -> None:

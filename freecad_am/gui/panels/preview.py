@@ -242,7 +242,7 @@ class PreviewPanel(StagePanel):
 
 
 def stale_lines(labels: Sequence[str]) -> list[str]:
-    """What to say of inputs that were out of date when the preview was begun."""
+    """Return the note on inputs that were out of date when the preview started."""
     return [
         tr("{} is out of date; the preview shows its earlier state.").format(label)
         for label in labels

@@ -493,7 +493,7 @@ class StagePanel(Noted):
             self.column.addWidget(fold.widget)
 
     def _mark_driven(self, field: fields.Field) -> None:
-        """What the window cannot let follow an expression may do so all the same, from a macro: it is not changed here."""
+        """Lock a field whose expression, such as one from a macro, the window cannot edit."""
         driven = dict(self.obj.ExpressionEngine) if self.obj is not None else {}
         expression = driven.get(field.row.name)
         if expression and field.row.form not in FOLLOW:
@@ -620,7 +620,7 @@ class StagePanel(Noted):
         return arguments
 
     def reject(self) -> bool:
-        """Nothing was done since the last Apply, so nothing is taken back."""
+        """Close the panel; nothing has changed since the last Apply, so nothing is reverted."""
         return True
 
 

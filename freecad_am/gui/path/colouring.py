@@ -121,7 +121,7 @@ def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
 
 
 def class_of(bead: Bead) -> tuple[str, Colour]:
-    """What a bead is, and its colour: by its kind in a filling, else by whether it closes."""
+    """Return the class of a bead and its colour: its kind in a fill, else open or closed."""
     if bead.role.closing:
         return CLOSING
     return _CLASSES.get(bead.role.kind, CLOSED_BEAD if bead.closed else OPEN_BEAD)
@@ -253,7 +253,10 @@ def unknown(count: int, kind: str, why: str) -> tuple[Array, Scale]:
 
 
 def round_numbers(low: float, high: float, min_step: float) -> Array:
-    """About TICKS round numbers from low to high, apart by one, two or five times a power of ten, `min_step` or more."""
+    """Return about TICKS round numbers from low to high.
+
+    Their step is one, two or five times a power of ten, and at least `min_step`.
+    """
     step = max(min_step, round_step((high - low) / TICKS, (1.0, 2.0, 5.0, 10.0)))
     numbers = np.arange(np.ceil(low / step - _TOLERANCE), np.floor(high / step + _TOLERANCE) + 1.0)
     rounded: Array = numbers * step + 0.0  # no minus before zero

@@ -90,7 +90,7 @@ class Row:
 
 
 LINES = 3  # maximum lines of a point's facts
-LABEL = 14  # letters of a choice that are to be seen, at least
+LABEL = 14  # minimum number of visible letters of a choice
 _LAYER_PAGE, _POINT_PAGE = 10, 100
 
 
@@ -182,7 +182,7 @@ def make_combo(name: str, help: str) -> Any:
     combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToContents)
     combo.setMinimumWidth(
         LABEL * combo.fontMetrics().averageCharWidth()
-    )  # a long label widens no window
+    )  # a long label must not widen the window
     return combo
 
 
@@ -244,7 +244,7 @@ VISIBILITY, GROUP_TOUCHED = (
 
 
 class PathDock(Follower):
-    """One for all documents; it shows the path that was selected last, or else one that is to be seen."""
+    """One dock for all documents; it shows the path selected last, or else a visible one."""
 
     def __init__(self) -> None:
         self.target: tuple[str, str] | None = None  # names of document and object

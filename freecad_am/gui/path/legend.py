@@ -40,7 +40,7 @@ Entry = tuple[tuple[str, ...], Scale]  # the lines above, and the scale
 
 
 class Legend:
-    """The legend of one path; nothing is seen before `show`."""
+    """The legend of one path, hidden until `show`."""
 
     def __init__(self) -> None:
         self.entry: Entry | None = None
@@ -270,7 +270,7 @@ def _arrange(document: Any) -> None:
 
 
 def visible_scales(document: Any) -> list[Scale]:
-    """The scales whose legends are to be seen in a document."""
+    """Return the scales whose legends are visible in a document."""
     legends = [
         getattr(getattr(obj.ViewObject, "Proxy", None), "legend", None) for obj in document.Objects
     ]

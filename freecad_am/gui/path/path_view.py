@@ -261,7 +261,7 @@ class PathView(StageView):
         if self.rows is not None and len(self.rows) and key != self.coloured_by:
             try:
                 colours, self.scale = self.coloured(vobj.Object, vobj.Colouring)
-            except InputError:  # within undo; it is drawn once all is back
+            except InputError:  # during an undo; it is drawn when the undo is complete
                 return
             self.path.paint(colours)
             self.coloured_by = key

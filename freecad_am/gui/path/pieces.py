@@ -212,7 +212,10 @@ class Look:
         self.ends.removeAllChildren()
 
     def reset(self, cuts: Index, make: Make, joined: Callable[[int], int]) -> None:
-        """Another path: its pieces, and what makes the node of rows; `joined` is the row after those a piece draws."""
+        """Draw another path: cut it at `cuts`, and build nodes with `make`.
+
+        `joined` returns the row after those that a piece draws.
+        """
         self.forget(cuts)
         self.make, self.joined = make, joined
         for _ in range(len(cuts) - 1):
@@ -354,7 +357,7 @@ class PathNodes:
         self.directions.hide()
 
     def _join(self, row: int) -> int:
-        """A piece that ends within a bead goes on to the first point of the next."""
+        """Extend a piece that ends within a bead to the first point of the next piece."""
         within = 0 < row < len(self.rows) and row not in self.rows.starts[[self.rows.bead_of(row)]]
         return row + 1 if within else row
 

@@ -197,7 +197,7 @@ class Scene:
         self.view.fitAll()
 
     def remove(self, document_goes: bool = False) -> None:
-        """Leave the view as it was, camera included; it may be gone, as in a document that goes."""
+        """Restore the view and its camera. The view may be gone, as when its document closes."""
         with contextlib.suppress(RuntimeError, ReferenceError):
             if self.graph.findChild(self.root) >= 0:
                 self.graph.removeChild(self.root)
@@ -543,7 +543,7 @@ class PlacementDock:
         self.form.tell(tr("{} has changed; compute again.").format(obj.Label), True)
 
     def close(self, document_goes: bool = False) -> None:
-        """End it, and leave the view as it was."""
+        """End the search and restore the view."""
         if self.gone:
             return
         self.gone = True

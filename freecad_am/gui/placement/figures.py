@@ -38,18 +38,18 @@ class Coloured:
 
 
 def heading(name: str) -> str:
-    """What a figure is called, with its unit."""
+    """Return the label of a figure with its unit."""
     text = translated(NAMES[name])
     return f"{text}, {_length_unit()[1]}" if name == CLEARANCE else text
 
 
 def _length_unit() -> tuple[float, str]:
-    """How many of the unit of lengths in the table make 1 mm, and its name."""
+    """Return the factor from mm to the length unit of the table, and the name of the unit."""
     return scale_of(ORDINARY["mm"], "mm")
 
 
 def figure(placed: Placed, number: int, name: str) -> float:
-    """One of the figures of a pose as it is shown."""
+    """Return one figure of a pose in its displayed unit."""
     result = placed.result_of(number)
     return {
         SHARE: 100.0 * result.share,
@@ -113,7 +113,7 @@ def texts(placed: Placed, number: int) -> list[str]:
 
 
 def heads() -> list[str]:
-    """The heads of the columns."""
+    """Return the column headings."""
     return [
         *(f"{axis}, {_length_unit()[1]}" for axis in "xyz"),
         "RX",

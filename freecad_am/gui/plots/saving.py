@@ -67,7 +67,7 @@ def made_from(obj: Any) -> list[Any]:
 
 
 def key_of(obj: Any) -> tuple[Any, ...]:
-    """What changes whenever the pictures of an object do."""
+    """Return a key that changes whenever the pictures of an object change."""
     start = (
         obj.Proxy.parameters(obj, ProgramParameters).start_at if kind_of(obj) == PROGRAM else None
     )

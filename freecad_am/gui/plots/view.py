@@ -181,7 +181,7 @@ class Toolbar(NavigationToolbar2QT):
         self._save, self._show_reading = save, show_reading
         super().__init__(view, None, coordinates=False)
         view.toolbar = self
-        # a frame around the chosen tool: on the theme's own ground its icon is faint
+        # a frame around the active tool: on the theme's background its icon is hardly visible
         self.setStyleSheet("QToolButton:checked { background: transparent; border: 1px solid; }")
         self.setIconSize(QtCore.QSize(ICON_SIZE, ICON_SIZE))
         for action, (name, *_, button) in zip(self.actions(), TOOLS, strict=False):

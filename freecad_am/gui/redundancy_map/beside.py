@@ -317,7 +317,7 @@ class Figures(QtGui.QTableWidget):
         self.filling = False
 
     def shows(self, name: str) -> bool:
-        """Whether a curve is to be seen."""
+        """Whether a curve is visible."""
         return name in self.rows and self.item(self.rows[name], 0).checkState() == QtCore.Qt.Checked
 
     def hide_curve(self, name: str) -> None:
@@ -456,7 +456,7 @@ def readout(cell: Cell, machine: Machine) -> str:
 
 
 def certified(optimality: Mapping[str, Any] | None) -> str:
-    """What a certificate says of the plan; '' where none was asked for."""
+    """Describe the certificate of a plan; '' without one."""
     if optimality is None:
         return ""
     text = tr(

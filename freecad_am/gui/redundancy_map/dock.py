@@ -157,7 +157,7 @@ WIDTH_SHARE, HEIGHT = 0.85, 380  # of the window's width; pixels
 
 
 class RedundancyMapDock:
-    """Shows the map of one joint path until it is closed, or until the joint path goes."""
+    """Shows the map of one joint path until the dock is closed or the joint path is deleted."""
 
     def __init__(self, obj: Any, closed: Callable[[RedundancyMapDock], None]) -> None:
         """closed: called when the dock closes."""
@@ -430,7 +430,7 @@ class RedundancyMapDock:
     # ---- the end
 
     def close(self) -> None:
-        """End it."""
+        """Close the map."""
         if self.gone:
             return
         self.gone = True

@@ -83,7 +83,7 @@ class Source:
         return spherical_wrist.branch_index(self.planned.branch)
 
     def task(self, branch: int) -> Task:
-        """What the planner has to do on a branch."""
+        """Return the planning task for a branch."""
         return Task(self.cell, branch, self.parameters, not self.toolpath.traits.has_axis)
 
 
@@ -413,7 +413,7 @@ class Draft:
         low, high = points.ends
         changes: dict[
             tuple[float, float, bool], Array
-        ] = {}  # beads that run over the same change alike
+        ] = {}  # beads that overlap change in the same way
         for k in beads:
             key = float(low[k]), float(high[k]), bool(points.closed[k])
             if key not in changes:
@@ -436,7 +436,9 @@ class Draft:
     # ---- making it the choice
 
     def arguments(self) -> dict[str, str]:
-        """What `api.change` is to be called with, as Python texts, so that the planner plans this curve."""
+        """Return the arguments of `api.change`, as Python source, that make the planner use this
+        curve.
+        """
         branch = OF_CELL if self.source.cell.branch == self.branch else BRANCH_WORDS[self.branch]
         shared = {"own_branch": repr(branch)}
         if self.kind == CONSTANT:

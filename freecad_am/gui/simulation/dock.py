@@ -159,7 +159,9 @@ class Scene:
     # ---- the end
 
     def remove(self, document_goes: bool = False) -> None:
-        """Leave the view as it was. The view may be gone; nothing is to be left as it was in a document that goes."""
+        """Restore the view. The view may be gone; in a closing document there is nothing to
+        restore.
+        """
         with contextlib.suppress(RuntimeError, ReferenceError):
             for node in (self.root, self.part):
                 if self.graph.findChild(node) >= 0:
@@ -385,7 +387,7 @@ class Simulation:
     # ---- the end
 
     def close(self, document_goes: bool = False) -> None:
-        """End it, and leave everything as it was."""
+        """End the simulation and restore the view."""
         scene, self.scene = self.scene, None
         if scene is None:
             return

@@ -24,7 +24,11 @@ _PAD, _GAP = 4, 6
 
 
 class JointBars(QtGui.QWidget):
-    """lower, upper: (axes,) in the units shown, infinite of endless axes, which have no bar but a turning mark."""
+    """Bars of the joint values.
+
+    lower, upper: (axes,) in the displayed units, infinite for continuous axes, which have a
+    turning mark instead of a bar.
+    """
 
     def __init__(
         self, names: Sequence[str], units: Sequence[str], lower: Array, upper: Array
@@ -255,7 +259,7 @@ class Fields(QtGui.QWidget):
     # ---- display
 
     def mark_play(self) -> None:
-        """The button that plays pauses while it does."""
+        """Show the play button as a pause button while the simulation plays."""
         mark = "pause" if self.player.playing else "play"
         self.buttons["play"].setIcon(icons.player_icon(mark, colours.ink()))
 

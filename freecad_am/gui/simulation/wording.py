@@ -106,7 +106,7 @@ def _doings() -> tuple[str, str, str, str, str]:
 
 
 def speed(moment: Moment) -> tuple[str, bool]:
-    """Speed asked for and achieved, and whether it is kept."""
+    """Return the programmed and achieved speed, and whether the speed is kept."""
     is_kept = moment.achieved >= moment.asked * (1.0 - 1e-6)
     if not math.isfinite(moment.asked):
         return "–", True
@@ -162,7 +162,7 @@ def widest(run: Run) -> dict[str, tuple[str, ...]]:
         speeds.append(
             _instead(_widest_speed(feed.achieved[slower]), _widest_speed(requested[slower]))
         )
-    shorter = min(run.times.total, _HOUR - 1.0)  # has tenths of a second
+    shorter = min(run.times.total, _HOUR - 1.0)  # below an hour, times have tenths of a second
     return {
         "clock": tuple(re.sub(r"\d", "8", times(run, time)) for time in (run.times.total, shorter)),
         "place": (_place(run, *columns),),

@@ -34,7 +34,7 @@ class ExportPanel:
 
     def __init__(self, kind: str = STEP) -> None:
         self.document = App.ActiveDocument
-        self.proposed = ""  # the file, without its ending, that the panel itself has put in
+        self.proposed = ""  # the file name without extension that the panel itself has proposed
         self.paths = [
             obj for kind in _KINDS for obj in api.stages_of(self.document, kind) if obj.Key
         ]

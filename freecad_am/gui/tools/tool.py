@@ -140,7 +140,7 @@ class _BarWidth(QtCore.QObject):
         bar.installEventFilter(self)
 
     def eventFilter(self, watched: Any, event: Any) -> bool:
-        """Called by Qt; nothing is dealt with here."""
+        """Called by Qt; the filter handles no event itself."""
         # PySide may take an event for what lay at its address before
         if isinstance(event, QtCore.QEvent) and event.type() in (
             QtCore.QEvent.Resize,

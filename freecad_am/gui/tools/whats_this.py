@@ -31,12 +31,12 @@ Need = Callable[[Any], str]
 
 
 def nothing(doc: Any) -> str:
-    """Not even a document."""
+    """Require nothing, not even a document."""
     return ""
 
 
 def document(doc: Any) -> str:
-    """A document."""
+    """Require a document."""
     return tr("First open a part, or create a document.") if doc is None else ""
 
 
@@ -170,7 +170,7 @@ class Help:
         }
 
     def Activated(self, index: int = 0) -> None:
-        """It was chosen in the menu."""
+        """Run the command: show the index of the help."""
         show(INDEX)
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Gives objects of ours their view providers, and opens their panels; named to `objects.hooks` by
-InitGui."""
+"""Gives our objects their view providers and opens their panels.
+
+InitGui registers this module with `objects.hooks`.
+"""
 
 from __future__ import annotations
 

@@ -68,7 +68,7 @@ class Preview:
             scene.addChild(node)
 
     def remove(self) -> None:
-        """Take it out of the views; once or more often."""
+        """Remove the preview from the views; further calls have no effect."""
         for scene in self.scenes:
             with contextlib.suppress(RuntimeError, ReferenceError):  # the view is closed
                 scene.removeChild(self.node)

@@ -15,7 +15,9 @@ from ..path.pieces import Rows
 
 
 class ToolpathView(PathView):
-    """Draws the beads from blue at the least to yellow at the most; a single bead is coloured along its way."""
+    """Draws the beads from blue (minimum) to yellow (maximum); a single bead is coloured along its
+    path.
+    """
 
     icon = "toolpath"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {

@@ -48,7 +48,7 @@ SIDES = {
 
 
 def worded(key: str) -> str:
-    """What the window calls a key that may be chosen."""
+    """Return the label of a choice."""
     sides = key.split("-")
     if len(sides) == 3 and set(sides) <= set(SIDES):
         return ", ".join(tr(SIDES[side]) for side in sides)

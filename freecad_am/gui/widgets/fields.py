@@ -307,7 +307,7 @@ def _outer_text(row: Row, outer_value: Any) -> str:
 
 
 def _point(edit: Any) -> str:
-    """What decimals begin with in the language of the window."""
+    """Return the decimal separator of the window's language."""
     return str(edit.locale().decimalPoint())
 
 

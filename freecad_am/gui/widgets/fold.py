@@ -74,8 +74,11 @@ class Messages(QtGui.QScrollArea):
         return label
 
     def hold(self, label: Any) -> None:
-        """Room for all of a label in a narrow panel, up to MAX_LINES lines, and no less than there is. Before the panel is
-        seen: then fields are to stay in place."""
+        """Reserve space for all of a label in a narrow panel, up to MAX_LINES lines, and never less
+        than now.
+
+        Call it before the panel is visible, so that fields do not move later.
+        """
         metrics = self.fontMetrics()
         needed = label.heightForWidth(NARROW * metrics.averageCharWidth())
         if needed + 2 * MARGIN > self.height():
@@ -89,10 +92,10 @@ class Messages(QtGui.QScrollArea):
         self.verticalScrollBar().setValue(0)
 
 
-KEEP_MS = 2500  # ms that the place of a note stays once it has gone
-WIDEST_LABEL = 78  # pixels; longer ones go on below
+KEEP_MS = 2500  # ms for which the space of a removed note is kept
+WIDEST_LABEL = 78  # pixels; longer labels wrap
 LONGEST_ROW = 2  # fields next to a label; more go below it
-WIDEST_CHOICE = 84  # pixels of a choice's texts next to its label; longer ones go below it
+WIDEST_CHOICE = 84  # pixels of a choice's texts next to its label; longer texts go below it
 
 
 class Note(QtGui.QLabel):

@@ -65,23 +65,23 @@ class NextClick:
 
 
 class Input:
-    """A row of the panel that gives arguments of the macro function."""
+    """A row of the panel that supplies arguments to the macro function."""
 
     label = ""
     link: Link
     widget: Any = None
-    places: tuple[str, ...] = ()  # what errors call it, other than by its link
+    places: tuple[str, ...] = ()  # names of the row in errors, other than its link
 
     def show_note(self, text: str) -> None:
         """Show a note under the widget; the panel replaces this method."""
 
     @property
     def missing(self) -> str:
-        """What to do when there is nothing to choose, '' when there is."""
+        """What the user should do if there is nothing to choose, else ''."""
         return ""
 
     def arguments(self) -> dict[str, str]:
-        """Arguments by keyword as Python texts."""
+        """Return the arguments by keyword as Python source text."""
         raise NotImplementedError
 
     def applied(self) -> None:

@@ -36,11 +36,12 @@ _SET, _UNSET = ":/icons/bound-expression.svg", ":/icons/bound-expression-unset.s
 
 
 class UnitBox(QtGui.QAbstractSpinBox):
-    """The widget of a `QuantityField`: a line with arrows."""
+    """The spin box of a `QuantityField`."""
 
     def __init__(self, field: QuantityField) -> None:
         super().__init__()
-        self._field = weakref.ref(field)  # a circle would keep both after the panel is closed
+        # a reference cycle would keep both alive after the panel closes
+        self._field = weakref.ref(field)
 
     @property
     def field(self) -> QuantityField | None:

@@ -16,7 +16,7 @@ from .. import picking, recorded
 from ..in_language import tr, translated
 from .pick_field import Input, NextClick, pick_button
 
-# Of a job tools take a joint path where they can
+# tools prefer the joint path of a job
 _ORDER = ("joint path", "cell", "feature", "toolpath", "program")
 
 
@@ -36,7 +36,10 @@ def selected(document: str = "") -> list[Any]:
 
 
 def job_named() -> str:
-    """The label of the job that the selection names, or of the stage where that is in none; '' where it names none."""
+    """Return the label of the selected job, or of the selected stage if it belongs to no job.
+
+    '' if neither is selected.
+    """
     for obj in selected():
         if _job(obj) or is_group(obj):
             return str((obj if is_group(obj) else _group_of(obj) or obj).Label)
@@ -217,7 +220,7 @@ class ShapeChoice(Input):
         return self.present
 
     def _refusal(self) -> str:
-        """Why nothing is taken."""
+        """Return why the selection is rejected."""
         meshes = [pick.obj.Label for pick in picking.selected(self.document)]
         if meshes:
             return tr(

@@ -83,7 +83,7 @@ class SteadyText(QtGui.QWidget):
         self._fit()
 
     def resizeEvent(self, event: Any) -> None:
-        """It has another width."""
+        """Fit the text to the new width."""
         super().resizeEvent(event)
         self._fit()
 

@@ -100,7 +100,7 @@ def arm_issues(
     known_issues: Sequence[Issue],
 ) -> tuple[Issue, ...]:
     """An error for each bead without a known issue on which, or on the way to which, a link (given
-    as cylinders) comes too near.
+    as cylinders) gets too close.
     """
     assert cell.arm_clearance is not None
     touches = _touches(motion, cell, toolpath, process, cylinders, None, cell.arm_clearance)

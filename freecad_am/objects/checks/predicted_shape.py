@@ -162,7 +162,7 @@ def inspected(
 
 
 def remedy(targets: Sequence[Target]) -> str:
-    """What to do where a deposit is too small, with {} for by how much."""
+    """Return the remedy for a deposit that is too small, with {} for the shortfall."""
     return targets[0].planner.allowance_remedy
 
 

@@ -176,7 +176,7 @@ def _survey(toolpath: Any, run: _Run | None) -> Survey:
 def _nozzle_looked(
     toolpath: Toolpath, cell: CellParameters | None, clearance_asked: list[bool]
 ) -> Looked | None:
-    """What the nozzle touches on the features that ask for clearance."""
+    """Check what the nozzle touches on features that require clearance."""
     bodies = (*toolpath.surroundings, *platforms(cell, toolpath)) if any(clearance_asked) else ()
     nozzle = NozzleParameters() if cell is None else cell.nozzle
     return nozzle_check.join_checks(

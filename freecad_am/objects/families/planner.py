@@ -53,7 +53,7 @@ class FeaturePlanner:
     has_faces: ClassVar[bool] = True
 
     def plan_layers(self, inputs: Given) -> Toolpath:
-        """Return layers and beads. Raises InputErrors of the family."""
+        """Return layers and beads. Raises the InputErrors of the family."""
         raise NotImplementedError
 
     def keep_clear(

@@ -30,7 +30,7 @@ _ORDINARY_MM = 10.0  # a length that identifies a scheme: 10 mm, 0.394 in
 
 
 def scheme_unit(value: float, unit: str) -> tuple[float, str]:
-    """How many of `unit` one of the unit is in which FreeCAD's scheme shows a value, and that unit's name."""
+    """Return the unit in which FreeCAD's scheme shows a value: its size in `unit`, and its name."""
     quantity = App.Units.Quantity(f"{value!r} {unit}")
     per_unit = App.Units.Quantity(f"1 {unit}").Value
     _, factor, name = quantity.getUserPreferred()
@@ -125,7 +125,7 @@ def process_rows() -> tuple[rows.Row, ...]:
 
 
 def label(row: rows.Row) -> str:
-    """What the page calls it: 'Wire diameter', 'Wait between layers'."""
+    """Return the label on the preferences page: 'Wire diameter', 'Wait between layers'."""
     *leading, final = (str(step).replace("_", " ") for step in row.path)
     words = [final, *leading] if leading and leading[0].startswith("between") else [*leading, final]
     return " ".join(words).capitalize() + (f" ({row.spec.unit})" if row.spec.unit else "")
@@ -227,7 +227,7 @@ _METRIC = re.compile(r"(?:µ|n|m|c|k)?m(?:\^[23]|²|³)?(?:/.*)?|ml|l|k?g|t")
 
 
 def conversion(value: float, unit: str) -> tuple[float, str] | None:
-    """How many of the unit that is shown make one `unit`, and its name, as `core.quantities.in_other_units` asks; None
+    """How many of the unit that is shown make one `unit`, and its name, as `core.number_texts.in_other_units` asks; None
     where the quantity is shown as it is."""
     if App.Units.Quantity(f"1 {unit}").Unit == App.Units.Velocity:
         return _speed_conversion(unit)
@@ -283,7 +283,7 @@ def in_user_units(text: str) -> str:
 
 
 def quantity_text(value: float, unit: str, digits: int = 4) -> str:
-    """A quantity for people, in the user's units. value: in `unit`, one of `core.quantities.UNITS`, or deg, s or %."""
+    """A quantity for people, in the user's units. value: in `unit`, one of `core.number_texts.UNITS`, or deg, s or %."""
     converted = conversion(value, UNITS[unit]) if unit in UNITS else None
     factor, name = (1.0, unit) if converted is None else converted
     return f"{significant(value * factor, digits)} {name}"

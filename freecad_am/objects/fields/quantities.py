@@ -160,7 +160,7 @@ def quote(value: Any) -> str:
 
 
 def safe_repr(value: Any) -> str:
-    """A value in a message, where it may be of an object that is gone and cannot even be named."""
+    """Return the repr of a value for a message, even if its object is deleted."""
     try:
         return repr(value)
     except ReferenceError:

@@ -25,7 +25,10 @@ from .quantities import safe_repr
 
 
 def is_text(value: Any) -> bool:
-    """Whether a value is a text that FreeCAD takes: it falls over halves of characters, and ends texts at a zero."""
+    """Whether a value is text that FreeCAD can store.
+
+    FreeCAD fails on lone surrogates and truncates text at NUL.
+    """
     return (
         isinstance(value, str)
         and "\0" not in value
@@ -279,7 +282,10 @@ def rows(cls: type) -> tuple[Row, ...]:
 
 
 def build(cls: type, values: dict[str, Any]) -> Any:
-    """The dataclass from inner values by row key; rows left out keep their default. Raises its InputError."""
+    """Build the dataclass from inner values by row key; missing rows keep their default.
+
+    Raises the InputError of the dataclass.
+    """
     nested: dict[str, Any] = {}
     for row in rows(cls):
         value = values.get(row.key, row.default)
@@ -291,7 +297,7 @@ def build(cls: type, values: dict[str, Any]) -> Any:
 
 
 def flat(parameters: Any) -> dict[str, Any]:
-    """Inner values by row key of a parameters dataclass."""
+    """Return the inner values of a parameters dataclass by row key."""
     values = {}
     for row in rows(type(parameters)):
         value = parameters

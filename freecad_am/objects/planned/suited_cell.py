@@ -33,7 +33,7 @@ MAX_DIAMETER_MM = next(
     for field in dataclasses.fields(CellParameters)
     if field.name == "platform_diameter"
 )  # mm; beads outside get a warning
-MIDDLE = 0.9  # of a diameter; a smaller one is worth another frame
+MIDDLE = 0.9  # of a diameter; a smaller diameter justifies another frame
 
 
 def fitted(toolpath: Toolpath, settings: CellParameters) -> CellParameters:

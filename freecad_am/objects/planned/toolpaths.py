@@ -101,8 +101,10 @@ def above_platform(toolpath: CoreToolpath, inputs: Given) -> list[Issue]:
 
 
 def layers_of(inputs: Given) -> CoreToolpath:
-    """Layers and beads of a feature; the nozzle is kept clear only of the feature itself, and only
-    if directions are settled with the layers. Raises InputErrors of the family.
+    """Return layers and beads of a feature.
+
+    The nozzle is kept clear only of the feature itself, and only if the layers determine the tool
+    directions. Raises the InputErrors of the family.
     """
     process = inputs.process
     if process.bead_model == "none" and process.wire.feed_mode != "constant" and not process.ramped:
@@ -151,7 +153,7 @@ def measure_infill(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
     max_void = getattr(inputs.strategy, "max_void", None)
     if max_void is None:
         return toolpath
-    from ...core.process.deposit import void_and_double  # other families need none of it
+    from ...core.process.deposit import void_and_double  # other families do not need it
 
     return void_and_double.measure(toolpath, max_void)
 

@@ -175,10 +175,9 @@ def _distinct_numbers(leaves: list[Any]) -> list[int]:
 
 
 def _is_same(shape: Any, other_shape: Any) -> bool:
-    """Whether two shapes are one in the same place, however they came there."""
-    if not shape.isPartner(
-        other_shape
-    ):  # true for most pairs, whose placements would take twenty times as long
+    """Whether two shapes are the same shape in the same place."""
+    # most pairs end here; comparing their placements would take twenty times as long
+    if not shape.isPartner(other_shape):
         return False
     return np.allclose(
         shape.Placement.toMatrix().A, other_shape.Placement.toMatrix().A, rtol=0.0, atol=1e-9

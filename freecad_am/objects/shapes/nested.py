@@ -42,7 +42,7 @@ class Mark(NamedTuple):
     middle: tuple[float, float, float]
 
     def text(self) -> str:
-        """As it is stored."""
+        """Return the stored form of the path."""
         return " ".join(
             (
                 self.name,

@@ -152,8 +152,8 @@ def _shape_of_file(
             _refuse_without_add_on(obj, needs, where)
         content, label = _content_of(source, path)
         if (renewed or changed) and isinstance(content, Part.Shape):
-            # as a text, so that it is never computed again in the process that asked: FreeCAD 1.0 starts threads for
-            # that, and later copies of a process with threads wait for them without end
+            # as text, so that the calling process never recomputes it: FreeCAD 1.0 starts threads
+            # to recompute, and a later fork of a process with threads would hang
             content = content.exportBrepToString()
         return content, label, _notes(source, needs, renewed, changed)
     finally:

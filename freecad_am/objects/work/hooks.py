@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the GUI hooks in: objects never import it, they only say that they are there, or that there is long work.
+"""Hooks for the GUI: objects never import the GUI, they only announce themselves and long work.
 
-InitGui names the module; it is imported when the first object of ours appears.
+InitGui names the GUI module, which is imported when our first object appears.
 """
 
 from __future__ import annotations

@@ -48,7 +48,7 @@ class Run:
     positions in its nearest configuration. process_data: of the module. output, on: the switch of
     the deposit, and its state. seam, weave: of the burning arc, struck: the weave it was struck
     with, until it moves, last_weld: weld data and weave it was struck or burnt by. feeding: whether
-    the wire goes on, fed: whether it ended in the bead.
+    the wire is feeding, fed: whether it stopped within the bead.
     """
 
     modules: dict[str, Module]

@@ -31,9 +31,9 @@ SPEED, WELD, FEED, FEED_END, SWITCH_ON, SWITCH_OFF = (
     "g_off",
 )
 TRIGGER_NAMES = (FEED_END, SWITCH_ON, SWITCH_OFF)
-MOST_NAMES = (
-    500  # of speeds, or data of one kind, in a module: each is a line that the controller keeps
-)
+# maximum number of speeds, or of other data of one kind, in a module: the controller keeps a line
+# for each
+MOST_NAMES = 500
 ARC, CARTESIAN = "arc", "cartesian"
 LAST_WEAVE, LAST_SEAM = 255, 9999
 WAY_DECIMALS = (
@@ -120,8 +120,8 @@ def aboard(blocks: Iterable[Block]) -> list[Aboard]:
 
 
 class Process:
-    """Words of the moves of a program, asked for block by block in the order of motion: from
-    `plain`, or of another instruction with process data.
+    """Words of the moves of a program, built block by block in the order of motion: from `plain`,
+    or for another instruction with process data.
     """
 
     def __init__(self, program: Program, plain: Callable[[Moves], Sequence[str]]) -> None:

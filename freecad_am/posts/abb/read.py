@@ -98,7 +98,8 @@ def _load(
     if name is None:
         place_of_line = f"{module.file} line {number}"
         raise unreadable(
-            place_of_line, Text("{!r} where {} was loaded to be run", called, part_name)
+            place_of_line,
+            Text("{!r} where {} was loaded to be run", called, part_name),
         )
     number, gone = next(lines, (0, ""))
     if gone != f'UnLoad "HOME:/{part_name}.mod";':

@@ -105,7 +105,7 @@ def pose(six: Six | None) -> Pose:
 
 
 class Words:
-    """Speed and zone of the moves of a program, asked for block by block in the order of motion."""
+    """Speed and zone of the moves of a program, built block by block in the order of motion."""
 
     def __init__(self, program: Program, speed: str, zone: str) -> None:
         self._blend, self._speed, self._zone = program.blend, speed, zone
@@ -251,13 +251,13 @@ def data(
 
 
 def speed(tip: str) -> str:
-    """A speed of the tip, mm/s, with the other speeds of RAPID's v1000."""
+    """Return the speeddata for a TCP speed, mm/s, with the other speeds of RAPID's v1000."""
     return f"[{tip},{_SPEEDS}]"
 
 
 def _zone(size: float) -> str:
-    """A zone of `size` mm, in the proportions of RAPID's own z1: as large for orientation, 0.1 deg
-    per mm.
+    """Return the zonedata for `size` mm, in the proportions of RAPID's own z1: the same size for
+    the orientation, and 0.1 deg per mm.
     """
     mm, degrees = f"{size:.3f}", f"{0.1 * size:.4f}"
     return f"[FALSE,{mm},{mm},{mm},{degrees},{mm},{degrees}]"

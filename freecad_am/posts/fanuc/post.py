@@ -264,7 +264,7 @@ def _refuse(program: Program) -> None:
 
 
 def _refuse_continuous_steps(program: Program) -> None:
-    """An axis set to turn without end takes the shorter way, so a move of half a turn or more would go wrong."""
+    """Reject moves of half a turn or more: a continuous axis would take the shorter way."""
     axes = np.flatnonzero(program.continuous)
     joints = np.concatenate([run.joints for run in program.moves])[:, axes]
     run_numbers = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
@@ -293,7 +293,7 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 
 def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
-    """The words of each block's moves after their positions, asked for in the order of motion."""
+    """Return a builder of the words after the positions of moves; call it in motion order."""
     is_first, options = True, at_ends(program)
 
     def words(moves: Moves) -> Sequence[str]:

@@ -420,7 +420,7 @@ def _follow(
 def _switch(
     output: re.Match[str], where: str, run: Run, digits: float = 0.0, ahead: float | None = None
 ) -> None:
-    """The deposit goes on or off."""
+    """Read an instruction that switches the deposit."""
     if run.output not in ("", output[1]):
         raise unreadable(where, "a second output is switched")
     run.output, run.on = output[1], output[2] == "ON"

@@ -87,7 +87,7 @@ class ArcMove:
 
 
 def is_arc_line(line: str) -> bool:
-    """Whether a line belongs to an instruction of ArcTech."""
+    """Whether a line belongs to an ArcTech instruction."""
     return "ArcMainNG(" in line
 
 
@@ -200,7 +200,7 @@ def _about(axis: int, angle: Array) -> Array:
 
 
 def not_read(where: str, why: str) -> InputError:
-    """The error for a line that is not understood, or makes no sense in its position."""
+    """Return the error for a line that is not understood, or makes no sense where it is."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)
 
 

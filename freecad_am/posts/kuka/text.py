@@ -232,8 +232,8 @@ def frames(position: Array, rotation: Array) -> Array:
 
 
 class Lines:
-    """The lines of the moves of a program, asked for block by block in the order of motion: each
-    move with its required settings before it, separated by |.
+    """The lines of the moves of a program, built block by block in the order of motion: each move
+    with its required settings before it, separated by |.
 
     ahead: the time left in the last moves for switching the deposit ahead of their ends.
     """
@@ -254,7 +254,8 @@ class Lines:
             f"{word} {{{','.join([*values, *external])}}}"
             for word, values in (("PTP", _AXES), ("LIN", _PLACE))
         )
-        # shares of the speeds of external axes hold for linear moves too, which they must not slow down
+        # the speed shares of external axes also apply to linear moves, which they must not slow
+        # down
         self._shares = "".join(f"$VEL_EXTAX[{number}]=%d|" for number in numbers)
         self._unhindered = self._external_speeds(100)
 
@@ -268,7 +269,7 @@ class Lines:
                 _STOPS if stops or size <= 0.0 else _ROUNDED for stops in moves.stops.tolist()
             ]
             if _ROUNDED in corners[-2:-1]:
-                # a delay does not reach farther than where the corner ends
+                # a delay must not extend beyond the end of the corner
                 self._switched(
                     moves, float(moves.duration[-1] - size / moves.speed[-1]), corner=True
                 )
@@ -313,7 +314,8 @@ class Lines:
         percent = np.where(share > 0.0, percent, 100.0)
         if self._before is None:
             percent[0] = 100.0 * FIRST_SHARE
-        # one that is slow for it is so short goes at the least share there is: it was planned to take a while
+        # a rapid that is slow only because it is short runs at the smallest share: it was planned
+        # to take a minimum time
         tame = moves.duration <= SHORTEST_RAPID * (1.0 + 1e-9)
         wrong = ~((percent <= 100.5) & (tame | (percent >= 0.5 * LEAST_PERCENT)))
         if wrong.any():

@@ -256,7 +256,7 @@ def _remark(text: str) -> str:
 
 
 def _modes(program: Program) -> list[str]:
-    """What moves begin with: mm, absolute, the tool's length, a stop at every point, axes in the machine's own frame."""
+    """Return the header: mm, absolute, tool length, exact stop, axes in the machine's own frame."""
     zeros = " ".join(f"{name}0" for name in program.axis_names)
     return [
         "G21 G17 G90 G94 G40 G49 G80", "G92.2", EXACT_STOP, f"G43 H{program.tool_frame}",

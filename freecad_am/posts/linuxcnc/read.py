@@ -189,7 +189,8 @@ def _sets_mode(text: str, state: _State) -> bool:
     """Whether a line sets how corners are passed or which tool counts, or waits; it is done then."""
     if corners := _CORNERS.match(text):
         state.track.exact = text == "G61.1"
-        # G61 stops where it must; another tolerance for points than for corners is none that was asked for
+        # G61 stops only where it must; a point tolerance that differs from the corner tolerance is
+        # not ours
         is_known = corners[2] and corners[2] == corners[3]
         state.track.rounding = (
             float(corners[2]) if is_known else 0.0 if corners[1] else float("inf")

@@ -64,7 +64,7 @@ ON_CONTROLLER = controller_checks(
     "The words that switch the deposit and the inputs are taken up in the PLC",
     "The feed override is 100 %",
 )
-# an endless axis goes the shorter way
+# deg; a continuous axis takes the shorter way
 LARGEST_TURN = 180.0 - 0.001
 # address extensions of H words, numbers of inputs the controller reads itself, and of analogue inputs and outputs
 LAST_OUTPUT, LAST_INPUT, LAST_ANALOGUE = 99, 32, 8
@@ -293,7 +293,7 @@ _WIRE = "$A_OUTA[{}]={}"
 
 
 def _modes(program: Program) -> list[str]:
-    """What moves begin with: the zero frame, the tool's length, smoothing, what a feed in mm/min is the speed of."""
+    """Return the header: zero frame, tool length, smoothing, and the axes of the feed."""
     smooth = ["SOFT FFWON", "G642"] if program.nc.smooth else ["BRISK FFWOF", "G64"]
     path = ["FGROUP(X,Y,Z)"] if program.nc.path_feed or program.motion == "cartesian" else []
     return [f"G500 D{program.tool_frame}", *smooth, *path]
@@ -382,7 +382,10 @@ def _motion(program: Program, run: Run) -> list[str]:
 
 
 def _axis_words(program: Program, joints: Array) -> tuple[str, Array]:
-    """The template and the values of the axes; one without end in [0, 360), by the shorter way."""
+    """Return the template and the values of the axes, with continuous axes in [0, 360).
+
+    The controller turns them the shorter way.
+    """
     values = nc_numbers.controller_values(joints, program.axis_kinds)
     continuous = np.array(program.continuous)
     values[:, continuous] = np.round(values[:, continuous] % 360.0, nc_numbers.DECIMALS) % 360.0

@@ -66,7 +66,7 @@ def frames(position: Array, rotation: Array) -> Array:
 
 
 class Descriptors:
-    """The motion descriptors of the moves of a program, asked for block by block in the order of motion."""
+    """Motion descriptors of the moves of a program, built block by block in the order of motion."""
 
     def __init__(self, program: Program) -> None:
         self.cartesian, self.blend = program.motion == "cartesian", program.blend

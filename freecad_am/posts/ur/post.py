@@ -64,7 +64,8 @@ TOOL_POINTS = np.array(
 
 
 class Words:
-    """The words of each move about time or speed and blend, asked for block by block; and the tool point of the blends.
+    """The time or speed and the blend of each move, built block by block, and the tool point of the
+    blends.
 
     tool_point: mm on the flange, if the robot carries the part; None if the tip itself is the tool.
     Raises InputError MOVE_TIME, MOVE_SPEED, BLEND_RADIUS.
@@ -91,7 +92,7 @@ class Words:
 
 
 def _ways(program: Program) -> tuple[Array | None, Array]:
-    """The tool point, and (n,) mm that it goes on each move of a bead."""
+    """Return the tool point, and its path length (n,) mm on each move of a bead."""
     moves = program.moves
     if not program.holds_part:  # the tip is the tool
         return None, np.concatenate([run.speed * run.duration for run in moves])

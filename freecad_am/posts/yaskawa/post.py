@@ -347,7 +347,7 @@ def _remark(text: str) -> list[str]:
 
 
 class _Words:
-    """The words of each move behind its position, asked for in the order of motion.
+    """The words after the position of each move, built in the order of motion.
 
     off: largest relative error of the speed of a joint move of a bead, from the steps of VJ.
     """

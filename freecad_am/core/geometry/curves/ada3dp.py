@@ -31,7 +31,7 @@ POINTS, PROCESS_ON, TYPE = 1, 2, 3  # PathSegment
 TOOL, MATERIAL = 10, 11
 STRATEGY, DYNAMIC_AXES = 2, (5, 6)  # Parameters
 POSITION, DIRECTION = 1, 2  # Point
-MIN_STEP_MM = 1e-6  # mm; points no farther apart are one
+MIN_STEP_MM = 1e-6  # mm; closer points count as one
 MAX_MM = 1e7  # mm
 # the last field of each message of the schema
 LAST_FIELD = {"toolpath": 2, "parameters": 7, "layer": 2, "segment": 11, "point": 8}

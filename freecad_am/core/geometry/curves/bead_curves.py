@@ -77,8 +77,8 @@ class ReadCurves(NamedTuple):
 COLUMNS = ("x", "y", "z", "i", "j", "k", "bead")
 BY_COUNT = {3: COLUMNS[:3], 4: (*COLUMNS[:3], "bead"), 6: COLUMNS[:6], 7: COLUMNS}
 CODE = "BAD_TABLE"
-MIN_STEP_MM = 1e-6  # mm; points no farther apart are one
-MAX_MM = 1e7  # mm; farther away is a slip of the pen
+MIN_STEP_MM = 1e-6  # mm; closer points count as one
+MAX_MM = 1e7  # mm; a larger coordinate is a typing error
 FORM = "give a table with the columns x,y,z, then i,j,k for directions, then bead for several beads"
 
 

@@ -31,7 +31,7 @@ LAYER = re.compile(
     r"\s*(?:LAYER\s*:\s*-?\d+|LAYER_CHANGE|CHANGE_LAYER|layer\s+-?\d+\b.*|BEFORE_LAYER_CHANGE)",
     re.IGNORECASE,
 )
-MIN_STEP_MM = 1e-6  # mm; points no farther apart are one
+MIN_STEP_MM = 1e-6  # mm; closer points count as one
 MAX_MM = 1e7  # mm; farther away is a slip of the pen
 ARC_END = (
     0.1  # mm by which the ends of an arc may be on different circles: slicers round to hundredths
@@ -95,7 +95,7 @@ REFUSED = {
     "FORCE_MOVE": "it moves a single motor; remove it",
     "EXCLUDE_OBJECT": "it drops an object while the program runs; let the slicer leave the object out",
 }
-# codes that makers of printers give a meaning of their own: probing, levelling, states of the machine
+# codes to which printer manufacturers give their own meanings: probing, levelling, machine states
 VENDOR = re.compile(r"G39(?:\.\d+)?|G\d{3,}(?:\.\d+)?")
 CANCELLED = re.compile(r"\s*(?:C|P\s*\d+)\s*", re.IGNORECASE)  # words of M486 that drop an object
 WORK_OFFSETS = re.compile(r"G5[5-9](?:\.[123])?")

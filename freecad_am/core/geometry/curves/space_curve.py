@@ -82,7 +82,9 @@ class SpaceCurve:
         return angle
 
     def started_at(self, node: int) -> SpaceCurve:
-        """The closed curve started at another of its nodes; the parameter goes on across the old start."""
+        """Return the closed curve started at another node; the parameter continues across the old
+        start.
+        """
         if not self.closed:
             raise ValueError("only a closed curve can be started elsewhere")
         order = np.r_[node : len(self.w) - 1, 0 : node + 1]

@@ -11,7 +11,7 @@ from ...issues import WARNING, InputError, Issue, Text
 
 UNITLESS_ENDINGS = (".stl", ".obj")
 MESHES = (*UNITLESS_ENDINGS, ".3mf")
-HEAD = 4096  # bytes at the begin of a file in which programs write a remark
+HEAD = 4096  # bytes at the start of a file in which programs write a remark
 _STATED = re.compile(r"\bunits?\b[\s:=\"']*(?:(?:is|are)\s+)?(?:in\s+)?([a-zµμ]+)", re.IGNORECASE)
 _LENGTHS = {  # mm
     "mm": 1.0,

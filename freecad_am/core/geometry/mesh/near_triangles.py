@@ -19,7 +19,7 @@ from .refined import Edges
 
 BITS = 10  # of each coordinate in the order of the leaves
 MAX_BLOCK_PAIRS = 500_000  # pairs tested together
-PARALLEL = 1e-9  # 1 - cosine of the angle between normals that are one
+PARALLEL = 1e-9  # 1 - cosine of the angle; normals within it count as parallel
 
 
 class _Level(NamedTuple):
@@ -39,9 +39,9 @@ class _Level(NamedTuple):
 def near_pairs(corners: Array, normals: Array, deep: float) -> Iterator[Index]:
     """Yield the pairs of triangles whose boxes overlap, each pair once.
 
-    Coplanar triangles, as on a flat face, are left out by their common normal. The boxes are
-    along the principal axes of the normals, which suit the long triangles of round shapes. Both
-    kinds of pairs can be very numerous.
+    Coplanar triangles, as on a flat face, share a normal and are left out. The boxes are aligned
+    with the principal axes of the normals, which suit the long triangles of round shapes. Without
+    these two measures there can be very many pairs.
 
     Parameters
     ----------

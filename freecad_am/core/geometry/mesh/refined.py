@@ -291,9 +291,8 @@ def flip_edges(vertices: Array, triangles: Index, owner: Index) -> Index:
         Triangles that are nearly Delaunay.
     """
     triangles = triangles.copy()
-    open_ = np.ones(
-        len(triangles), dtype=bool
-    )  # changed, or contested by two edges; between other triangles nothing is new
+    # triangles that have changed, or that two edges compete for; pairs of others are done
+    open_ = np.ones(len(triangles), dtype=bool)
     for _ in range(FLIPS if len(triangles) < MANY_TRIANGLES else FEW_FLIPS):
         edges = Edges(triangles)
         pair = np.flatnonzero(

@@ -567,7 +567,9 @@ def split_solids(vertices: Array, corners: Index, messages: list[str]) -> tuple[
 
 
 def _winding(corners: Array, point: Array) -> float:
-    """How often triangles (m, 3, 3) go round a point (Van Oosterom and Strackee 1983)."""
+    """Return the winding number of triangles (m, 3, 3) about a point (Van Oosterom and Strackee
+    1983).
+    """
     a, b, c = ((corners - point)[:, k] for k in range(3))
     u, v, w = (np.linalg.norm(side, axis=1) for side in (a, b, c))
     below = u * v * w + dot(a, b) * w + dot(b, c) * u + dot(c, a) * v

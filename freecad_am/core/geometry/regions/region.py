@@ -20,8 +20,9 @@ from ...types import Array, Index, Mask
 from ..curves.plane_curve import doubled_area, nearest_on_rings, winding
 from ..step_count import turn_segments
 
-MERGED = 1e-12  # of the extent; points nearer together are one
-STRAIGHTNESS_TOLERANCE = 1e-9  # of the extent; a border within that of a straight line is one, and what is thinner is none
+MERGED = 1e-12  # of the extent; closer points count as one
+# of the extent; a border this straight is a line, and a thinner region is empty
+STRAIGHTNESS_TOLERANCE = 1e-9
 SLIVER = 1e-12  # of the squared extent; smaller pieces are dropped where no other area is stated
 AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at once
 # the library's number for corners that stay corners, and up to how many times the distance these may stand out
@@ -29,7 +30,7 @@ _MITRE, SHARPEST = 2, 1000.0
 DIGITS = 9  # of coordinates in mm where points are left out: last bits decide nothing
 LEAST_ARC = 8  # segments of a full turn
 EIGHT = 2.8  # times the squared radius, a hair less than the area of a regular octagon in a circle
-ON_EDGE = 1e-6  # mm; a point that near to the line between its neighbours is on it
+ON_EDGE = 1e-6  # mm; a point closer to the line between its neighbours is on that line
 SAME_TURN = 1e-6  # rad; corners whose turns differ by less turn as much
 ROUND_AREA = 0.02  # moments of area that differ by less, relatively, are the same
 WIDTH = 0.005  # relative tolerance of a region's width
@@ -40,7 +41,7 @@ FINE_SLIT, LONG_SLIT = (
 
 
 class Shapely(NamedTuple):
-    """What is used of the library."""
+    """The functions of the library that are used."""
 
     geometry: Any
     ops: Any
@@ -300,7 +301,7 @@ class Mended(NamedTuple):
     dropped: float
 
     def issues(self, layer: int | None = None) -> tuple[Issue, ...]:
-        """What a user should know."""
+        """Return the notes for the user."""
         found = []
         if self.changed > 0.0:
             text = Text(

@@ -160,7 +160,7 @@ class FacetGround:
         return points - dot(points - corner, normal)[:, None] * normal, normal
 
     def sagitta(self, piece_numbers: Index) -> Array:
-        """From the turns between triangles."""
+        """Return the sagitta of triangles, from the angles between them."""
         return self.solid.sagitta[piece_numbers]
 
 
@@ -352,7 +352,8 @@ def _curve(
         for end in (0, -1):
             points[end] = wall.project(_intersect_rim(points[end], rims, ground)[None])[0][0]
         ground_piece = ground.located(points)[2]
-        for end in (0, -1):  # a smooth surface through a mesh is a little off its edge
+        # a smooth surface through a mesh deviates slightly from the edge of the mesh
+        for end in (0, -1):
             if abs(_above(ground, points[[end]], ground_piece[[end]])[0]) >= ON_GROUND:
                 points[[end]], ground_piece[[end]] = _move_onto_ground(wall, ground, points[[end]])
     sound = np.abs(_above(ground, points, ground_piece)) < ON_GROUND

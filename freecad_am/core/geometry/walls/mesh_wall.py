@@ -192,7 +192,7 @@ def _cones(corners: Array) -> float:
 
 
 MAX_TRIANGLES = 1_500_000  # triangles
-COLLAPSE = 0.55  # of the longest edge; shorter ones are drawn together
+COLLAPSE = 0.55  # of the longest edge; shorter edges are collapsed
 CREASE = np.cos(
     np.radians(20.0)
 )  # facets that meet at more are areas of their own, whose edges stay where they are
@@ -221,7 +221,7 @@ class MeshWall(PatchWall):
 
     @property
     def smoothing(self) -> float:
-        """How far, mm, the smooth surface is off the mesh, at most."""
+        """Return the largest deviation of the smooth surface from the mesh, mm."""
         at_vertices = (
             0.0
             if self.samples is None
@@ -231,7 +231,7 @@ class MeshWall(PatchWall):
 
     @property
     def mesh_vertices(self) -> int:
-        """How many vertices the mesh has."""
+        """Return the number of vertices."""
         return len(self.vertices)
 
     @property
@@ -241,7 +241,7 @@ class MeshWall(PatchWall):
         return Mesh(self.vertices, ahead).folded(FOLD)
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
-        """On the smooth surface, which goes on a little beyond the edges of the wall."""
+        """Locate points on the smooth surface, which extends a little beyond the wall."""
         points, normals = self.smooth.project(points)
         return points, normals, np.zeros(len(points), dtype=np.intp)
 

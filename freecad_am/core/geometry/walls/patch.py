@@ -15,9 +15,9 @@ from ...types import Array, Index
 from ..columns import columns
 from .surface import dot
 
-# ---- Tensor product B-spline surfaces, rational ones too, evaluated at many places at once (Piegl
-# and Tiller, The NURBS Book, algorithms A2.2 and A3.6). Beyond their knots they go on
-# straight, so that a point may pass the surface's edge
+# ---- Rational and non-rational tensor product B-spline surfaces, evaluated at many parameters at
+# once (Piegl and Tiller, The NURBS Book, algorithms A2.2 and A3.6). Beyond their knots they are
+# extrapolated linearly, so points may lie past the edge of the surface
 
 
 def derivatives(

@@ -22,9 +22,9 @@ ITERATIONS = 30
 class Tabulated:
     """The surface through points (n, m, 3), mm, at the rising parameters u (n,) and v (m,), n, m >= 4.
 
-    A periodic table leaves out the column at v[0] + period. Below and above the table in u the wall goes on straight
-    along its last derivative, so that a layer may pass the wall's end before it is trimmed; v of an open wall is kept
-    inside.
+    A periodic table leaves out the column at v[0] + period. Below and above the table in u the wall
+    is extrapolated linearly, so that a layer may pass the end of the wall before it is trimmed. On
+    an open wall, v is kept inside the table.
     """
 
     def __init__(self, u: Array, v: Array, points: Array, period: float | None = None) -> None:

@@ -32,16 +32,18 @@ from .shoulder_loops import (
 )
 
 SAMPLES = 36
-SAMPLE_SHIFT = 0.37  # of a step: no sample where the arm is stretched or folded, where a zero could have either sign
-PIECES, LEVELS = 8, 6  # into which a step is divided where the arm swings fast, and how often again
-FLAT_VALUES = (
-    0.02,
-    4e-4,
-)  # of the cosine between axes 4 and 5: steps whose ends are less are divided, and again
-SWING = 0.96  # cosine of the most that arm or axis 4 may turn in a step
-ROUNDS, PEAKS = 60, 12  # of the search for a zero, and for an extreme
-TOUCHES = 1e-11  # of the cosine between axes 4 and 5: an extreme so near is a zero
-SAME_RAD = 1e-7  # nearer zeros are one: where two meet, rounding parts them by its root
+# share of a step by which samples are shifted, so that none falls where the arm is stretched or
+# folded: a zero there could have either sign
+SAMPLE_SHIFT = 0.37
+# a step in which the arm swings fast is divided into PIECES, up to LEVELS times
+PIECES, LEVELS = 8, 6
+# cosine between axes 4 and 5; steps with smaller values at their ends are divided, and so are their
+# pieces
+FLAT_VALUES = (0.02, 4e-4)
+SWING = 0.96  # cosine of the largest turn of the arm or axis 4 in a step
+ROUNDS, PEAKS = 60, 12  # iterations of the search for a zero, and for an extremum
+TOUCHES = 1e-11  # cosine between axes 4 and 5; a smaller extremum counts as a zero
+SAME_RAD = 1e-7  # closer zeros count as one: rounding separates a double zero by its square root
 
 
 class Zeros(NamedTuple):

@@ -282,7 +282,7 @@ def _offset(turn: float) -> float:
 
 
 def clean(value: float) -> float:
-    """A number without the noise of its computation."""
+    """Round off the numerical noise of a number."""
     rounded = round(value, 9)
     return rounded + 0.0 if abs(rounded - value) < 1e-11 else value
 

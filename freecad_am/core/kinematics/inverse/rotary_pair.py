@@ -79,8 +79,10 @@ def solve_turns(first_axis: Array, second_axis: Array, source: Array, target: Ar
 
 
 class ByVertical(NamedTuple):
-    """gamma, alpha (n,) rad that bring the source to the vertical, Rx(alpha) Rz(gamma) source = Z, and alpha_back,
-    gamma_back (n,) that go on to the target, Rz(gamma_back) Rx(alpha_back) Z = target."""
+    """gamma, alpha (n,) rad that turn the source to the vertical, Rx(alpha) Rz(gamma) source = Z,
+    and alpha_back, gamma_back (n,) that turn it on to the target, Rz(gamma_back) Rx(alpha_back) Z =
+    target.
+    """
 
     gamma: Array
     alpha: Array

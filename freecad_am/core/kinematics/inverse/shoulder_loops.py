@@ -157,7 +157,7 @@ def spot_of(curves: Curves, plane: Plane, bent: Array | tuple[Array, Array]) -> 
 
 NEWTON = 3
 LONGEST_STEP_RAD = 1e-3
-ENDS = 1e-12  # of the squared length: what an angle may leave of being stretched or folded to be an end
+ENDS = 1e-12  # of the squared length; a position this close to stretched or folded is an end
 SHORTEST_RAD = 1e-12
 
 

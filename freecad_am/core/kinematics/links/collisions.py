@@ -91,13 +91,13 @@ def arm_collisions(
     moment : (k,) int array
         Number of points of the deposit present.
     true_shapes : sequence of bool, optional
-        Whether each link has its true shape; none by default.
+        Whether the exact shape of each link is known; by default it is not.
 
     Returns
     -------
     list of Collision
-        One entry for each link and object: certain ones if any, else the doubtful ones,
-        deep ones first.
+        One entry for each link and object: certain collisions if there are
+        any, else doubtful ones; deep collisions first.
     """
     drawn = _contact(cell, cylinders, bodies, deposit, 1.0)
     touching = drawn.touches(joints, moment)

@@ -74,7 +74,7 @@ class ExternalLink:
 
     @property
     def name(self) -> str:
-        """What messages call it."""
+        """Name in messages."""
         return self.body.name
 
 

@@ -29,7 +29,7 @@ OFF_RADIUS, OFF_END = (
     0.4,
 )  # shares by which a reduced link is smaller in radius, and in length at an end
 SHARES = (0.2, 1.0)  # shares of these, tried in turn
-MIN_DEPTH = 1e-3  # mm that two solids which meet reach into each other, at the least
+MIN_DEPTH = 1e-3  # mm; minimum depth by which two touching solids intersect
 
 
 @dataclass(frozen=True)

@@ -250,7 +250,7 @@ class OwnLinks:
 
 @dataclass(frozen=True, eq=False)
 class _Asked(ByNumbers):
-    """What the links of a robot follow from; the same numbers are the same question."""
+    """The inputs that determine the links of a robot, as a cache key."""
 
     chain: Chain
     limits: Limits

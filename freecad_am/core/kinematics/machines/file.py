@@ -534,7 +534,10 @@ def opw_arm(node: Node, count: int) -> OpwArm:
     signs = node["signs"].numbers(6)
     if (np.abs(signs) != 1.0).any():
         raise node["signs"].bad(
-            Text("{} must be 1 or -1 each; give one for each joint", node["signs"].value)
+            Text(
+                "{} must be 1 or -1 each; give one for each joint",
+                node["signs"].value,
+            )
         )
     offsets = node["offsets"].numbers(6)
     if (np.abs(offsets) > 180.0).any():

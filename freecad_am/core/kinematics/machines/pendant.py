@@ -49,7 +49,7 @@ class Deviation:
 class Suspect:
     """A change with which the machine meets the poses.
 
-    axes: those concerned, from 0. shown: how the controller would display the joints, None if
+    axes: the affected axes, from 0. shown: how the controller would display the joints, None if
     the fault is elsewhere. pose: (4, 4) motion of the base frame in base_link or, if `kind`
     is FLANGE, the pose after the flange; None if both are right. remaining: the largest
     remaining deviation.

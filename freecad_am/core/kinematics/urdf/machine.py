@@ -126,10 +126,9 @@ def _sizes(element: Element, sizes: Array) -> Array:
     return sizes
 
 
-MECHANISM = 2  # axes of one at most
-WHOLE_CELL = (
-    "urdf"  # in the place of `cell.external`: what the URDF of the machine has (`urdf_cell`)
-)
+MECHANISM = 2  # maximum number of axes of a mechanism
+# value of `cell.external` for the mechanisms in the URDF of the machine (`urdf_cell`)
+WHOLE_CELL = "urdf"
 
 
 def describe(machine_reference: Reference) -> tuple[Description, SerialArm | None]:

@@ -25,9 +25,9 @@ from .elements import CODE, Element
 
 MOVING = ("revolute", "continuous", "prismatic")
 FIXED = "fixed"
-# names that ROS-Industrial gives them, and FANUC
+# names of these links in files of ROS-Industrial and FANUC
 BASES, TIPS = ("base_link",), ("tool0", "flange", "fanuc_flange")
-ROBOT = 6  # joints of one
+ROBOT = 6  # number of joints of a robot
 PARALLEL_TOLERANCE_RAD, BEHIND_MM = (
     math.radians(0.25),
     1e-3,

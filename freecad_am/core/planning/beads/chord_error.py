@@ -151,12 +151,12 @@ def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Arra
 def _deviation(
     task: Task, points: Array, joints: Array, segments: Index, chord_error: float
 ) -> Array:
-    """Return the deviations (k,) of the segments (k,) that begin at these of the points (n, 3) with
-    joints (n, axes).
+    """Return the deviations (k,) of the segments that begin at the points with indices (k,), from
+    points (n, 3) and joints (n, axes).
     """
     distances = _looked_at(task, points, joints, segments, INNER_SHARES)
     deviation: Array = np.maximum.reduce(distances)
-    # nearly all leave it evenly, most in the middle, so samples do not miss the maximum
+    # nearly all segments deviate smoothly, most in the middle, so samples do not miss the maximum
     doubtful = np.flatnonzero(
         (deviation > 0.5 * chord_error) & (np.maximum.reduce(INTERPOLATION @ distances) > deviation)
     )

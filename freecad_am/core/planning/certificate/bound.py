@@ -605,7 +605,7 @@ def _grouped(step: Array, weights: Array) -> Index:
 # bead, each point free
 
 POINTWISE_REASON = "each point free"
-MIN_GAIN = 1e-3  # share of the objective that has to be won, else the polynomial stays
+MIN_GAIN = 1e-3  # minimum gain as a share of the objective; with less, the polynomial stays
 
 
 def close_gaps(

@@ -14,7 +14,7 @@ from ...types import Array, Index, Mask
 from ..points import Points
 from ..task import Task
 
-CELLS, PARTS = 36, 3  # in a turn at first, and of a cell when it is divided
+CELLS, PARTS = 36, 3  # initial cells per turn, and parts into which a cell is divided
 
 
 def whole_turn() -> tuple[Array, float]:
@@ -85,7 +85,7 @@ def possible(
     rows = np.stack([np.where(begins, np.cumsum(begins) - 1, rows[1] - 1), *rows])
     previous, middle, following = joints[rows]
     ahead, behind = _short(following - middle), _short(middle - previous)
-    # a cell at the edge of reach goes on beyond the edge as it does before it
+    # a cell at the edge of reach is extrapolated beyond the edge
     lost_ahead, lost_behind = (np.isnan(difference).any(axis=1) for difference in (ahead, behind))
     feasible = np.isfinite(middle).all(axis=1) & ~(lost_ahead & lost_behind)
     ahead, behind = (

@@ -155,7 +155,7 @@ def _least(
     )
     minimum = _at_best(guess, to, sampled_min, inner, start, next_lattice, j, value, weights)
     ragged = next_lattice.ragged[j]
-    if ragged.any():  # sums go on beyond the edge of reach as they come to it
+    if ragged.any():  # sums are extrapolated beyond the edge of reach
         inner_total = total[:, 1:-1]
         jumps = [
             np.where(np.isfinite(outer_total), np.abs(inner_total - outer_total), 0.0)

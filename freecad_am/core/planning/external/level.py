@@ -183,7 +183,7 @@ def figures(cell: Cell, path: JointPath) -> dict[str, object]:
 
 
 def farthest_from_vertical(cell: Cell, paths: Sequence[BeadPath]) -> float:
-    """rad, how far the tool axis is from the vertical at most."""
+    """Return the largest angle between the tool axis and the vertical, rad."""
     external, farthest = cell.external, 0.0
     assert external is not None
     for path in paths:

@@ -31,7 +31,7 @@ Cells = Iterator[tuple[str, CellParameters]]
 # of the arm's reach, how far the face is ahead of the shoulder, and, mm, higher than it is
 AHEAD = ((0.75, 0.0), (0.6, 0.0), (0.9, 0.0), (0.75, 300.0), (0.6, -300.0))
 MAX_POSITIONERS = 2  # positioners, the likeliest
-TRACK_SHARE = 0.6  # of the reach; along a part as long as that a track may help
+TRACK_SHARE = 0.6  # of the reach; a track may help along a part at least this long
 NOT_LEVEL, AUTO = "NOT_LEVEL", "{} and `cell.branch: auto`"
 
 

@@ -83,7 +83,7 @@ def plan(
     bead_ids : sequence of Place
         Layer and index of each bead.
     progress : callable
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------

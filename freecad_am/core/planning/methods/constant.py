@@ -26,7 +26,7 @@ RZ_CANDIDATES, RZ_FINE_CANDIDATES = 360, 21
 LOOKED = 72  # how many of these the link check tries
 POINT_STRIDE = 8  # stride of the points that are checked before the others
 
-Clear = Callable[[float], bool]  # whether no link comes too near with an RZ, rad
+Clear = Callable[[float], bool]  # whether no link gets too close with an RZ, rad
 
 
 def plan(
@@ -43,7 +43,7 @@ def plan(
     bead_ids : Sequence[tuple[int, int]]
         Layer and index of each bead.
     progress : callable
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------
@@ -142,7 +142,7 @@ def best_rz(
 
 
 def _keeps_clear(task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]]) -> Clear:
-    """Return a check that no link comes too near with an RZ at the beads' points; it checks a few
+    """Return a check that no link gets too close with an RZ at the beads' points; it checks a few
     points first.
     """
     assert task.kept is not None

@@ -47,7 +47,7 @@ def plan(
     bead_ids : sequence of Place
         Layer and index of each bead.
     progress : callable
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------
@@ -93,7 +93,8 @@ def _searched(
         candidates = arm_clear.exclude_touching(task, task.kept, arm_points, bead_ids, candidates)
     best, bead_rows = candidates.best(), np.arange(len(beads))
     start = candidates.coefficients[best, bead_rows]
-    # a bead that no rotation serves from its own seam may do from another: cheaper to try than a local search
+    # a bead that is infeasible from its own seam may be feasible from another, which is cheaper to
+    # try than a local search
     hopeless = [int(k) for k in np.flatnonzero(candidates.margin[best, bead_rows] < 0.0)]
     roomy = unwrap.for_beads(task, [beads[k] for k in hopeless], [bead_ids[k] for k in hopeless])
     helped = {k: paths for k, paths in zip(hopeless, roomy) if paths is not None}
@@ -137,7 +138,7 @@ def _searched(
                 cleared if is_changed else path
                 for path, cleared, is_changed in zip(paths, moved, changed)
             ]
-    # a joined bead that a higher degree serves in one piece need not be split
+    # a joined bead that is feasible in one piece with a higher degree need not be split
     helped = {
         k: replacements
         for k, replacements in helped.items()

@@ -2,8 +2,9 @@
 """Point by point: at each point the rotation that moves the joints least from the point before (Chalvin 2020, 5.2).
 
 All beads go forward together, one point at a time. Each step is a Gauss-Newton step of the one unknown; where
-it would break a limit or come too near a singularity, the whole turn is searched. Beads start where the
-margin is largest. Kept for comparison: the sudden moves it makes are why layers are planned as a whole.
+it would break a limit or come too close to a singularity, the whole turn is searched. Beads start
+where the margin is largest. Kept for comparison: the sudden moves it makes are why layers are
+planned as a whole.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ def plan(
     bead_ids : Sequence[tuple[int, int]]
         Layer and index of each bead.
     progress : callable
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------

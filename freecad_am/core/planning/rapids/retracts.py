@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ways off the ends of beads that the machine can go: within its limits and reach, and clear of singularities.
+"""Feasible retracts from the ends of beads: within limits and reach, and clear of singularities.
 
-A retract leads straight from the end of a bead to the retract distance along the tool axis, an approach the same way
-back. The machine runs straight in its joints, so where that would leave the line by more than a tolerance there are rows
-between. Where the way asked for is beyond what the machine can do, others are tried in an order that never changes: other
-heights, other directions, other rotations about the tool axis and other tool axes at the far end.
+A retract leads straight from the end of a bead to the retract distance along the tool axis; an
+approach leads back the same way. The machine interpolates joints, so rows are added where its path
+would deviate from the line by more than a tolerance. If the requested retract is infeasible, others
+are tried in a fixed order: other heights, other directions, other rotations about the tool axis and
+other tool axes at the far end.
 """
 
 from __future__ import annotations
@@ -319,7 +320,7 @@ class Retracts:
         """
         legs: list[Leg | None] = [None] * len(end_numbers)
         failures: list[Failure | None] = [None] * len(end_numbers)
-        # the way asked for is left as it is wherever it can be gone
+        # the requested retract is kept wherever it is feasible
         is_default = True
         for reserve in (RESERVE, LAST_DIGIT_RAD) if thorough else (RESERVE,):
             for group in groups(direction, thorough):

@@ -291,9 +291,11 @@ def _shorten_by_pulling(route: Array, ranges: Ranges, free: Free, fits: Fits) ->
     return np.array(pulled_route[::-1])
 
 
-# largest turn of an endless axis in one rapid move, rad: such an axis takes the shorter way, so half a turn is in doubt
+# rad; largest turn of a continuous axis in one rapid move: such an axis takes the shorter way, so
+# half a turn is ambiguous
 LARGEST_TURN = np.radians(170.0)
-MAX_FAILED_DETOURS = 3  # ways for which none is found, after which no more are looked for: looking takes seconds, and the job is none
+# rapids without a detour after which the search stops: it takes seconds, and the job is infeasible
+MAX_FAILED_DETOURS = 3
 KNOWN = 8  # ways found before that are tried first
 
 Legs = dict[int, Leg | None]
@@ -427,8 +429,11 @@ class LedRound:
         return short
 
     def _ranges(self, start: Array, goal: Array) -> Ranges:
-        """Robots move within their limits, axes without end half a turn further than both ends, external axes no
-        further than from one to the other."""
+        """Return the ranges of the axes between start and goal.
+
+        Robot axes may use their limits, continuous axes half a turn beyond both ends, and external
+        axes only the range between both ends.
+        """
         limits, robot_axes = self.cell.limits, self.cell.robot.chain.axes
         lowest, highest = np.minimum(start, goal), np.maximum(start, goal)
         reserve = self.retracts.reserve_of_limits(RESERVE)[: limits.axes]

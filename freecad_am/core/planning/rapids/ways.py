@@ -118,7 +118,7 @@ class RapidWays:
         return self._in_shorter_turns(Way(start, joints, np.array(role, dtype=np.int64)))
 
     def _in_shorter_turns(self, rapid: Way) -> Way:
-        """The way with more rows, straight in the joints, where an endless axis would turn too far at once."""
+        """Return the rapid, with rows added where a continuous axis turns too far in one move."""
         assert rapid.start is not None
         rows_with_start = np.vstack([rapid.start, rapid.joints])
         continuous = self.cell.limits.continuous
@@ -287,7 +287,7 @@ class RapidWays:
         return names
 
     def arm_issue(self, k: int) -> Issue | None:
-        """Report the obstacle that a link comes too near on rapid k, if any."""
+        """Report the obstacle that a link gets too close to on rapid k, if any."""
         if self.arm is None:
             return None
         _, touched = check_moves(self.arm, *self._moves(k, self.ways[k]))

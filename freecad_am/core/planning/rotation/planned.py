@@ -70,7 +70,7 @@ def _rotation_along(bead_paths: Sequence[BeadPath], bead: Bead, parameter: Array
     rotation = np.full(len(parameter), np.nan)
     for path in bead_paths:
         path_parameter = sense * path.bead.parameter
-        # the parameter of a bead that starts elsewhere goes on across the old seam
+        # the parameter of a bead with another start continues across the old seam
         for turn in (0.0, span, -span):
             position = sense * (parameter + turn)
             inside = (
@@ -89,7 +89,7 @@ def _rotation_along(bead_paths: Sequence[BeadPath], bead: Bead, parameter: Array
         and abs(float(bead_paths[0].bead.parameter[0] - bead.parameter[0])) < 1e-9
     ):
         return rotation
-    # pieces and moved seams part the rotation by whole turns, within them it goes on
+    # the rotation jumps by whole turns at pieces and moved seams, and is continuous between them
     step = np.diff(rotation, prepend=rotation[:1])
     whole_turns = np.where(np.abs(step) > PARTED * TURN, TURN * np.round(step / TURN), 0.0)
     return np.asarray(rotation - np.cumsum(whole_turns))

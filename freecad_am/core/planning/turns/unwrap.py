@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Counts the turns of the axes along the whole job, and finds room for them where an axis is limited.
+"""Unwraps the axes along the whole job, and fits them to the limits.
 
-A part of revolution turns one axis by a full turn per layer. An endless axis accumulates. A limited one turns back
-between beads; where a whole bead does not fit from the seam it was given, the seam is moved; where the axis
-has not even the stroke for a full turn, the bead is split.
+A part of revolution turns one axis by a full turn per layer. A continuous axis accumulates these
+turns. A limited axis rewinds between beads. If a bead does not fit from its seam, the seam is
+moved; if the stroke of the axis is less than a full turn, the bead is split.
 """
 
 from __future__ import annotations

@@ -73,7 +73,9 @@ def _sample_chords(layer: Layer, step: float) -> tuple[Array, Array]:
 
 CODE = "OFF_PART"
 MAX_PLACES = 20_000  # places checked, unless there are more beads
-ROUNDED = 0.02  # mm that a wall may be off its faces in addition to the chord error: tables, fits, imported surfaces
+# mm; allowed deviation of a wall from its faces beyond the chord error, for tables, fits and
+# imported surfaces
+ROUNDED = 0.02
 
 
 class Places(NamedTuple):

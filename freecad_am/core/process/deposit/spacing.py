@@ -339,7 +339,7 @@ def _near(points: Array, curve: Curve) -> Iterator[tuple[Index, Index, Mask]]:
 
 
 def _bow(curve: Curve) -> Array:
-    """(m,) how far the cubic of each segment may be from its chord, at most."""
+    """Return an upper bound (m,) of the distance of the cubic of each segment from its chord."""
     chord = curve.end - curve.start
     ends = lengths(curve.start_slope - chord) + lengths(curve.end_slope - chord)
     bow: Array = 4.0 / 27.0 * ends
@@ -502,7 +502,7 @@ def columns_of(points: Array, closed: bool, tangents: Array | None = None) -> tu
 def _arcs(
     points: Array, start: Array, end: Array, smooth: Mask, smooth_end: Mask
 ) -> tuple[Array, ...]:
-    """The columns for segments with the unit tangents (n - 1, 3) at their ends, which go on smoothly or do not."""
+    """Return the columns for segments with unit tangents (n - 1, 3) at smooth or sharp ends."""
     return (
         points[:-1],
         points[1:],

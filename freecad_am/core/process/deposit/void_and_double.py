@@ -60,7 +60,7 @@ class Picture:
 
     @property
     def double(self) -> Mask:
-        """What is deposited more than once."""
+        """Return the pixels where deposit overlaps."""
         return np.asarray(self.depth > 1)
 
     @cached_property

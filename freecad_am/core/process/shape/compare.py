@@ -22,7 +22,7 @@ from .strands import Grid
 PLACES = 20_000  # about
 LEAF_SIZE = 2 * PLACES
 FACING = 0.99  # cosine between faces that touch
-CONTACT = 0.05  # mm that such faces are apart at most
+CONTACT = 0.05  # mm; maximum distance between such faces
 SPACINGS = 1.0  # of the sampling distance, between places of the same face
 OUTSIDE, BOTH = "outside", "both"
 
@@ -124,12 +124,12 @@ def join_faces(parts: Sequence[Faces]) -> Faces:
 CODE, DRIFT = "ALLOWANCE", "LAYER_DRIFT"
 MAX_DRIFT_SHARE = 0.5  # of a layer height: layers that end farther off than this are reported
 KNOWN = 0.25  # of a cube's edge, to which a surface is known
-HALF = 0.5  # of a cube: the surface runs where it is half full
+HALF = 0.5  # of a cube: the surface is where cubes are half full
 STEP = 0.5  # of a cube's edge, between places that are asked along a normal
 REACH = 2.0  # widths and layer heights that the deposit is looked for, outwards and inwards
 STANDS = 0.25  # layer heights above the start of a first layer, up to which a downward face is on the ground
 DOWN = 0.5  # cosine against the build direction of such a face
-KNOWN_WIDTHS = 1.5  # widths from a first layer's bead, beyond which its ground is not known
+KNOWN_WIDTHS = 1.5  # bead widths from a first layer; beyond them the ground is unknown
 AT_ONCE = 4_000
 
 

@@ -256,7 +256,7 @@ ROUNDS = 10  # in which levels are found
 MIN_RISING_SHARE = 0.05  # of a piece's area that counts as rising at least
 HALVINGS = 60
 ROUNDING = 1e-9  # of a cube
-ROUNDING_SHARE = 1e-12  # of the volume fed to a layer; a smaller rest is rounding
+ROUNDING_SHARE = 1e-12  # of the volume fed to a layer; a smaller remainder is rounding
 
 Report = Callable[[float, str], None]
 
@@ -308,8 +308,10 @@ def feature_parts(toolpath: Toolpath, processes: Sequence[ProcessParameters]) ->
 
 
 def edge_of(pieces: Strands) -> float:
-    """mm of the cubes for a deposit of these strands: fine against layers and beads, as far as their number allows, and a whole number
-    of them in the lowest layer.
+    """Return the edge of the cubes for a deposit of these strands, mm.
+
+    The cubes are small compared with layers and beads, as far as their number allows, and the
+    lowest layer is a whole number of cubes high.
     """
     height = float(pieces.height.min())
     fine = MIN_EDGE_SHARE * min(height, 0.5 * float(pieces.width.min()))
@@ -327,7 +329,7 @@ def predicted_deposit(
     parts : sequence of Part
         The features.
     report : Report
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
     edge : float or None, optional
         Edge of the cubes, mm; None for `edge_of`.
 

@@ -63,7 +63,7 @@ class Slicing:
 
 STEPS = 12
 ROUNDS = 12
-CONVERGED = 1e-6  # of the height; points off by more have not found their place
+CONVERGED = 1e-6  # of the height; points that are off by more have not converged
 SAME_PLACE = 1e-5  # mm; of two nearer nodes one is dropped, not the corner
 SMOOTH = 1.0 - 1e-9  # cosine of the turn at a node that is not a corner
 TOLERANCE_MM = 5e-5  # mm; error of arcs at TEST_SHARES, more than half of their maximum error between the nodes

@@ -124,7 +124,8 @@ def _through(slicing: Slicing, points: Array, closed: bool) -> SpaceCurve | None
     return fit_to_wall(wall, SpaceCurve(w, nodes, slope, slope, closed))
 
 
-COVERED = 0.594  # of the height; no point is to be farther from a bead, and is found to less than the rest to 0.6
+# of the height; maximum distance of a point from a bead, with an error below the remainder to 0.6
+COVERED = 0.594
 LEVELS = (
     0.5,
     0.42,
@@ -376,7 +377,8 @@ class _Gaps(NamedTuple):
                 else:
                     new_beads.append(bead)
                     is_closed |= members
-        for bead, members in short:  # with lower borders they are no longer, or include too much
+        # lower borders would not make these beads longer, or would include too much
+        for bead, members in short:
             if not is_closed[members].any():
                 new_beads.append(bead)
                 is_closed |= members
@@ -444,12 +446,12 @@ def _numbers(fine: Mesh, inside: Mask) -> Index:
 
 # ---- The layers
 
-MIN_LENGTH = 0.2  # of the layer height; shorter fronts are no bead
+MIN_LENGTH = 0.2  # of the layer height; shorter fronts do not become beads
 SLIVER, MAX_OFFSET = (
     10.0,
     5e-4,
 )  # layer heights; mm. Fronts shorter than this may be off by no more between their nodes
-THIN = 0.3  # of the typical edge; nearer points of a level line are one
+THIN = 0.3  # of the typical edge; closer points of a level line count as one
 BEHIND_MM = 1e-3  # mm; vertices nearer to a first curve are on it
 ON_FRONT_MM = (
     1e-4  # mm; vertices nearer to a front are on it, so the last layer may be on the wall's edge
@@ -460,8 +462,8 @@ NEIGHBOURS = 12  # vertices near a point of a first curve that decide on which s
 class Sliced(NamedTuple):
     """Layers of a wall.
 
-    fronts: of each layer. closing: the beads that close gaps between the fronts of a layer
-    and the layer below; after the last layer there may be a layer of only closing beads.
+    fronts: the fronts of each layer. closing: the beads that close gaps between the fronts of a
+    layer and the layer below; after the last layer there may be a layer of only closing beads.
     rims: the edges at which fronts end.
     """
 

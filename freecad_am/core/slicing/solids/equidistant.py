@@ -34,7 +34,7 @@ Edges = NDArray[np.int32]
 
 NEWTON = 60
 HALVINGS = 14  # of the cut through one facet
-MIN_EDGE_MM = 1e-9  # mm; points nearer together are one
+MIN_EDGE_MM = 1e-9  # mm; closer points count as one
 ROUNDING = 1e-12  # of the terms added; smaller values are rounding
 
 
@@ -346,7 +346,7 @@ def _cross_products(u_rows: Array, v_rows: Array) -> Array:
 STEP = math.radians(11.0)
 TRIES = 360
 CLEARANCE_RATIO = 2.0  # chord errors; clearance of a cut from facets in its surface
-TOUCH = 0.004  # chord errors of cuts; a face that comes that near to a surface touches it
+TOUCH = 0.004  # chord errors of cuts; a face closer than this to a surface touches it
 REACH = 0.05  # mm; a solid that begins no further from a surface is based on it
 
 

@@ -38,10 +38,10 @@ from .nozzle_check import (
 )
 from .tilt_search import SPREAD, Change, TiltSearch, Touching, what_helps
 
-SLOWER = 6  # times that a bead is tilted again if it turns too fast
-SEARCHED = 0.7  # of the search when that begins
+SLOWER = 6  # how often a bead that turns too fast is tilted again
+SEARCHED = 0.7  # share of the search that is complete when that begins
 ROUNDING = 1e-9
-HALVINGS = 3  # of a segment halfway on which the nozzle touches
+HALVINGS = 3  # how often a segment is halved if the nozzle touches between its ends
 
 
 def keep_clear(
@@ -149,11 +149,12 @@ def _tilted(
     watch: Watch,
     earlier: list[_Way | None],
 ) -> tuple[Toolpath, Mask, list[_Way | None]]:
-    """The toolpath tilted clear at its points, the points (n,) after which the nozzle touches halfway to the next, and the tilts
-    bead by bead.
+    """Return the toolpath tilted clear at its points, the points (n,) after which the nozzle
+    touches halfway to the next point, and the tilts of each bead.
 
-    At the last try no halfway points remain; an issue says so. If it touches halfway with the original axes, nothing is tilted
-    yet. earlier: the tilts of a former try, for beads with the same points.
+    The last attempt leaves no halfway points, and an issue reports them. If the nozzle touches
+    halfway with the original axes, nothing is tilted yet. earlier: the tilts of an earlier attempt,
+    for beads with the same points.
     """
     beads = [bead for _, _, bead in toolpath]
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]

@@ -20,7 +20,7 @@ from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 
 CAP = 1e-9  # rad
-SEAM = 1e-6  # rad that a closed bead's end may be past a turn
+SEAM = 1e-6  # rad by which the end of a closed bead may exceed a full turn
 
 
 @dataclass(frozen=True, eq=False)

@@ -86,14 +86,12 @@ def _between(a: Array, b: Array) -> Array:
     return total
 
 
-RING, AZIMUTHS = np.radians(5.0), 16  # between the cones of candidates, and candidates on each
-MAX_TILT_RAD = np.radians(90.0)  # tilt that is tried
-PROBED, PROBES = (
-    7,
-    16,
-)  # before which cone, and at how many points of a bead, all larger ones are tried
-LEVELS = 4  # of finer candidates, each of half the distance
-COARSE = 0.6  # of the time, before these
+RING, AZIMUTHS = np.radians(5.0), 16  # angle between cones of candidates, and candidates per cone
+MAX_TILT_RAD = np.radians(90.0)  # largest tilt tried
+# before cone PROBED all larger cones are tried at PROBES points of a bead
+PROBED, PROBES = 7, 16
+LEVELS = 4  # refinements of the candidates, each at half the distance
+COARSE = 0.6  # share of the progress before the refinements
 SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
 RELEASED = 4.0  # times SPREAD, beyond which nothing is left of a tilt
 

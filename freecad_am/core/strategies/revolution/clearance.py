@@ -217,10 +217,9 @@ def _off_platform(what: str, remedy: str) -> InputError:
     )
 
 
-CHORD = 0.01  # mm; chord error of beads in the check, or their own if larger
-CONVERGED = (
-    0.01  # mm that the nozzle moves at most where directions are not settled to the last digit
-)
+CHORD = 0.01  # mm; chord error of the beads in the check, unless their own is larger
+# mm; largest nozzle movement that an incompletely converged direction may cause
+CONVERGED = 0.01
 
 
 @dataclass(frozen=True, eq=False)

@@ -75,7 +75,7 @@ def plan(
     platform_frame : (4, 4) array or None, optional
         Pose of the platform in part coordinates; None if the feature frame is on it.
     progress : callable, optional
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------

@@ -396,7 +396,7 @@ class Tilting:
             distance = np.hypot(
                 *(column[:, None] - column[stuck] for column in (tips.radius, tips.height))
             )
-            # the nearest most, so that directions turn from bead to bead
+            # the nearest beads most, so that directions change gradually from bead to bead
             share = np.where(
                 np.arange(len(angle))[:, None] < stuck, 1.0 - distance / deposit.size[0], 0.0
             ).max(axis=1)

@@ -465,7 +465,7 @@ def _fed_section(process: ProcessParameters, model: BeadModel | None, usual: flo
 def _wider_apart(
     strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None, section: float
 ) -> str:
-    """What to do about beads that are too close for their section, mm2."""
+    """Return the remedy for beads that are too close for their section, mm2."""
     width, spacing, overlap = process.bead_width, strategy.bead_spacing, strategy.bead_overlap
     if model is None and isinstance(process.wire.feed, str):
         if overlap is not None:

@@ -276,7 +276,7 @@ ROUNDS = 100
 MAX_DEPARTURE_SHARE = math.radians(
     40.0
 )  # largest mean of how far the heading of the lean may be from the bead's
-MAX_STRETCH_SHARE = 0.7  # of a bead; no stretch reaches farther
+MAX_STRETCH_SHARE = 0.7  # of a bead; maximum reach of a stretch
 MIN_LEAN_SHARE = 0.02  # share of the lean asked for below which it is none
 STEEPEST = math.radians(
     300.0
@@ -406,10 +406,11 @@ def hold_torch(
 
 
 def _line(course: Course, arc: Array, round_: float, chord_error: float) -> tuple[Line, float]:
-    """The heading (rad) of the bead along it, in the plane, and by how much it is more after a round of a closed one.
+    """Return the heading (rad) along the bead in the plane, and its increase per round if closed.
 
-    At each point it turns over as much of the way as a curve that stays within the chord error would, half of the shorter
-    edge at most; next to at once at a corner. round_: how far phi goes on in a round.
+    At each point the heading turns over as much of the path as a curve within the chord error
+    would, at most half of the shorter edge; at corners it turns almost at once. round_: increase of
+    phi per round.
     """
     x, y = columns(course.flat)
     is_kept = np.isin(

@@ -47,7 +47,7 @@ from .notes import notes
 FINER = 8.0  # times, where a solid cuts another one
 INWARDS = 1e-3  # of the distance to its middle, by which a corner of a triangle is moved inwards
 PLACES = 10_000  # squares of the surface of the solids, for the side length of triangles
-CONTACT_CHORDS = 3.0  # chord errors; surfaces that are no farther apart are one
+CONTACT_CHORDS = 3.0  # chord errors; closer surfaces count as one
 MIN_CONTACT_MM = 1e-3  # mm; the same, however small the chord error
 TOUCHING = 3e-3  # of the volume; solids that share less, as far as it can be measured, only touch
 
@@ -211,7 +211,7 @@ def empty_layer_issues(bare: Sequence[BareLayer], course: Course) -> list[Issue]
 
 
 def ranges(numbers: Sequence[int]) -> str:
-    """Numbers as a text, consecutive ones as a range: 0-6, 9."""
+    """Format numbers, with consecutive ones as a range: 0-6, 9."""
     runs: list[list[int]] = []
     for number in sorted(set(numbers)):
         if runs and number == runs[-1][-1] + 1:
@@ -247,7 +247,7 @@ def plan(
     model : BeadModel or None
         Bead model that sets the speeds; None if the travel speed applies everywhere.
     progress : callable, optional
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------

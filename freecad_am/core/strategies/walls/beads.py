@@ -398,7 +398,7 @@ def corner_notes(turns: list[Array]) -> list[Issue]:
 
 
 def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
-    """The sharpest turn of layers, a warning where that is more than smooth ones were to have.
+    """Report the sharpest turn of layers, as a warning if smooth layers exceed their limit.
 
     rates: rad/mm of each layer within the wall, infinite where it has corners.
     """

@@ -19,19 +19,21 @@ from .plan import sliced
 
 NORMAL = "centreline-normal"
 METHODS = ("iso-parameter", NORMAL, "constant-distance", "smooth")
-FINER = 4  # places per arc at which the distance is measured
-END_TOLERANCE = 1e-9  # of u; a point past an edge by no more is on it
+FINER = 4  # samples per arc at which the distance is measured
+END_TOLERANCE = 1e-9  # of u; a point less than this past an edge is on the edge
 
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """A wall cut by one method. Lengths mm, angles rad.
+    """A wall sliced by one method. Lengths in mm, angles in rad.
 
-    layers: up to the first one wholly past the end. smallest, mean, largest: distance of each point to the nearest of the layer
-    below. turn: sharpest turn within the wall per mm, away from corners. corners: number of layers with corners; corner: the
-    sharpest. length: of the layers below the end. Per layer after the first: around (n,), v as a share of its period from -0.5 to
-    0.5, distance (n,) and step (n,), height of the layer above the one below along the line v = const (Delta_ij); NaN without
-    deposit. curves: points (n, 3) of the layers, NaN likewise.
+    layers: number of layers up to the first one that is entirely past the end. smallest, mean,
+    largest: distance of each point to the nearest point of the layer below. turn: sharpest turn per
+    mm within the wall, away from corners. corners: number of layers with corners. corner: the
+    sharpest corner. length: total length of the layers below the end. For each layer after the
+    first: around (n,), v as a share of its period from -0.5 to 0.5; distance (n,); and step (n,),
+    the height above the layer below along the line v = const (Delta_ij). curves: points (n, 3) of
+    the layers. These arrays are NaN where there is no deposit.
     """
 
     method: str

@@ -142,7 +142,7 @@ def _carry_reference(below: Middle, axis: Array) -> Array:
 # ---- The tree of a wall's fronts: splits, merges, and cuts by an end of the wall
 
 SAMPLES = 100  # sample points along a front for its parents
-LEAST_COMMON = 2  # of the samples; fewer are a touch at an end
+LEAST_COMMON = 2  # number of samples; fewer mean that fronts only touch at an end
 
 
 @dataclass(eq=False)
@@ -297,7 +297,7 @@ def plan(
     process : ProcessParameters
         Speeds, seam and direction.
     progress : callable, optional
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------

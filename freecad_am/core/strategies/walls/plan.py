@@ -64,7 +64,7 @@ def plan(
     process : ProcessParameters
         Speeds, seam and direction.
     progress : callable, optional
-        Receives share and text; may raise to cancel.
+        Called with the completed share and a text; may raise to cancel.
 
     Returns
     -------
