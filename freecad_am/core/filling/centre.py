@@ -106,8 +106,8 @@ class PlaneCurve:
         Returns
         -------
         points : (m, 2) array
-            Points, mm, of a closed bead with the first repeated at the end. An open one with widths of its own goes as far
-            as its volume reaches, so that its round ends are left out; one of the usual width ends half a width earlier.
+            Points, mm, of a closed bead with the first repeated at the end. An open one with widths of its own is shortened
+            by its round ends, which have no volume of their own; one of the usual width keeps its points.
         share : (m,) array
             Of the usual width.
         """

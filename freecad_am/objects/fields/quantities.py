@@ -387,7 +387,7 @@ def quantity(text: str) -> Any:
 
 
 def _adds_dimensions(text: str) -> bool:
-    """Whether terms of a sum have different dimensions, which ends FreeCAD 0.20. A unit that is not ours is of another one."""
+    """Whether terms of a sum have different dimensions. A unit that is not in `UNITS` has another one than those that are."""
     terms = _TERMS.split(_FUNCTIONS.sub("1", _EXPONENTS.sub("", text)))
     return len(terms) > 1 and len({_term_dimension(term) for term in terms} - {NONE}) > 1
 

@@ -56,6 +56,16 @@ SHAPES = {
 }
 
 
+def without_round_ends(points, shares, width):
+    """An open line (n, 2) and its shares of a width, cut back at both ends by as much as round ends add to its area."""
+    arc = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+    cut = np.minimum(0.125 * np.pi * width * shares[[0, -1]], 0.49 * arc[-1])
+    low, high = cut[0], arc[-1] - cut[1]
+    places = np.r_[low, arc[(arc > low) & (arc < high)], high]
+    line = np.stack([np.interp(places, arc, points[:, k]) for k in (0, 1)], axis=1)
+    return line, np.interp(places, arc, shares)
+
+
 def dense(points, closed, step):
     """Points at most `step` apart along a polyline."""
     ends = np.vstack([points, points[:1]]) if closed else points

@@ -3,7 +3,9 @@
 
 from __future__ import annotations
 
+import importlib.util
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -16,6 +18,12 @@ from freecad_am.core.filling.adaptive import BeadLaw, adapt_contours
 from freecad_am.core.filling.centre import Beads
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.geometry.regions.spokes import find_spokes
+
+_spec = importlib.util.spec_from_file_location(
+    "filling_shapes", Path(__file__).with_name("shapes.py")
+)
+shapes = importlib.util.module_from_spec(_spec)
+_spec.loader.exec_module(shapes)
 
 WIDTH = 4.0  # mm
 LAW = BeadLaw(WIDTH, WIDTH, 0.3, 1.5)
@@ -33,7 +41,7 @@ def swept(curve):
     points, shares = curve.closed_points()
     shares = np.ones(len(points)) if shares is None else shares
     if not curve.closed:
-        points, shares = without_round_ends(points, shares)
+        points, shares = shapes.without_round_ends(points, shares, WIDTH)
     counts = np.maximum(1, (np.abs(np.diff(shares)) / 0.02).astype(int))
     places = np.concatenate([k + np.arange(count) / count for k, count in enumerate(counts)])
     places = np.r_[places, len(points) - 1.0]
@@ -46,17 +54,6 @@ def swept(curve):
     return unary_union(
         [LineString(line[a : b + 1]).buffer(0.5 * means[a], 8) for a, b in zip(starts, ends)]
     )
-
-
-def without_round_ends(points, shares):
-    """An open line cut back at both ends by as much as round ends add to its area."""
-    arc = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
-    cut = 0.125 * math.pi * WIDTH * shares[[0, -1]]
-    low, high = min(cut[0], 0.49 * arc[-1]), arc[-1] - min(cut[1], 0.49 * arc[-1])
-    inner = arc[(arc > low) & (arc < high)]
-    places = np.r_[low, inner, high]
-    line = np.stack([np.interp(places, arc, points[:, k]) for k in (0, 1)], axis=1)
-    return line, np.interp(places, arc, shares)
 
 
 def faults(shape):

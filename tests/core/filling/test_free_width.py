@@ -70,16 +70,12 @@ def swept_by(curve, grid):
 
 
 def without_round_ends(curve):
-    """A bead; an open one cut back at both ends by as much as round ends add to its area."""
+    """A bead; an open one without what round ends add to its area."""
     if curve.closed:
         return curve
-    arc = np.r_[0.0, np.cumsum(np.hypot(*np.diff(curve.points, axis=0).T))]
-    shares = np.ones(len(arc)) if curve.share is None else curve.share
-    low, high = np.array([0.0, arc[-1]]) + [1, -1] * (0.25 * np.pi * BEADS.inset * shares[[0, -1]])
-    inner = arc[(arc > low) & (arc < high)]
-    cuts = np.r_[low, inner, high]
-    points = np.stack([np.interp(cuts, arc, curve.points[:, k]) for k in (0, 1)], axis=1)
-    return replace(curve, points=points, share=np.interp(cuts, arc, shares))
+    shares = np.ones(len(curve.points)) if curve.share is None else curve.share
+    points, shares = shapes.without_round_ends(curve.points, shares, 2.0 * BEADS.inset)
+    return replace(curve, points=points, share=shares)
 
 
 def bar(thick, length=90.0):
