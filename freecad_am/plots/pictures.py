@@ -507,12 +507,14 @@ def infill(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     curves = (Curve("double deposit", x, over, DOUBLE_COLOUR, MARKED),)
     if np.isfinite(void).any():
         curves = (Curve("void", x, void, VOID_COLOUR, MARKED), *curves)
+    limit = 100.0 * source.max_void
     return (
         Chart(
             "Void and double deposit by layer",
             Quantity("layer"),
             Quantity("share of the section", "%"),
             curves,
+            marks=((limit, f"limit of void {limit:g} %"),) if limit < 100.0 else (),
         ),
     )
 

@@ -30,7 +30,8 @@ class Source:
 
     condition, threshold: (n,) per row of the motion, NaN if undefined. band: tolerance of local
     distances as a share of the layer height, None without one. solids: the filled solids in place;
-    cut_at: share of a layer height above its plane at which a plane layer is cut.
+    cut_at: share of a layer height above its plane at which a plane layer is cut. max_void: share
+    of void above which a plane layer is warned about.
     """
 
     toolpath: Toolpath
@@ -42,6 +43,7 @@ class Source:
     band: float | None = None
     solids: SolidsOnHub | None = None
     cut_at: float = 0.5
+    max_void: float = 1.0
 
     @cached_property
     def group(self) -> Group | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from ..core.families.registry import family_of
@@ -47,13 +47,14 @@ class Made:
         from . import page
 
         planned, process = self.results.planned, self.job.process
-        source = Source(self.toolpath, self.motion, process)
+        limits = [getattr(feature.strategy, "max_void", 1.0) for feature in self.job.features]
+        source = Source(self.toolpath, self.motion, process, max_void=min(limits))
         if planned is not None:
             judged = planned.joint_path.conditions(self.motion)
             condition, threshold = (
                 spread_to_deposit_rows(self.motion.deposit, column) for column in judged
             )
-            source = Source(self.toolpath, self.motion, process, self.cell, condition, threshold)
+            source = replace(source, cell=self.cell, condition=condition, threshold=threshold)
         platform = self.job.cell.platform_diameter if self.job.cell else None
         alone = len(self.job.features) == 1 and family_of(self.job.features[0].strategy).is_filled
         shape = self.job.features[0].shape() if alone else None

@@ -11,6 +11,7 @@ from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.process import bead_model, model_notes, wire
 from freecad_am.core.process.deposit import spacing
+from freecad_am.core.process.deposit.void_and_double import measure
 from freecad_am.core.simulation import timeline
 from freecad_am.core.simulation.timeline import totals
 from freecad_am.plots import draw, pictures
@@ -204,6 +205,16 @@ def test_every_picture_is_there_or_says_why(dome, modelled):
             name
         )
         assert bool(of_path.charts) == (not entry.machine and not filled), name
+
+
+def test_the_limit_of_void_is_a_line_in_its_chart(modelled):
+    toolpath = measure(planned(box((0, 0, 0), (21, 30, 8), "block"), fill="lines"), 0.02)
+    motion = timeline.deposit_motion(toolpath)
+    source = Source(toolpath, motion, ProcessParameters(), max_void=0.02)
+    (chart,) = pictures.picture("infill", source).charts
+    assert chart.marks == ((2.0, "limit of void 2 %"),)
+    (unlimited,) = pictures.picture("infill", dataclasses.replace(source, max_void=1.0)).charts
+    assert unlimited.marks == ()
 
 
 def test_volumes_and_sections_of_plane_layers(modelled):

@@ -14,7 +14,6 @@ import numpy as np
 from PySide import QtGui
 
 from ...core.geometry.frames import TURN
-from ...core.geometry.on_hub import SolidsOnHub
 from ...core.kinematics import cell as cells
 from ...core.motion import Motion
 from ...core.parameters.process import ProcessParameters
@@ -80,15 +79,14 @@ def maker_of(obj: Any) -> Callable[[], Source]:
     toolpath = toolpath_object.Proxy.value(toolpath_object)
     process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
     band = band_of(toolpath_object) if hasattr(toolpath_object.Feature, "Band") else None
-    solids, cut_at = _filled(toolpath_object.Feature)
+    filled = _filled(toolpath_object.Feature)
     if kind_of(path) == TOOLPATH:
         return lambda: Source(
             toolpath,
             timeline.deposit_motion(toolpath),
             process,
             band=band,
-            solids=solids,
-            cut_at=cut_at,
+            **filled,
         )
     planned, settings, folders = (
         path.Proxy.value(path),
@@ -112,20 +110,24 @@ def maker_of(obj: Any) -> Callable[[], Source]:
                 **{field.name: getattr(motion, field.name)[rows] for field in fields(motion)}
             )
             condition, threshold = condition[rows], threshold[rows]
-        return Source(run, motion, process, cell, condition, threshold, band, solids, cut_at)
+        return Source(run, motion, process, cell, condition, threshold, band, **filled)
 
     return make
 
 
-def _filled(feature: Any) -> tuple[SolidsOnHub | None, float]:
-    """Return the solids in plane layers, None for other features, and the share of a layer height
-    at which layers are cut."""
+def _filled(feature: Any) -> dict[str, Any]:
+    """Return what `Source` has of a feature with stacked layers: its solids in plane layers, where
+    layers are cut, and the limit of void; nothing for other features."""
     stage = stage_of(feature)
     family = None if stage is None else stage_family(stage)
     if stage is None or family is None or not family.stacks_layers or not feature.Key:
-        return None, 0.5
+        return {}
     strategy: Any = stage.parameters(feature, family.parameters)
-    return (stage.value(feature) if strategy.has_plane_layers else None), strategy.share_of_cut
+    return {
+        "solids": stage.value(feature) if strategy.has_plane_layers else None,
+        "cut_at": strategy.share_of_cut,
+        "max_void": strategy.max_void,
+    }
 
 
 _writing: list[Background] = []  # Python must keep them as long as they write
