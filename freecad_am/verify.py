@@ -24,8 +24,8 @@ from .core.types import Array
 from .posts.catalogue import Post
 from .read_back import points, text_path
 from .read_back.events import event_issues
+from .read_back.interpolation import time_issues, way_issues
 from .read_back.text_path import Planned
-from .read_back.ways import time_issues, way_issues
 
 STRAYS = (
     "the path between two points leaves the straight line by {:.3g} mm, more than the chord error"

@@ -10,7 +10,7 @@ import pytest
 
 from freecad_am.gui import former_names
 from freecad_am.objects.results import schemas
-from freecad_am.objects.results.legacy import SCHEMA_NAMES
+from freecad_am.objects.results.earlier_formats import SCHEMA_NAMES
 
 ROOT = Path(__file__).resolve().parent.parent
 SAVED = {  # in `GuiDocument.xml` of documents saved before modules of the window moved into folders

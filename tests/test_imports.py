@@ -389,7 +389,7 @@ def test_files_that_use_more_need_it():
 def test_parts_of_revolution_wait_for_no_splines_and_no_optimiser():
     """What planning them imports, in a process of its own: these parts of scipy take as long to import as all of ours."""
     used = (
-        "strategies.size",
+        "strategies.estimated_size",
         "strategies.revolution.plan",
         "strategies.sequence",
         "strategies.clearance.nozzle_check",

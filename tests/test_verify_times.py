@@ -6,7 +6,7 @@ import pytest
 
 from freecad_am.core.program import Moves
 from freecad_am.posts.fanuc import records as fanuc_numbers
-from freecad_am.read_back import ways
+from freecad_am.read_back import interpolation
 
 
 def written(seconds):
@@ -19,7 +19,7 @@ def written(seconds):
 
 
 def slack(seconds):
-    return ways.MILLISECOND + 1e-9 + ways.owed(np.asarray(seconds))
+    return interpolation.MILLISECOND + 1e-9 + interpolation.owed(np.asarray(seconds))
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -36,16 +36,16 @@ def test_what_is_written_is_within_what_is_owed(seed):
 
 
 def test_nothing_is_owed_where_every_move_has_a_millisecond():
-    assert (ways.owed(np.linspace(0.001, 3.0, 50)) == 0.0).all()
+    assert (interpolation.owed(np.linspace(0.001, 3.0, 50)) == 0.0).all()
 
 
 def test_a_debt_ends_with_the_next_move_that_is_long_enough():
     seconds = np.array([0.5, 0.5, 1e-6, 1e-6, 0.0015, 0.5, 0.5])
-    owed = ways.owed(seconds)
+    owed = interpolation.owed(seconds)
     assert owed[[0, 6]] == pytest.approx(0.0)
     assert owed[[1, 5]] == pytest.approx([0.001998, 0.001498])
     assert owed[4] == pytest.approx(0.001998)
 
 
 def test_moves_without_a_time_and_endless_ones_owe_nothing():
-    assert np.isfinite(ways.owed(np.array([np.nan, np.inf, 0.002, 1e-6, np.inf]))).all()
+    assert np.isfinite(interpolation.owed(np.array([np.nan, np.inf, 0.002, 1e-6, np.inf]))).all()

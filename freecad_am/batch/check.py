@@ -28,7 +28,7 @@ from ..core.planning.task import CONDITION_FLOOR
 from ..core.preflight import clearance
 from ..core.preflight.promise import Promise, row_place
 from ..core.read_moves import ReadMoves
-from ..core.simulation import rapid_look, waypoints
+from ..core.simulation import rapid_contacts, waypoints
 from ..core.simulation.achievable_feed import spread_to_deposit_rows
 from ..objects.checks import controllers
 from ..posts import catalogue
@@ -273,7 +273,7 @@ def _promises(motion: Motion, cell: Cell, context: Known) -> list[Promise]:
     if context.bead is None:
         how = "not checked: a cell does not define the width and height of beads; give a job"
         return [*promises, Promise(clearance.ON_RAPIDS, how, None)]
-    rapid_check = rapid_look.looked_at(
+    rapid_check = rapid_contacts.looked_at(
         motion, followed.beads(motion), cell, [], *context.bead, RAPID_PLACES
     )
     row = int(rapid_check.rows[0]) if len(rapid_check.rows) else None

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
 from ..core.issues import InputError, Text
-from ..posts import earlier as earlier_posts
+from ..posts import own_programs as earlier_posts
 from . import child, staging
 from .job.job import Job
 

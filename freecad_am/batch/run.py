@@ -192,7 +192,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
                 result = _write(stages.job, stages, cell, files, session, started, page)
             finally:
                 FreeCAD.closeDocument(stages.document.Name)
-            from freecad_am.core.strategies.size import LARGE_CODE
+            from freecad_am.core.strategies.estimated_size import LARGE_CODE
 
             session.issues(issue for issue in stages.issues if issue.code != LARGE_CODE)
             return result
@@ -295,7 +295,7 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
 def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     """The stages of a job in a document up to its toolpath, as `plan`."""
     from freecad_am import api
-    from freecad_am.core.strategies.size import LARGE_CODE
+    from freecad_am.core.strategies.estimated_size import LARGE_CODE
 
     from .job.job import unused_key_issues
     from .job.shapes import Shapes, toolpath_of

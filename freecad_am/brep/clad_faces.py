@@ -12,7 +12,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from ..core.geometry.formatting import place
-from ..core.geometry.mesh.refined import Edges
+from ..core.geometry.mesh.refine import Edges
 from ..core.geometry.walls.patch_wall import CladFaces, PatchWall
 from ..core.geometry.walls.surface import dot
 from ..core.issues import WARNING, InputError, Issue, Text, Word

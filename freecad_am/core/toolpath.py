@@ -20,9 +20,9 @@ from .families.family import Family
 from .families.registry import DEFAULT_KIND, KINDS
 from .geometry.columns import lengths
 from .geometry.curves.outline import Outline, estimate_outline, outline
-from .geometry.fitted import Fitted, PredictedShape
 from .geometry.obstacles import Body
 from .geometry.section import Coverage, Section
+from .geometry.toolpath_records import Fitted, PredictedShape
 from .issues import Issue
 from .types import Array, Index
 

@@ -10,7 +10,7 @@ from ..core.geometry.curves.bead_curves import POINT_FILES
 from ..core.issues import InputError, Text
 from ..core.one_thread import one_thread
 from ..core.parameters.inspection import AUTO, BEST, NONE, InspectionParameters
-from ..posts import earlier
+from ..posts import own_programs
 from .arguments import (
     checked_document,
     checked_number,
@@ -63,7 +63,7 @@ def export(program: Any, folder: str) -> list[str]:
         )
     files = files_of(program)
     try:
-        return earlier.write(folder, files)
+        return own_programs.write(folder, files)
     except OSError as error:
         message = Text("{}; choose a writable folder", error.strerror or error)
         raise InputError("NOT_WRITABLE", error.filename or folder, message) from None

@@ -13,7 +13,7 @@ from ..core.geometry.walls.mesh_wall import clad_mesh
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import CladdingParameters
-from ..core.strategies import size
+from ..core.strategies import estimated_size
 from .checks.deposit import gap_issues
 from .results.fingerprints import fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, snapshot_of
@@ -69,7 +69,9 @@ class CladdingFeature(FeatureStage):
                 clad = clad_faces(
                     source_body.shape.copy(False), faces, spacing, back, high, source_body.label
                 )
-            large = size.size_issues(size.cladding_size(clad, strategy), strategy)
+            large = estimated_size.size_issues(
+                estimated_size.cladding_size(clad, strategy), strategy
+            )
             feature = dataclasses.replace(
                 clad, surroundings=bodies((*own_body, *ground, *fixtures))
             )

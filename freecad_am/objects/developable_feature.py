@@ -17,7 +17,7 @@ from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import DevelopableParameters
 from ..core.slicing.solids.standing import group_by_base, hub_among
-from ..core.strategies import size
+from ..core.strategies import estimated_size
 from .results.fingerprints import fingerprint
 from .shapes.bodies import FIXTURES, Taken, bodies, fixtures_of, snapshot_of
 from .shapes.chosen import FeatureStage, source_of
@@ -77,7 +77,9 @@ class DevelopableFeature(FeatureStage):
 
         def work() -> Outcome:
             solids = _solids(inputs, strategy)
-            large = size.size_issues(size.solids_size(solids, strategy), strategy)
+            large = estimated_size.size_issues(
+                estimated_size.solids_size(solids, strategy), strategy
+            )
             substrate = () if inputs.substrate is None else (inputs.substrate.body(),)
             solids = dataclasses.replace(
                 solids, surroundings=(*substrate, *solids.surroundings, *bodies(fixtures))

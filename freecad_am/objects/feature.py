@@ -13,7 +13,7 @@ from ..brep.shapes.part_depths import revolved_depths
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import RevolutionParameters
-from ..core.strategies import size
+from ..core.strategies import estimated_size
 from .results.fingerprints import digits, fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape
 from .shapes.chosen import FeatureStage, names_of, source_of
@@ -68,7 +68,9 @@ class RevolutionFeature(FeatureStage):
 
         def work() -> Outcome:
             wall = find_wall(shape, faces, strategy.wall, axis, label)
-            large = size.size_issues(size.revolution_size(wall, strategy), strategy)
+            large = estimated_size.size_issues(
+                estimated_size.revolution_size(wall, strategy), strategy
+            )
             figures = (("WallFaces", list(wall.faces)), ("WallLength", wall.meridian.length))
             depths = revolved_depths(shape, wall, label)
             completed_wall = dataclasses.replace(wall, surroundings=bodies(fixtures), depths=depths)

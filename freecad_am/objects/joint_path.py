@@ -240,9 +240,9 @@ def _report_search_time(
     """Report how long the search for remedies takes, if long; seconds_per_point: planning time of
     one point.
     """
-    from ..core.strategies import size
+    from ..core.strategies import estimated_size
 
-    for issue in size.remedy_issues(
+    for issue in estimated_size.remedy_issues(
         most_points(toolpath, issues), seconds_per_point, LONGEST_SEARCH
     ):
         progress.report_issue(issue)

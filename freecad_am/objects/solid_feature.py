@@ -14,7 +14,7 @@ from ..core.layers.centre_line import prepare_guided
 from ..core.layers.stacking import prepare_stack
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.filled import SolidParameters
-from ..core.strategies import size
+from ..core.strategies import estimated_size
 from .checks.deposit import gap_issues
 from .results.fingerprints import fingerprint, shape_fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, global_shape, is_mesh, snapshot_of
@@ -131,7 +131,9 @@ class SolidFeature(FeatureStage):
                         dataclasses.replace(group, start=corners) for group in solids.groups
                     ),
                 )
-            large = size.size_issues(size.solids_size(solids, strategy), strategy)
+            large = estimated_size.size_issues(
+                estimated_size.solids_size(solids, strategy), strategy
+            )
             solids = dataclasses.replace(solids, surroundings=bodies((*ground, *fixtures)))
             base = solids.groups[0].base
             height = max(

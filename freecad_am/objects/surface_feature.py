@@ -12,7 +12,7 @@ from ..core.geometry.walls.patch_wall import PatchWall
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import FRONTS, SurfaceParameters
-from ..core.strategies import size
+from ..core.strategies import estimated_size
 from .results.fingerprints import fingerprint
 from .shapes.bodies import FIXTURES, bodies, fixtures_of, snapshot_of
 from .shapes.chosen import FeatureStage, names_of, source_of
@@ -101,7 +101,7 @@ class SurfaceFeature(FeatureStage):
                 strategy.mend,
                 strategy.method == FRONTS,
             )
-            large = size.size_issues(size.wall_size(wall, strategy), strategy)
+            large = estimated_size.size_issues(estimated_size.wall_size(wall, strategy), strategy)
             depths = (
                 None
                 if source_body.shape is None

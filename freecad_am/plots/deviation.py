@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..core.geometry.fitted import DeviationMap
+from ..core.geometry.toolpath_records import DeviationMap
 from ..core.inspection.bands import band_of, bands, css, step_of
 from ..core.process.shape.compare import name_of
 from ..core.types import Array

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.fitted import DeviationMap, PredictedShape
 from ..core.geometry.formatting import place
+from ..core.geometry.toolpath_records import DeviationMap, PredictedShape
 from ..core.inspection.bands import step_of
 from ..core.process.shape.compare import name_of
 from . import units

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.fitted import Fitted
+from ..core.geometry.toolpath_records import Fitted
 from ..core.inspection.bands import bands, css
 from ..core.issues import Text
 from ..core.types import Array

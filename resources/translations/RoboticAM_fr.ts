@@ -7907,7 +7907,7 @@
         <translation>au plus {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
         <source>at the requested tool axes the nozzle touches beads of {0} points; the search for clear tilts takes about {1} min of processor time, several times that where the tool would turn too fast; a smaller build_direction.lead and build_direction.tilt, or clearance: none, avoids it</source>
         <translation>avec les axes d&apos;outil demandés, la buse touche des cordons de {0} points ; trouver des inclinaisons qui la dégagent prend environ {1} min de processeur, plusieurs fois plus là où l&apos;outil tournerait trop vite ; un build_direction.lead et un build_direction.tilt plus petits, ou clearance: none, l&apos;évitent</translation>
     </message>
@@ -7917,7 +7917,7 @@
         <translation>au point de commutation la pointe avance à {0} mm/s, trop lentement pour programmer l&apos;avance comme une distance ; fixez une distance de retrait, ou retirez program.trigger.lead</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
         <source>at {0} bead ends the retract of {1} mm would violate limits, reach or the condition; it is {2} to {3} mm there, {4} times off the tool axis and {5} times with the tool turned</source>
         <translation>à {0} extrémités de cordons le retrait de {1} mm sortirait des limites, de l&apos;atteinte ou du conditionnement ; il y est de {2} à {3} mm, {4} fois dans une autre direction que le long de l&apos;axe de l&apos;outil et {5} fois avec l&apos;outil tourné</translation>
     </message>
@@ -8142,17 +8142,17 @@
         <translation>avant le premier type</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
         <source>before {0} beads the rapid takes a detour through intermediate points, as all direct retracts are blocked</source>
         <translation>avant {0} cordons le rapide fait un détour par des points intermédiaires, car tous les retraits directs sont bloqués</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
         <source>before {0} beads the tool retracts off its axis, or turns on the way, for clearance</source>
         <translation>avant {0} cordons l&apos;outil est retiré dans une autre direction que le long de son axe, ou tourné en chemin, pour passer sans toucher</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
         <source>before {0} beads the tool retracts up to {1} mm instead of {2} mm for clearance</source>
         <translation>avant {0} cordons l&apos;outil est retiré jusqu&apos;à {1} mm au lieu de {2} mm pour passer sans toucher</translation>
     </message>
@@ -8757,7 +8757,7 @@
         <translation>des faces du maillage de la paroi sont tournées en sens opposés : orientez-les pareillement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
         <source>facets meet at sharp angles along about {0} mm of edges; computing layers around them takes about {1} min of processor time; a larger strategy.layer_height, or a mesh with rounded edges, takes less</source>
         <translation>des facettes se rejoignent à angle vif le long d&apos;environ {0} mm d&apos;arêtes ; y trouver les couches prend environ {1} min de processeur ; un strategy.layer_height plus grand, ou un maillage aux arêtes arrondies, en prend moins</translation>
     </message>
@@ -9102,7 +9102,7 @@
         <translation>la condition {0} est au-dessous de {1} demandés : trop près d&apos;une singularité</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
         <source>inverse condition number {0} on a rapid before or after the bead is below {1}, and no other height, direction or rotation is farther from a singularity; lower joints.min_condition or move the part in the cell</source>
         <translation>le conditionnement {0} lors d&apos;un mouvement rapide avant ou après le cordon est inférieur aux {1} admis, et aucune autre hauteur, direction ou rotation n&apos;est plus loin d&apos;une singularité ; diminuez joints.min_condition ou déplacez la pièce dans la cellule</translation>
     </message>
@@ -10567,22 +10567,22 @@
         <translation>lignes de la surface</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>link {0} comes nearer than {1} mm to {2}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
@@ -10752,7 +10752,7 @@
         <translation>plus de {0}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/banded.py"/>
+        <location filename="../../freecad_am/core/slicing/smoothest_heights.py"/>
         <source>more than {0} layers of {1} mm: use a larger layer height</source>
         <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
     </message>
@@ -10922,7 +10922,7 @@
         <translation>aucun point n’est atteint</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>no positioner</source>
         <translation>aucun positionneur</translation>
     </message>
@@ -11197,7 +11197,7 @@
         <translation>décalées</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
         <source>on the travel from the previous bead the nozzle would hit {0} at every retract distance and direction tried, and no detour was found; move the seam or the part, or use a more slender nozzle</source>
         <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée, et aucun contournement n’a été trouvé ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
     </message>
@@ -11437,7 +11437,7 @@
         <translation>articulations planifiées du dépôt menées par la chaîne des repères, que la planification n’emploie pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
         <source>planning about {0} points in {1} layers takes about {2} min of processor time and {3} GB of memory; raise strategy.layer_height or strategy.chord_error to reduce them</source>
         <translation>environ {0} points en {1} couches sont planifiés, ce qui prend environ {2} min de processeur et {3} Go de mémoire ; une plus grande valeur de strategy.layer_height ou de strategy.chord_error en réduit le nombre</translation>
     </message>
@@ -12197,22 +12197,22 @@
         <translation>l&apos;axe de base {0} du robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the base comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the base comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the base comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the base comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
@@ -12607,7 +12607,7 @@
         <translation>la première couche court à {0} mm au-dessus du fond de {1}, qui n&apos;est pas déposé</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the first move, from the unknown start position, is too fast</source>
         <translation>le premier mouvement, depuis la position de départ inconnue, est trop rapide</translation>
     </message>
@@ -12697,7 +12697,7 @@
         <translation>avec {0}, ce travail est faisable ; essayé, non appliqué</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
         <source>the job is infeasible as it is; the search for a feasible change takes up to {0} min of processor time</source>
         <translation>le travail est infaisable tel quel ; la recherche d&apos;un changement faisable demande jusqu&apos;à {0} min de processeur</translation>
     </message>
@@ -13032,12 +13032,12 @@
         <translation>la buse touche {0} en {1} de {2} points ; sur les pièces de révolution elle n&apos;est pas écartée des montages : déplacez-les, ou utilisez une buse plus fine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the nozzle touches {0} on the rapid way to the bead; lift the part over it by cell.platform, or move it in cell.external</source>
         <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the nozzle touches {0} on the rapid way to the bead; move it in cell.obstacles, the part or cell.deposition_point</source>
         <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
     </message>
@@ -13052,12 +13052,12 @@
         <translation>la buse touche {0} sur {1} mouvement(s) pendant le dépôt ; déplacez-le dans cell.obstacles, ou la pièce</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the nozzle touches {0}; lift the part over it by cell.platform, or move it in cell.external</source>
         <translation>la buse touche {0} ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the nozzle touches {0}; move it in cell.obstacles, the part or cell.deposition_point</source>
         <translation>la buse touche {0} ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
     </message>
@@ -13087,22 +13087,22 @@
         <translation>les paires de points sont alignées, si bien que la pièce pourrait tourner autour de leur droite ; choisissez-en d&apos;autres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the part comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
@@ -13317,7 +13317,7 @@
         <translation>il n&apos;y a pas encore de résultat ; recalculez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
         <source>the retract before or after the bead cannot be reached at any height, direction or rotation tried; lower process.between_layers.lift or move the part in the cell</source>
         <translation>le retrait avant ou après le cordon est hors d&apos;atteinte à chaque hauteur, direction ou rotation essayée ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
     </message>
@@ -13377,7 +13377,7 @@
         <translation>la recherche d&apos;une solution faisable s&apos;est arrêtée après {0} s ; essayé en vain jusque-là : {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
         <source>the search for curved layers on a grid of about {0} nodes takes about {1} min of processor time; a larger strategy.layer_height, or layers: planes, takes less</source>
         <translation>les couches courbes sont cherchées sur une grille d&apos;environ {0} nœuds, ce qui prend environ {1} min de processeur ; un strategy.layer_height plus grand, ou layers: planes, en prend moins</translation>
     </message>
@@ -13502,7 +13502,7 @@
         <translation>les solides ou maillages fermés à déposer ; ou une pièce et les faces de son moyeu, si les deux sont un seul solide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the speed in the text is not the planned one</source>
         <translation>la vitesse dans le texte n&apos;est pas celle planifiée</translation>
     </message>
@@ -13542,12 +13542,12 @@
         <translation>la balise {0} n&apos;est pas admise ici ; écrivez la valeur simple</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the text asks for another configuration of the arm, or other turns</source>
         <translation>le texte demande une autre configuration du bras, ou d&apos;autres tours</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the text asks for joint values other than the planned ones</source>
         <translation>le texte demande d&apos;autres valeurs articulaires que celles prévues</translation>
     </message>
@@ -13572,27 +13572,27 @@
         <translation>le texte mène jusqu&apos;à {0} mm du point planifié, plus que ses chiffres n&apos;expliquent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the text moves straight in space where straight in the joints was planned, or the other way</source>
         <translation>le texte va droit dans l&apos;espace où il était planifié d&apos;aller droit dans les articulations, ou l&apos;inverse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the text moves {0} from axis {1} on, but the program {2} from axis {3} on</source>
         <translation>le texte déplace {0} à partir de l&apos;axe {1}, le programme {2} à partir de l&apos;axe {3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the text names arm configurations, which the machine does not have</source>
         <translation>le texte nomme des configurations d&apos;un bras, et la machine n&apos;en a pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the text selects another frame or tool than {0} and {1}</source>
         <translation>le texte choisit un autre repère ou outil que {0} et {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the text stops, or rounds the corner, otherwise than planned</source>
         <translation>le texte s&apos;arrête, ou arrondit l&apos;angle, autrement que planifié</translation>
     </message>
@@ -13602,12 +13602,12 @@
         <translation>le texte mène {0} jusqu&apos;à {1} {2} au-delà de sa limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the time in the text does not give the planned speed</source>
         <translation>le temps dans le texte ne donne pas la vitesse planifiée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/ways.py"/>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the times of a bead do not add up to the planned one</source>
         <translation>les temps d&apos;un cordon ne font pas la somme planifiée</translation>
     </message>
@@ -13657,22 +13657,22 @@
         <translation>la torche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet, sur le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the torch comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/arm_kept.py"/>
+        <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
         <source>the torch comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
@@ -14492,7 +14492,7 @@
         <translation>avec les {0} chiffres de ses parties il a plus de {1} caractères</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
         <source>with tilts for clearance the tool turns faster than build_direction.max_turn on beads of {0} points; the search for slower tilts takes up to {1} min of processor time; a larger build_direction.max_turn, a slimmer nozzle, or clearance: none avoids it</source>
         <translation>avec des inclinaisons qui dégagent la buse, l&apos;outil tourne plus vite que build_direction.max_turn sur des cordons de {0} points ; en chercher de plus lentes prend jusqu&apos;à {1} min de processeur ; un build_direction.max_turn plus grand, une buse plus fine, ou clearance: none, l&apos;évitent</translation>
     </message>
@@ -16067,12 +16067,12 @@
         <translation>{0} mm sont plus que la longueur de la paroi ({1} mm) ; donnez moins</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
         <source>{0} mm gives about {1} layers, above the limit of {2}; use at least {3} mm</source>
         <translation>{0} mm font environ {1} couches, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/size.py"/>
+        <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
         <source>{0} mm gives about {1} points, above the limit of {2}; use at least {3} mm</source>
         <translation>{0} mm font environ {1} points, et il n&apos;est pas possible de travailler avec plus de {2} ; donnez au moins {3} mm</translation>
     </message>
@@ -16617,7 +16617,7 @@
         <translation>{0} avec {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/rapids/ways.py"/>
+        <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
         <source>{0} would be at {1} {2} on the retract before or after the bead, beyond its limit of {3} {4}, and no other height, direction or rotation is within limits; lower process.between_layers.lift or move the part in the cell</source>
         <translation>{0} serait à {1} {2} au retrait avant ou après le cordon, sa limite est {3} {4}, et aucune autre hauteur, direction ou rotation ne reste dans les limites ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
     </message>

@@ -10,7 +10,7 @@ from FreeCAD import Placement, Rotation, Vector
 from freecad_am.brep.walls.patch_wall import refuse_crossing
 from freecad_am.brep.walls.sheet import sheet
 from freecad_am.brep.walls.wall_on import wall_on
-from freecad_am.core.geometry.mesh.refined import boundary
+from freecad_am.core.geometry.mesh.refine import boundary
 from freecad_am.core.geometry.walls.patch_wall import PatchWall
 from freecad_am.core.geometry.walls.surface_wall import SurfaceWall
 from freecad_am.core.issues import InputError

@@ -11,7 +11,7 @@ from FreeCAD import Vector
 from freecad_am.brep import hub
 from freecad_am.brep.shapes import tessellate
 from freecad_am.brep.shapes.tessellate import tessellated
-from freecad_am.core.geometry.mesh.refined import Edges
+from freecad_am.core.geometry.mesh.refine import Edges
 from freecad_am.core.issues import InputError
 
 pytestmark = pytest.mark.any_version

@@ -8,7 +8,7 @@ import pytest
 from FreeCAD import Vector
 
 from freecad_am.brep.walls.wall_on import wall_on
-from freecad_am.core.geometry.mesh.collapsed import SmoothMesh
+from freecad_am.core.geometry.mesh.coarsen import SmoothMesh
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters

@@ -16,7 +16,7 @@ from freecad_am.core.issues import InputError, Issue
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.strategies import size
+from freecad_am.core.strategies import estimated_size
 from freecad_am.core.strategies.solids import plan as solids_plan
 from freecad_am.macro import suit
 from freecad_am.objects.checks import controllers
@@ -476,7 +476,7 @@ def test_remedies_that_take_long_are_told_before_they_are_looked_for(
     toolpath = api.make_toolpath(
         doc, api.make_feature(doc, part, layer_height=15, chord_error=0.5), cell
     )
-    monkeypatch.setattr(size, "LARGE_SECONDS", seconds)
+    monkeypatch.setattr(estimated_size, "LARGE_SECONDS", seconds)
     told, looked = [], []
     monkeypatch.setattr(
         "freecad_am.objects.joint_path.remedies", lambda *_: looked.append(list(told)) or []

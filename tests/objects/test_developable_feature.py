@@ -11,7 +11,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
-from freecad_am.core.strategies import size
+from freecad_am.core.strategies import estimated_size
 
 pytestmark = pytest.mark.any_version
 
@@ -99,11 +99,11 @@ def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, monkeyp
         doc, blades, add(doc, hub, "Hub"), order="feature", margin=6, **FAST
     )
     monkeypatch.setattr(
-        size, "SECONDS_A_TILT", size.LARGE_SECONDS
+        estimated_size, "SECONDS_A_TILT", estimated_size.LARGE_SECONDS
     )  # one point takes as long as that
 
     def told(issue):
-        assert issue.code == size.LARGE_CODE
+        assert issue.code == estimated_size.LARGE_CODE
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt), api.told_to(lambda *_: None, told):

@@ -15,7 +15,7 @@ from freecad_am import api
 from freecad_am.core.issues import InputError, has_errors
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links.collisions import CORE, flange_passes
-from freecad_am.core.kinematics.links.own import round_solid
+from freecad_am.core.kinematics.links.self_collision import round_solid
 from freecad_am.core.kinematics.machines import machine as machines
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.planning.other_cells import Tried

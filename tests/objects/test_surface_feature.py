@@ -9,7 +9,7 @@ import pytest
 
 from freecad_am import api
 from freecad_am.core.issues import InputError
-from freecad_am.core.strategies import size
+from freecad_am.core.strategies import estimated_size
 from freecad_am.core.strategies.walls import fronts
 
 
@@ -168,11 +168,11 @@ def test_fixtures_count_and_renew_the_toolpath(doc, tube, as_mesh):
 def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, tube, monkeypatch):
     feature = made(doc, tube, clearance="nozzle", chord_error=0.1, fixtures=[post(doc, False)])
     monkeypatch.setattr(
-        size, "SECONDS_A_TILT", size.LARGE_SECONDS
+        estimated_size, "SECONDS_A_TILT", estimated_size.LARGE_SECONDS
     )  # one point takes as long as that
 
     def told(issue):
-        assert issue.code == size.LARGE_CODE
+        assert issue.code == estimated_size.LARGE_CODE
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt), api.told_to(lambda *_: None, told):

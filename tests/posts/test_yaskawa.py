@@ -21,7 +21,7 @@ from freecad_am.core.program import (
     WaitInput,
 )
 from freecad_am.objects.checks.controllers import check_pulses, written_by
-from freecad_am.posts import earlier
+from freecad_am.posts import own_programs
 from freecad_am.posts.ur import post as ur
 from freecad_am.posts.yaskawa import post as yaskawa
 from tests.posts.fanuc_programs import GOLDEN_JOINT, beads, moves, program, with_tool
@@ -421,7 +421,7 @@ def test_programs_of_ours_are_known_again_in_their_folder(tmp_path):
         for name, content in files.items():
             (tmp_path / name).write_bytes(content)
         main = min(files, key=len)
-        assert earlier.programs(str(tmp_path))[main] == set(files)
+        assert own_programs.programs(str(tmp_path))[main] == set(files)
 
 
 # refusals

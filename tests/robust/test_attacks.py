@@ -15,7 +15,7 @@ import pytest
 from freecad_am.batch import console, staging
 from freecad_am.batch import output_folder as outputs
 from freecad_am.core.issues import InputError
-from freecad_am.posts import earlier
+from freecad_am.posts import own_programs
 
 OURS = "/PROG  {}\n/MN\n   1:  !Limits: maker ;\n   2:  !Travel speed 6 mm/s ;\n"
 
@@ -180,7 +180,7 @@ def test_a_macro_that_exports_again_leaves_no_part_of_the_longer_program(tmp_pat
     main = OURS.format("CUP") + "   3:  CALL CUP01 ;\n   4:  CALL CUP02 ;\n"
     longer = {"CUP.LS": main.encode(), "CUP01.LS": b"/PROG  CUP01\n", "CUP02.LS": b"/PROG  CUP02\n"}
     out = tmp_path / "out"
-    assert [path.rsplit("/", 1)[1] for path in earlier.write(str(out), longer)] == list(longer)
+    assert [path.rsplit("/", 1)[1] for path in own_programs.write(str(out), longer)] == list(longer)
     theirs = {
         "CUP03.LS": b"/PROG  CUP03\n",
         "OTHER.LS": OURS.format("OTHER").encode(),
@@ -189,7 +189,7 @@ def test_a_macro_that_exports_again_leaves_no_part_of_the_longer_program(tmp_pat
     for name, content in theirs.items():
         (out / name).write_bytes(content)
     shorter = {"CUP.LS": OURS.format("CUP").encode()}
-    earlier.write(str(out), shorter)
+    own_programs.write(str(out), shorter)
     assert tree(out) == {**shorter, **theirs}
 
 
@@ -200,8 +200,8 @@ def test_a_macro_exports_nothing_through_a_link(tmp_path, elsewhere):
     (out / "CUP.LS").symlink_to(elsewhere / "CUP.LS")
     before = tree(elsewhere)
     with pytest.raises(OSError, match="link"):
-        earlier.write(str(out), {"cup/start.pgx": b"new"})
-    earlier.write(str(out), {"CUP.LS": b"new"})
+        own_programs.write(str(out), {"cup/start.pgx": b"new"})
+    own_programs.write(str(out), {"CUP.LS": b"new"})
     assert tree(elsewhere) == before
     assert tree(out) == {"CUP.LS": b"new", "cup": str(elsewhere)}
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...core.geometry.mesh.collapsed import doubled_areas
+from ...core.geometry.mesh.coarsen import doubled_areas
 from ...core.geometry.mesh.polygon import triangulate
 from ...core.issues import NOTE, InputError, Issue, Text
 from ...core.types import Array, Index

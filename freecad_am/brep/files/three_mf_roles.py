@@ -17,7 +17,7 @@ import FreeCAD
 import numpy as np
 import Part
 
-from ...core.geometry.mesh.refined import Edges
+from ...core.geometry.mesh.refine import Edges
 from ...core.geometry.mesh.solid import SolidMesh
 from ...core.issues import Text
 from ...core.types import Array, Index

@@ -13,7 +13,7 @@ import Part
 
 from ...core.collision.depths import grain, measured
 from ...core.geometry.curves.profile import RevolvedWall
-from ...core.geometry.mesh.collapsed import doubled_areas
+from ...core.geometry.mesh.coarsen import doubled_areas
 from ...core.geometry.mesh.solid import SolidMesh, divide_triangles
 from ...core.geometry.obstacles import Body
 from ...core.geometry.walls.part_depths import PartDepths, Surface

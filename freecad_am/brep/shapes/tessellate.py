@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ...core.geometry.mesh.refined import Edges, quarter_triangles
+from ...core.geometry.mesh.refine import Edges, quarter_triangles
 from ...core.geometry.mesh.solid import Search, SolidMesh
 from ...core.geometry.obstacles import Body
 from ...core.issues import InputError

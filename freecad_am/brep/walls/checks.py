@@ -12,7 +12,7 @@ import Part
 from scipy.spatial import cKDTree
 
 from ...core.geometry.formatting import place
-from ...core.geometry.mesh.refined import Edges, boundary
+from ...core.geometry.mesh.refine import Edges, boundary
 from ...core.geometry.walls.mesh_wall import connected_parts
 from ...core.geometry.walls.patch_wall import PatchWall
 from ...core.geometry.walls.surface import dot, normals

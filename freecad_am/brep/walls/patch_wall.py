@@ -12,7 +12,7 @@ import numpy as np
 import Part
 
 from ...core.geometry.formatting import at_least, count, format_deviation, place
-from ...core.geometry.mesh.collapsed import doubled_areas
+from ...core.geometry.mesh.coarsen import doubled_areas
 from ...core.geometry.mesh.polygon import near_pairs
 from ...core.geometry.mesh.triangle_mesh import closest
 from ...core.geometry.step_count import step_count

@@ -14,8 +14,8 @@ import numpy as np
 import Part
 
 from ...core.geometry.formatting import place
-from ...core.geometry.mesh.collapsed import collapse_edges, doubled_areas
-from ...core.geometry.mesh.refined import Edges, count_halved, flip_edges, refine_mesh
+from ...core.geometry.mesh.coarsen import collapse_edges, doubled_areas
+from ...core.geometry.mesh.refine import Edges, count_halved, flip_edges, refine_mesh
 from ...core.geometry.mesh.repair import repair_mesh
 from ...core.geometry.mesh.solid import SolidMesh
 from ...core.geometry.obstacles import Body

@@ -14,9 +14,9 @@ import Part
 from scipy.spatial import cKDTree
 
 from ...core.geometry.formatting import at_least, count, format_deviation, place
-from ...core.geometry.mesh.collapsed import doubled_areas
+from ...core.geometry.mesh.coarsen import doubled_areas
 from ...core.geometry.mesh.edge_runs import CORNER, runs
-from ...core.geometry.mesh.refined import boundary
+from ...core.geometry.mesh.refine import boundary
 from ...core.geometry.obstacles import Body
 from ...core.geometry.step_count import step_count
 from ...core.geometry.walls.contact import PlaneGround, first_curves, fit_splines, ground_distances

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.mesh.collapsed import doubled_areas
+from ..geometry.mesh.coarsen import doubled_areas
 from ..geometry.mesh.solid import divide_triangles
 from ..geometry.obstacles import Body
 from ..geometry.walls.part_depths import Surface

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..geometry.columns import columns, dots, lengths, unit_rows
-from ..geometry.mesh.collapsed import doubled_areas
+from ..geometry.mesh.coarsen import doubled_areas
 from ..types import Array, Index, Mask
 from . import frustum, separation, tree
 from .frustum import Frustum

@@ -18,7 +18,7 @@ from .curves.guide import Guide
 from .developable import Developable, Plane
 from .formatting import place
 from .frames import TURN
-from .mesh.collapsed import doubled_areas
+from .mesh.coarsen import doubled_areas
 from .mesh.solid import SolidMesh
 from .obstacles import Body
 

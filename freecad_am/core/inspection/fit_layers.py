@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.fitted import REMAINS_CODE, Fitted
 from ..geometry.formatting import place
+from ..geometry.toolpath_records import REMAINS_CODE, Fitted
 from ..issues import NOTE, WARNING, InputError, Issue, Text
 from ..parameters.filled import PLANES
 from ..parameters.scan import ScanParameters

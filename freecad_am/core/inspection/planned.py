@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import RevolvedWall
-from ..geometry.mesh.collapsed import doubled_areas
+from ..geometry.mesh.coarsen import doubled_areas
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import SolidsOnHub

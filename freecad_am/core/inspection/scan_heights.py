@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from ..geometry.mesh.refined import refine_mesh
+from ..geometry.mesh.refine import refine_mesh
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.obstacles import Body
 from ..issues import InputError, Text, Word

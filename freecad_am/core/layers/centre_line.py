@@ -17,8 +17,8 @@ from scipy.sparse.linalg import spsolve
 from ..geometry.curves.guide import fit_guide
 from ..geometry.formatting import place
 from ..geometry.frames import TURN
-from ..geometry.mesh.collapsed import doubled_areas
-from ..geometry.mesh.refined import Edges
+from ..geometry.mesh.coarsen import doubled_areas
+from ..geometry.mesh.refine import Edges
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base, Group, SolidsOnHub, upright

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..geometry.curves.guide import Guide
-from ..geometry.mesh.refined import split_edges
+from ..geometry.mesh.refine import split_edges
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base
 from ..issues import ERROR, InfeasibleError, InputError, Issue, Text

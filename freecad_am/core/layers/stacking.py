@@ -14,7 +14,7 @@ from ..collision.inside import inside_of
 from ..geometry.columns import columns
 from ..geometry.curves.guide import Guide
 from ..geometry.developable import Plane
-from ..geometry.mesh.collapsed import doubled_areas
+from ..geometry.mesh.coarsen import doubled_areas
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base, Group, SolidsOnHub, upright
 from ..issues import NOTE, Issue, Text, Word

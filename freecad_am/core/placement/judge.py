@@ -31,7 +31,7 @@ from ..planning.joint_path import JointPath
 from ..planning.motion import assemble
 from ..planning.plan import Progress, plan_joints
 from ..planning.points import Points
-from ..planning.sampled import Sampled, sample_toolpath
+from ..planning.sample_of_beads import Sampled, sample_toolpath
 from ..planning.task import MIN_MARGIN, Task
 from ..toolpath import Bead, Toolpath
 from ..types import Array, Mask

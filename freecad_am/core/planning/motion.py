@@ -18,11 +18,11 @@ from ..parameters.process import ProcessParameters
 from ..program import SHORTEST_RAPID
 from ..types import Array, Integers
 from . import nozzle_obstacles
-from .arm_kept import Cylinders
+from .arm_clearance import Cylinders
 from .beads.retreat import turns_back
 from .joint_path import BeadPath, JointPath
+from .rapids.moves_between_beads import RapidWays, Way, findings
 from .rapids.retracts import Leg
-from .rapids.ways import RapidWays, Way, findings
 
 RAPID_SHARE = 0.8  # of an axis's largest speed that a rapid move may ask for
 OF_ALL = ("layer", "bead", "bead_class")  # columns that are constant for all rows of a part

@@ -26,7 +26,7 @@ from ..parameters.joints import OF_CELL, JointParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.records import Pose
 from ..toolpath import Toolpath
-from .arm_kept import Cylinders
+from .arm_clearance import Cylinders
 from .external import remedies as external_remedies
 from .external.level import levelled
 from .joint_path import JointPath

@@ -14,8 +14,8 @@ from ..kinematics.cell import Cell
 from ..kinematics.inverse import spherical_wrist
 from ..parameters.joints import OF_CELL, JointParameters
 from ..toolpath import Bead, Toolpath
-from . import arm_clear, criteria
-from .arm_kept import ArmKept, Cylinders, build_arm_clearance
+from . import clear_rotations, criteria
+from .arm_clearance import ArmKept, Cylinders, build_arm_clearance
 from .beads import phases
 from .beads.chord_error import all_refined
 from .beads.retreat import extend_past_seam, go_back
@@ -342,7 +342,7 @@ def _ranked(
         within = 0
         if task.kept is not None:
             within = int((candidates.margin.max(axis=0) >= 0.0).sum())
-            candidates = arm_clear.exclude_touching(
+            candidates = clear_rotations.exclude_touching(
                 task, task.kept, points, [bead_ids[k] for k in sampled], candidates
             )
         best, bead_rows = candidates.best(), np.arange(len(sampled))
@@ -417,7 +417,7 @@ def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], li
         issues += findings(task, path)
     issues += missed
     if task.kept is not None:
-        issues += arm_clear.findings(task.kept, paths)
+        issues += clear_rotations.findings(task.kept, paths)
     if not has_errors(issues):
         paths, issues_found = _slowed(task.cell, paths, task.parts)
         issues = issues + issues_found

@@ -19,7 +19,7 @@ from ..kinematics.limits import RESERVE, Limits, PoseFrames
 from ..parameters.joints import JointParameters
 from ..toolpath import MotionRules, Toolpath
 from ..types import Array, Index, Mask
-from .arm_kept import ArmKept
+from .arm_clearance import ArmKept
 from .points import Points, in_pieces, unwrapped, unwrapped_by_turns
 from .turns import configurations as following
 from .turns.directed import Lock

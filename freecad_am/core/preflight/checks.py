@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..geometry.fitted import REMAINS_CODE
+from ..geometry.toolpath_records import REMAINS_CODE
 from ..issues import WARNING, Issue, Text, Word
 from ..kinematics.cell import Cell
 from ..motion import Motion
@@ -19,7 +19,7 @@ from ..process.deposit import balance as deposit_balance
 from ..process.deposit import on_part, spacing, support
 from ..process.deposit.balance import MM3, Balance
 from ..simulation.payload import CODE, finished
-from ..simulation.rapid_look import RapidsLooked
+from ..simulation.rapid_contacts import RapidsLooked
 from ..simulation.watch import ArmTouches
 from ..strategies.clearance.nozzle_check import Looked
 from ..toolpath import Toolpath

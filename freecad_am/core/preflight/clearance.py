@@ -12,10 +12,10 @@ from ..issues import Issue, Text, Word, values_in
 from ..kinematics.cell import Cell
 from ..kinematics.links.contact import LINKS_MORE
 from ..kinematics.links.external_links import titles_without_shape
-from ..kinematics.links.own import NONE
+from ..kinematics.links.self_collision import NONE
 from ..motion import Motion
 from ..simulation.achievable_feed import speed_ratios
-from ..simulation.rapid_look import RapidsLooked
+from ..simulation.rapid_contacts import RapidsLooked
 from ..simulation.watch import ArmTouches, shown_margins
 from ..strategies.clearance.nozzle_check import Looked
 from ..types import Array

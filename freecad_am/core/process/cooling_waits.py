@@ -10,7 +10,7 @@ import numpy as np
 from ..issues import NOTE, Issue, Text
 from ..toolpath import Layer, Toolpath
 from ..types import Array
-from .order import Course
+from .bead_order import Course
 
 
 def add_waits(

@@ -16,7 +16,7 @@ from ..collision.obstacles import Obstacles
 from ..issues import NOTE, Issue
 from ..kinematics.cell import Cell
 from ..kinematics.links.contact import LINKS_MORE, ArmContact
-from ..kinematics.links.own import NONE
+from ..kinematics.links.self_collision import NONE
 from ..motion import Motion
 from ..types import Array, ArrayLike, Index, Integers, Mask
 from .achievable_feed import AchievableFeed

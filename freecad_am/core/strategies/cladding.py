@@ -27,8 +27,8 @@ from ..parameters.build_direction import BuildDirectionParameters
 from ..parameters.filled import CladdingParameters
 from ..parameters.process import ProcessParameters
 from ..process.bead_model import BeadModel
+from ..process.bead_order import IslandOrder, RankedBead, order_beads
 from ..process.cooling_waits import add_waits
-from ..process.order import IslandOrder, RankedBead, order_beads
 from ..toolpath import Bead, Checks, MotionRules, Toolpath
 from ..types import Array
 from .progress import Progress, silent

@@ -12,7 +12,7 @@ import numpy as np
 from ..families.family import Family
 from ..geometry.curves.guide import Guide
 from ..geometry.developable import Plane
-from ..geometry.mesh.collapsed import doubled_areas
+from ..geometry.mesh.coarsen import doubled_areas
 from ..geometry.mesh.solid import Search, SolidMesh
 from ..geometry.obstacles import Body
 from ..geometry.on_hub import Base, SolidsOnHub

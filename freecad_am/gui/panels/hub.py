@@ -10,7 +10,7 @@ import numpy as np
 
 from ...core.issues import AmError, Issue
 from ...core.parameters.filled import DevelopableParameters
-from ...core.strategies import size
+from ...core.strategies import estimated_size
 from ...core.types import Array
 from ...objects.checks import deposit
 from ...objects.developable_feature import DevelopableFeature
@@ -164,7 +164,9 @@ class HubPanel(PickPanel):
             _, outcome, drawn = (
                 cached if cached is not None and cached[0] == key else (key, work(), None)
             )
-            size.refuse_absurd(size.solids_size(outcome.value, strategy), strategy)
+            estimated_size.refuse_absurd(
+                estimated_size.solids_size(outcome.value, strategy), strategy
+            )
             self.cached = (key, outcome, drawing(outcome.value) if drawn is None else drawn)
             return self.cached[1:]
 

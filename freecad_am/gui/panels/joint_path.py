@@ -20,7 +20,7 @@ from ...core.planning.joint_path import BeadPath
 from ...core.planning.joint_path import JointPath as JointsOfBeads
 from ...core.planning.plan import OF_ROBOTS, plan_joints
 from ...core.planning.rotation.headroom import Judgement, judge_paths
-from ...core.planning.sampled import Sampled, sample_toolpath
+from ...core.planning.sample_of_beads import Sampled, sample_toolpath
 from ...core.types import Array
 from ...objects import user_machines
 from ...objects.checks import controllers

@@ -15,7 +15,7 @@ from ...core.layers import centre_line
 from ...core.layers import guide_field as along
 from ...core.layers.stacking import CONTACT_HEIGHTS, Leaning, find_leaning, prepare_stack
 from ...core.parameters.filled import SolidParameters
-from ...core.strategies import size
+from ...core.strategies import estimated_size
 from ...core.types import Array
 from ...objects.fields.preferences import in_user_units
 from ...objects.shapes.bodies import FIXTURES
@@ -200,7 +200,7 @@ class SolidPanel(PickPanel):
             solids = (
                 outcome.value if guided else prepare_stack(bodies, strategy, outcome.value.label)
             )
-            size.refuse_absurd(size.solids_size(solids, strategy), strategy)
+            estimated_size.refuse_absurd(estimated_size.solids_size(solids, strategy), strategy)
             if guided:  # reject layers that are too high or too low at once
                 list(along.slices(solids.groups[0].base, bodies, strategy))
             slit = strategy.chord_error if strategy.fuse == "auto" else None

@@ -17,7 +17,7 @@ from PySide import QtCore, QtGui
 
 from ...core.geometry import frames
 from ...core.issues import AmError
-from ...core.kinematics.links.own import NONE
+from ...core.kinematics.links.self_collision import NONE
 from ...core.simulation.table_links import Placing, at_rest, heights, placing
 from ...core.toolpath import Bead
 from ...core.types import Array, Mask

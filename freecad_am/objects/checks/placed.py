@@ -15,7 +15,7 @@ from ...core.kinematics.cell import Cell
 from ...core.kinematics.links import external_links
 from ...core.kinematics.links.contact import ArmContact
 from ...core.kinematics.links.external_links import Mesh
-from ...core.kinematics.links.own import NONE
+from ...core.kinematics.links.self_collision import NONE
 from ...core.motion import Motion
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.joints import JointParameters
@@ -23,7 +23,7 @@ from ...core.parameters.place import PlaceParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.placement.judge import Cylinders, Job
 from ...core.placement.place import Placed, place_part
-from ...core.planning import arm_kept
+from ...core.planning import arm_clearance
 from ...core.simulation.watch import ArmTouches, arm_touches, deposit_obstacles
 from ...core.toolpath import Toolpath
 from .. import user_machines
@@ -34,7 +34,7 @@ from ..stage import stage_of
 from ..work import progress
 
 
-def cylinders_of(cell: Cell) -> arm_kept.Cylinders:
+def cylinders_of(cell: Cell) -> arm_clearance.Cylinders:
     """The capsules of each link of the robot; empty for machines with rotary axes, whose links no
     file describes well enough.
     """
@@ -77,7 +77,7 @@ def _touches(
     cell: Cell,
     toolpath: Toolpath,
     process: ProcessParameters,
-    cylinders: arm_kept.Cylinders,
+    cylinders: arm_clearance.Cylinders,
     max_positions: int | None,
     clearance: float,
 ) -> ArmTouches:
@@ -96,7 +96,7 @@ def arm_issues(
     cell: Cell,
     toolpath: Toolpath,
     process: ProcessParameters,
-    cylinders: arm_kept.Cylinders,
+    cylinders: arm_clearance.Cylinders,
     known_issues: Sequence[Issue],
 ) -> tuple[Issue, ...]:
     """An error for each bead without a known issue on which, or on the way to which, a link (given
@@ -104,7 +104,9 @@ def arm_issues(
     """
     assert cell.arm_clearance is not None
     touches = _touches(motion, cell, toolpath, process, cylinders, None, cell.arm_clearance)
-    reported = {(issue.layer, issue.bead) for issue in known_issues if issue.code == arm_kept.CODE}
+    reported = {
+        (issue.layer, issue.bead) for issue in known_issues if issue.code == arm_clearance.CODE
+    }
     issues = []
     for row in np.flatnonzero(touches.link != NONE).tolist():
         location = int(motion.layer[row]), int(motion.bead[row])
@@ -113,7 +115,7 @@ def arm_issues(
             what = touches.names[touches.what[row]]
             link = touches.links[touches.link[row]]
             issues.append(
-                arm_kept.clearance_issue(
+                arm_clearance.clearance_issue(
                     cell, link, what, *location, on_way=not motion.deposit[row]
                 )
             )

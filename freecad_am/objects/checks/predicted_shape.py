@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...brep.shapes.tessellate import triangles_of
-from ...core.geometry.fitted import PredictedShape
+from ...core.geometry.toolpath_records import PredictedShape
 from ...core.inspection import figures
 from ...core.inspection.inspect import PREDICTED, Inspected
 from ...core.issues import WARNING, InputError, Issue, Text

@@ -21,8 +21,8 @@ from ...core.preflight.promise import Promise
 from ...core.process.deposit import balance as deposit_balance
 from ...core.process.deposit import spacing
 from ...core.process.deposit.balance import Balance
-from ...core.simulation import rapid_look
-from ...core.simulation.rapid_look import RapidsLooked
+from ...core.simulation import rapid_contacts
+from ...core.simulation.rapid_contacts import RapidsLooked
 from ...core.simulation.watch import ArmTouches
 from ...core.strategies.clearance import nozzle_check
 from ...core.strategies.clearance.nozzle_check import Looked
@@ -203,7 +203,7 @@ def _survey_motion(
     about the motion.
     """
     path = planned.joint_path
-    rapids = rapid_look.looked_at(
+    rapids = rapid_contacts.looked_at(
         planned.motion,
         [entry.bead for entry in path.beads],
         cell,

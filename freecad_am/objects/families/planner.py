@@ -120,14 +120,14 @@ def tilt_clear(
     """As `clear_by_tilt.keep_clear`; reports its progress, and once that it takes long. build: in place
     of the feature's.
     """
-    from ...core.strategies import size
+    from ...core.strategies import estimated_size
     from ...core.strategies.clearance import clear_by_tilt
     from ...core.strategies.progress import Watch
 
     issues: list[Issue] = []
 
     def report_points(points: int, times: int) -> None:
-        for issue in () if issues else size.tilting_issues(points, times):
+        for issue in () if issues else estimated_size.tilting_issues(points, times):
             issues.append(issue)
             progress.report_issue(issue)
 

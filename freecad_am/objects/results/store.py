@@ -103,9 +103,9 @@ def unpack_parts(
             raise ValueError("it belongs to other inputs")
         header, numbers = json.loads(text[len(key) :]), np.asarray(floats)
         if not (isinstance(header, dict) and header.get("format")):
-            from . import legacy
+            from . import earlier_formats
 
-            return legacy.pick_parts(header, numbers, paths)
+            return earlier_formats.pick_parts(header, numbers, paths)
         if header["format"] != FORMAT:
             raise ValueError(f"format {header['format']} is of a later version")
         with zipfile.ZipFile(io.BytesIO(_bytes_of(numbers[1:], header["bytes"]))) as archive:

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial import ConvexHull
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.geometry.mesh.refined import Edges
+from freecad_am.core.geometry.mesh.refine import Edges
 from freecad_am.core.geometry.mesh.repair import repair_mesh
 from freecad_am.core.issues import InputError
 

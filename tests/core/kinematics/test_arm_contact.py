@@ -13,7 +13,7 @@ from freecad_am.core.kinematics.links import contact as arm_contact
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links import robot as robot_links
 from freecad_am.core.kinematics.links.contact import DEPOSIT, NOZZLE, PLATFORM, ArmContact
-from freecad_am.core.kinematics.links.own import NONE
+from freecad_am.core.kinematics.links.self_collision import NONE
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.simulation.table_links import placing
 from tests.posts.driven import bead_body

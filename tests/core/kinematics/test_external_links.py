@@ -16,7 +16,7 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.external import MECHANISMS, load
 from freecad_am.core.kinematics.links.contact import ArmContact
 from freecad_am.core.kinematics.links.external_links import external_links, robot_cylinders
-from freecad_am.core.kinematics.links.own import NONE
+from freecad_am.core.kinematics.links.self_collision import NONE
 from freecad_am.core.kinematics.machines import draft as machine_draft
 from freecad_am.core.kinematics.urdf import machine as urdf_machine
 from freecad_am.core.kinematics.urdf import read as urdf

@@ -8,7 +8,7 @@ import pytest
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links.contact import ArmContact, min_distance
-from freecad_am.core.kinematics.links.own import NONE, OwnLinks, positions
+from freecad_am.core.kinematics.links.self_collision import NONE, OwnLinks, positions
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.cell import CellParameters
 from tests.core.planning.test_arm_clearance import on_rods

@@ -13,7 +13,7 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import torch
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links.contact import TORCH, ArmContact
-from freecad_am.core.kinematics.links.own import NONE
+from freecad_am.core.kinematics.links.self_collision import NONE
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 
 NOZZLE = NozzleParameters(half_angle=np.radians(30.0), diameter=4.0, length=50.0)

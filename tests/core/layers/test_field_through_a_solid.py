@@ -10,7 +10,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import dijkstra
 from scipy.spatial.transform import Rotation
 
-from freecad_am.core.geometry.mesh.refined import Edges
+from freecad_am.core.geometry.mesh.refine import Edges
 from freecad_am.core.geometry.mesh.triangle_mesh import Mesh
 from freecad_am.core.layers.chart import Chart
 from freecad_am.core.layers.eikonal import Voxels, arrival, links, voxels

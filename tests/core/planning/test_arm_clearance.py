@@ -12,15 +12,15 @@ from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
-from freecad_am.core.kinematics.links import external_links, own
-from freecad_am.core.kinematics.links.own import OwnLinks
+from freecad_am.core.kinematics.links import external_links, self_collision
+from freecad_am.core.kinematics.links.self_collision import OwnLinks
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import CellParameters, NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
-from freecad_am.core.planning import arm_clear, arm_kept
+from freecad_am.core.planning import arm_clearance, clear_rotations
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.points import gather
@@ -221,10 +221,12 @@ def test_what_came_too_near_is_refined_again_up_to_the_clearance(dome, monkeypat
 
     def kept(task, kept, points, places, start):
         taken_back.extend(place for place in places)
-        return arm_clear.Refined(start, np.zeros(len(start)), ("",) * len(start), (0,) * len(start))
+        return clear_rotations.Refined(
+            start, np.zeros(len(start)), ("",) * len(start), (0,) * len(start)
+        )
 
     with monkeypatch.context() as before:
-        before.setattr(arm_clear, "refined_clear", kept)
+        before.setattr(clear_rotations, "refined_clear", kept)
         back = objectives(plan_joints(job, cell, parameters, cylinders=rods), cell)
     free_cell = dataclasses.replace(cell, arm_clearance=None)
     free = objectives(plan_joints(job, free_cell, parameters, cylinders=rods), cell)
@@ -311,25 +313,29 @@ def test_beads_that_no_rotation_serves_are_found_by_few_points_as_by_all(dome, m
     wall = box(np.array([-140.0, -60.0, -5.0]), np.array([12.0, 120.0, 420.0]), "wall")
     job = dataclasses.replace(dome, surroundings=(*dome.surroundings, wall))
     cell = cells.resolve(CellParameters(**CELL, branch=DOWN, arm_clearance=CLEARANCE), job.frame)
-    kept = arm_kept.build_arm_clearance(job, cell, external_links.robot_cylinders(cell.robot.chain))
+    kept = arm_clearance.build_arm_clearance(
+        job, cell, external_links.robot_cylinders(cell.robot.chain)
+    )
     beads, places = [bead for _, _, bead in job], [(layer, index) for layer, index, _ in job]
-    points = gather(beads, cell, arm_clear.POINTS_PER_BEAD)
+    points = gather(beads, cell, clear_rotations.POINTS_PER_BEAD)
     found, looked = [], []
     for branch in range(8):
         task = Task(cell, branch, JointParameters(), False, kept)
         candidates = global_search.everywhere(task, points, task.thresholds(points))
-        for ends in (arm_clear.ENDS, arm_clear.POINTS_PER_BEAD):
-            monkeypatch.setattr(arm_clear, "ENDS", ends)
+        for ends in (clear_rotations.ENDS, clear_rotations.POINTS_PER_BEAD):
+            monkeypatch.setattr(clear_rotations, "ENDS", ends)
             asked = []
-            monkeypatch.setattr(arm_kept.ArmKept, "rotations_near", counting(asked))
-            found.append(arm_clear.exclude_touching(task, kept, points, places, candidates).margin)
+            monkeypatch.setattr(arm_clearance.ArmKept, "rotations_near", counting(asked))
+            found.append(
+                clear_rotations.exclude_touching(task, kept, points, places, candidates).margin
+            )
             looked.append(sum(asked))
             monkeypatch.undo()
     assert all(np.array_equal(one, other) for one, other in zip(found[::2], found[1::2]))
     assert 0 < sum(looked[::2]) < 0.7 * sum(looked[1::2])
 
 
-def counting(asked, own=arm_kept.ArmKept.rotations_near):
+def counting(asked, own=arm_clearance.ArmKept.rotations_near):
     """`rotations_near` that notes how many joint vectors it is asked about."""
 
     def rotations_near(self, joints, bead, places):
@@ -359,8 +365,8 @@ def test_pairs_of_links_are_found_once_for_the_same_robot_and_anew_for_another()
         (robot.chain, limits, rods, 8.0 * CLEARANCE),
     ]:
         found = OwnLinks.of(chain, among, links, clearance)
-        fresh = own._find_pairs.__wrapped__(
-            own._Asked(chain, among, links, clearance)
+        fresh = self_collision._find_pairs.__wrapped__(
+            self_collision._Asked(chain, among, links, clearance)
         )  # not remembered
         assert found is not first and (found.gap, found.pairs) == (fresh.gap, fresh.pairs)
     assert fresh.pairs != first.pairs

@@ -12,7 +12,7 @@ from freecad_am.core.kinematics.cell import CellShapes
 from freecad_am.core.kinematics.external import MECHANISMS
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links.contact import ArmContact
-from freecad_am.core.kinematics.links.own import NONE
+from freecad_am.core.kinematics.links.self_collision import NONE
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import ProcessParameters

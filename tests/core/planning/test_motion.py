@@ -30,7 +30,7 @@ from freecad_am.core.program import (
     Wait,
     WaitInput,
 )
-from freecad_am.core.simulation import rapid_look
+from freecad_am.core.simulation import rapid_contacts
 from freecad_am.objects.checks.controllers import check_controller
 from freecad_am.posts import catalogue
 from tests.programs import build
@@ -109,7 +109,7 @@ def test_a_rapid_through_the_part_is_refused(planned):
 
     def met(up):
         moved = [dataclasses.replace(bead, points=bead.points + [0.0, 0.0, up]) for bead in beads]
-        return rapid_look.looked_at(motion, moved, cell, (), 8.0, 1.0, 20_000)
+        return rapid_contacts.looked_at(motion, moved, cell, (), 8.0, 1.0, 20_000)
 
     assert (
         not len(met(0.0).rows)
@@ -166,7 +166,7 @@ def test_the_platform_is_in_the_way_of_what_comes_near_it(planned, tip, axis, me
     led[: row + 1] = joints[0]
     there = dataclasses.replace(motion, joints=led)
     for one, expected in ((cell, met), (dataclasses.replace(cell, platform_diameter=0.0), False)):
-        looked = rapid_look.looked_at(
+        looked = rapid_contacts.looked_at(
             there, [bead.bead for bead in path.beads], one, (), 0.0, 0.0, 20_000
         )
         assert (row in looked.rows) == expected

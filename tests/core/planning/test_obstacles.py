@@ -14,7 +14,7 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.cell_records import OBSTACLES, Obstacle
-from freecad_am.core.simulation import rapid_look
+from freecad_am.core.simulation import rapid_contacts
 from freecad_am.kdl import KdlArm
 from tests.core.planning.test_arm_clearance import (
     CELL,
@@ -171,10 +171,10 @@ def test_rapids_of_a_carried_nozzle_go_over_an_obstacle_that_links_are_not_kept_
         assert near == 0.0 if not obstacles_ else near > low
         # and what looks at rapids alone, whatever planning tried, tells it of the cell in which the bar stands
         there = cell_with(dome, pose, size=size, **values)
-        looked = rapid_look.looked_at(motion, ends, there, (), 0.0, 0.0, 50_000)
+        looked = rapid_contacts.looked_at(motion, ends, there, (), 0.0, 0.0, 50_000)
         assert (len(looked.rows) == 0) == bool(obstacles_)
         without = dataclasses.replace(there, shapes=cells.CellShapes())
-        assert not len(rapid_look.looked_at(motion, ends, without, (), 0.0, 0.0, 50_000).rows)
+        assert not len(rapid_contacts.looked_at(motion, ends, without, (), 0.0, 0.0, 50_000).rows)
 
 
 def test_a_floor_is_a_box_that_the_elbow_stays_above(dome):

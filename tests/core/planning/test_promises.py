@@ -15,7 +15,7 @@ from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.preflight.checks import Evidence, ReadBack, promises
 from freecad_am.core.process.deposit.balance import Balance
-from freecad_am.core.simulation.rapid_look import looked_at
+from freecad_am.core.simulation.rapid_contacts import looked_at
 from freecad_am.core.simulation.watch import ArmTouches
 from freecad_am.core.strategies.clearance import nozzle_check
 

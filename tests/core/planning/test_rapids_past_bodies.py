@@ -10,7 +10,7 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.parameters.process import BetweenLayersParameters, ProcessParameters
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.simulation import rapid_look
+from freecad_am.core.simulation import rapid_contacts
 
 
 def spike(at, size, name):
@@ -27,7 +27,7 @@ def planned(sliced, cell_of):
 
 def collisions(motion, cell, path, bodies):
     """(layer, bead) of the beads on the rapid way to which something is met, driven by what did not plan them."""
-    looked = rapid_look.looked_at(
+    looked = rapid_contacts.looked_at(
         motion, [one.bead for one in path.beads], cell, bodies, 0.0, 0.0, 200_000
     )
     assert looked.step == 0.5

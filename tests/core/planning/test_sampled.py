@@ -12,7 +12,7 @@ from freecad_am.core.parameters.joints import GIVEN, JointParameters
 from freecad_am.core.planning.plan import plan_joints
 from freecad_am.core.planning.rotation.given import coefficients
 from freecad_am.core.planning.rotation.headroom import judge_paths
-from freecad_am.core.planning.sampled import sample_toolpath
+from freecad_am.core.planning.sample_of_beads import sample_toolpath
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 
 

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry import frames
+from freecad_am.core.geometry.even_samples import spread_points
 from freecad_am.core.geometry.obstacles import box
-from freecad_am.core.geometry.spread import spread_points
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics.cell import CellShapes
 from freecad_am.core.motion import TRAVEL
@@ -18,9 +18,9 @@ from freecad_am.core.parameters.joints import JointParameters
 from freecad_am.core.planning import nozzle_obstacles
 from freecad_am.core.planning.motion import assemble
 from freecad_am.core.planning.plan import plan_joints
-from freecad_am.core.planning.rapids import way_round as sampled
-from freecad_am.core.planning.rapids.way_round import Ranges, way_round
-from freecad_am.core.simulation import rapid_look
+from freecad_am.core.planning.rapids import path_around_obstacles as sampled
+from freecad_am.core.planning.rapids.path_around_obstacles import Ranges, way_round
+from freecad_am.core.simulation import rapid_contacts
 from freecad_am.core.toolpath import Layer, MotionRules, Toolpath
 from tests.core.planning.test_arm_clearance import CELL, CLEARANCE, dome, planned
 from tests.core.planning.test_obstacles import cell_with, nearest, nozzle_points
@@ -90,7 +90,7 @@ def test_rapids_are_led_round_a_wall_that_no_retract_gets_over(dome, monkeypatch
     # nothing is met, by others and by what looks at rapids alone
     assert nozzle_near(motion, cell, [WALL], [SIZE]) > 0.0
     beads = [bead for _, _, bead in job]
-    assert not len(rapid_look.looked_at(motion, beads, cell, (), 0.0, 0.0, 50_000).rows)
+    assert not len(rapid_contacts.looked_at(motion, beads, cell, (), 0.0, 0.0, 50_000).rows)
     # within limits and speeds, and of one configuration: a program may tell places instead of joints
     assert not cell.limits.exceeded(motion.joints).any()
     rapid = 1 + np.flatnonzero(~motion.deposit[1:])

@@ -11,7 +11,7 @@ from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.links import robot as robot_links
 from freecad_am.core.kinematics.links.contact import ArmContact
-from freecad_am.core.kinematics.links.own import NONE
+from freecad_am.core.kinematics.links.self_collision import NONE
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.simulation import watch
 

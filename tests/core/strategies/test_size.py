@@ -24,7 +24,7 @@ from freecad_am.core.parameters.filled import (
 )
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import MOST_LAYERS, RevolutionParameters, SurfaceParameters
-from freecad_am.core.strategies import cladding, size
+from freecad_am.core.strategies import cladding, estimated_size
 from freecad_am.core.strategies.revolution import plan as revolution
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 from freecad_am.core.strategies.walls import fronts as wall_fronts
@@ -44,7 +44,7 @@ PROCESS = ProcessParameters()
 
 def turned(wall, **values):
     strategy = RevolutionParameters(**values)
-    return size.revolution_size(wall, strategy), revolution.plan(
+    return estimated_size.revolution_size(wall, strategy), revolution.plan(
         wall, strategy, FREE, PROCESS, NozzleParameters(), 0.0
     )
 
@@ -52,12 +52,12 @@ def turned(wall, **values):
 def on_part(wall, **values):
     strategy = SurfaceParameters(**values)
     family = surface if hasattr(wall, "kind") else wall_fronts
-    return size.wall_size(wall, strategy), family.plan(wall, strategy, FREE, PROCESS)
+    return estimated_size.wall_size(wall, strategy), family.plan(wall, strategy, FREE, PROCESS)
 
 
 def on_hub(made, **values):
     strategy = DevelopableParameters(**{"layer_height": 3.0, "bead_spacing": 3.0, **values})
-    return size.solids_size(made, strategy), plan_solids(
+    return estimated_size.solids_size(made, strategy), plan_solids(
         made, strategy, BuildDirectionParameters(), PROCESS, None
     )
 
@@ -68,7 +68,7 @@ def on_faces(wall, **values):
     )
     strategy = CladdingParameters(**values)
     faces = CladFaces("part", ("Face1",), (sheet,))
-    return size.cladding_size(faces, strategy), cladding.plan(
+    return estimated_size.cladding_size(faces, strategy), cladding.plan(
         faces, strategy, BuildDirectionParameters(), PROCESS, None
     )
 
@@ -172,7 +172,9 @@ def test_layers_that_are_too_many_are_refused_at_once_with_what_is_enough(name):
 def test_points_that_are_too_many_are_told_by_what_makes_them(family, values, key):
     strategy = family(**values)
     with pytest.raises(InputError) as caught:
-        size.refuse_absurd(size.Size(10.0, 4.0 * size.MOST_POINTS), strategy)
+        estimated_size.refuse_absurd(
+            estimated_size.Size(10.0, 4.0 * estimated_size.MOST_POINTS), strategy
+        )
     error = caught.value
     assert (error.code, error.where) == ("TOO_MANY", key)
     value = getattr(strategy, key.split(".")[1])
@@ -190,8 +192,8 @@ def test_what_is_said_to_be_enough_is_taken():
     for values in ({"layer_height": 1e-6}, {"layer_height": 0.1, "chord_error": 1e-5}):
         wide = RevolvedWall(Meridian.chained([line((4000.0, 0.0), (4000.0, 900.0))]), np.eye(4))
         with pytest.raises(InputError) as caught:
-            size.refuse_absurd(
-                size.revolution_size(wide, RevolutionParameters(**values)),
+            estimated_size.refuse_absurd(
+                estimated_size.revolution_size(wide, RevolutionParameters(**values)),
                 RevolutionParameters(**values),
             )
         key, enough = (
@@ -199,7 +201,7 @@ def test_what_is_said_to_be_enough_is_taken():
             float(caught.value.message.split("at least ")[1].split()[0]),
         )
         strategy = RevolutionParameters(**{**values, key: enough})
-        size.refuse_absurd(size.revolution_size(wide, strategy), strategy)
+        estimated_size.refuse_absurd(estimated_size.revolution_size(wide, strategy), strategy)
 
 
 def test_beads_by_overlap_are_told_by_their_width():
@@ -208,7 +210,9 @@ def test_beads_by_overlap_are_told_by_their_width():
         dataclasses.replace(PROCESS, bead_width=1e-5),
     )
     strategy = DevelopableParameters(layer_height=3.0, bead_overlap=0.3)
-    size.refuse_absurd(size.solids_size(made, strategy), strategy)  # the feature knows no width yet
+    estimated_size.refuse_absurd(
+        estimated_size.solids_size(made, strategy), strategy
+    )  # the feature knows no width yet
     with pytest.raises(InputError, match=r"0.00001 mm gives about [\d,]+ points") as caught:
         plan_solids(made, strategy, BuildDirectionParameters(), thin, None)
     assert (caught.value.code, caught.value.where) == ("TOO_MANY", "process.bead_width")
@@ -221,9 +225,9 @@ def test_large_jobs_are_not_refused():
         RevolutionParameters(layer_height=0.5),
         RevolutionParameters(layer_height=0.5, chord_error=0.001),
     ):
-        found = size.revolution_size(tank, strategy)
-        size.refuse_absurd(found, strategy)
-    assert 25e6 < found.points < size.MOST_POINTS
+        found = estimated_size.revolution_size(tank, strategy)
+        estimated_size.refuse_absurd(found, strategy)
+    assert 25e6 < found.points < estimated_size.MOST_POINTS
 
 
 @pytest.mark.parametrize(
@@ -240,7 +244,7 @@ def test_large_jobs_are_not_refused():
     ],
 )
 def test_large_jobs_are_told(family, points, told):
-    found = size.size_issues(size.Size(180.0, points), family())
+    found = estimated_size.size_issues(estimated_size.Size(180.0, points), family())
     assert [(issue.level, issue.code) for issue in found] == (
         [] if told is None else [("note", "LARGE")]
     )
@@ -252,25 +256,34 @@ def test_large_jobs_are_told(family, points, told):
 
 def test_many_layers_of_few_points_are_told():
     """A cup in layers of 8 um, each of 25 points: minutes, which the points alone do not tell."""
-    assert size.size_issues(size.Size(500.0, 12_500.0), RevolutionParameters()) == ()
-    (issue,) = size.size_issues(size.Size(6_000.0, 150_000.0), RevolutionParameters())
+    assert (
+        estimated_size.size_issues(estimated_size.Size(500.0, 12_500.0), RevolutionParameters())
+        == ()
+    )
+    (issue,) = estimated_size.size_issues(
+        estimated_size.Size(6_000.0, 150_000.0), RevolutionParameters()
+    )
     assert issue.code == "LARGE" and "150,000 points in 6,000 layers" in issue.message
     assert "takes about 5 min of processor time" in issue.message
 
 
 def test_what_is_absurd_is_refused_and_not_told():
     with pytest.raises(InputError, match="points"):
-        size.size_issues(size.Size(180.0, 2.0 * size.MOST_POINTS), RevolutionParameters())
+        estimated_size.size_issues(
+            estimated_size.Size(180.0, 2.0 * estimated_size.MOST_POINTS), RevolutionParameters()
+        )
 
 
 def test_tilts_that_take_long_to_find_are_told():
-    assert size.tilting_issues(3_000) == ()
-    (issue,) = size.tilting_issues(6_812)  # 60 s of the processor for the first tilts, 174 s in all
+    assert estimated_size.tilting_issues(3_000) == ()
+    (issue,) = estimated_size.tilting_issues(
+        6_812
+    )  # 60 s of the processor for the first tilts, 174 s in all
     assert (issue.level, issue.code) == ("note", "LARGE") and "6,800 points" in issue.message
     assert "takes about 1.1 min of processor time" in issue.message
     # a wall all of whose beads turn too fast: 6 s for its first tilts, 70 s for slower ones
-    assert size.tilting_issues(1_065) == size.tilting_issues(500, 6) == ()
-    (issue,) = size.tilting_issues(1_065, 6)
+    assert estimated_size.tilting_issues(1_065) == estimated_size.tilting_issues(500, 6) == ()
+    (issue,) = estimated_size.tilting_issues(1_065, 6)
     assert (issue.level, issue.code) == (
         "note",
         "LARGE",
@@ -280,19 +293,19 @@ def test_tilts_that_take_long_to_find_are_told():
 
 def test_layers_of_a_wide_margin_are_told_by_what_filling_them_takes():
     """Its layers, each another one, are long straight beads of few points."""
-    block = size.solids_size(
+    block = estimated_size.solids_size(
         solids(CYLINDER, box()), DevelopableParameters(layer_height=6.0, bead_spacing=8.0)
     )
     assert block.squares == 0.0
     strategy = DevelopableParameters(layer_height=6.0, bead_spacing=8.0, margin=300.0)
-    assert size.solids_size(solids(CYLINDER, box()), strategy).squares > 200_000
-    (issue,) = size.size_issues(size.Size(40.0, 95_000.0, 330_000.0), strategy)
+    assert estimated_size.solids_size(solids(CYLINDER, box()), strategy).squares > 200_000
+    (issue,) = estimated_size.size_issues(estimated_size.Size(40.0, 95_000.0, 330_000.0), strategy)
     assert issue.code == "LARGE" and "takes about 0.83 min of processor time" in issue.message
 
 
 def test_remedies_that_take_long_to_find_are_told():
-    assert size.remedy_issues(0, 8e-3) == size.remedy_issues(3_700, 8e-3) == ()
-    (issue,) = size.remedy_issues(15_516, 8e-3)
+    assert estimated_size.remedy_issues(0, 8e-3) == estimated_size.remedy_issues(3_700, 8e-3) == ()
+    (issue,) = estimated_size.remedy_issues(15_516, 8e-3)
     assert (issue.level, issue.code) == (
         "note",
         "LARGE",
@@ -306,12 +319,13 @@ def test_curved_layers_are_told_by_their_grid(height, told):
     """A plate of 96 cm3 whose layers of 1 mm took 105 s of the processor, which its 60,000 points do not tell."""
     made = solids(CYLINDER, box((-60.0, -40.0, 0.0), (60.0, 40.0, 10.0)))
     strategy = SolidParameters(layer_height=height, bead_spacing=1.9 * height, layers="geodesic")
-    found = size.size_issues(size.solids_size(made, strategy), strategy)
+    found = estimated_size.size_issues(estimated_size.solids_size(made, strategy), strategy)
     assert [issue.code for issue in found] == ([] if told is None else ["LARGE"])
     assert told is None or (told in found[0].message and "layers: planes" in found[0].message)
     assert (
-        size.size_issues(
-            size.solids_size(made, dataclasses.replace(strategy, layers="planes")), strategy
+        estimated_size.size_issues(
+            estimated_size.solids_size(made, dataclasses.replace(strategy, layers="planes")),
+            strategy,
         )
         == ()
     )
@@ -327,8 +341,8 @@ def test_curved_layers_are_told_by_their_grid(height, told):
 )
 def test_curved_layers_that_take_much_memory_too_are_told_by_both(points, told):
     """Of a grid that takes 1,000 s of the processor, and points that take 150 s, 175 s and 1,125 s."""
-    found = size.size_issues(
-        size.Size(100.0, points, nodes=2e7), SolidParameters(layers="geodesic")
+    found = estimated_size.size_issues(
+        estimated_size.Size(100.0, points, nodes=2e7), SolidParameters(layers="geodesic")
     )
     assert len(found) == len(told)
     for issue, word in zip(found, told, strict=True):
@@ -359,11 +373,11 @@ def test_folds_of_a_mesh_are_told_by_their_length(high, told):
         wall, first=(FirstCurve(wall.vertices[edge], *2 * (np.eye(3)[[0] * edge.sum()],), True),)
     )
     strategy = SurfaceParameters(layer_height=3.0, chord_error=0.2)
-    found = size.wall_size(wall, strategy)
+    found = estimated_size.wall_size(wall, strategy)
     assert found.folds < 4_000.0 * (
         2 * high - 1
     )  # around each ring it bends over some rows of facets
-    told_of = size.size_issues(found, strategy)
+    told_of = estimated_size.size_issues(found, strategy)
     assert [issue.code for issue in told_of] == ([] if told is None else ["LARGE"])
     assert told is None or (told in told_of[0].message and "rounded edges" in told_of[0].message)
 
@@ -375,7 +389,7 @@ import numpy as np
 from freecad_am.core.geometry.walls.mesh_wall import mesh_wall
 from freecad_am.core.geometry.walls.patch_wall import FirstCurve
 from freecad_am.core.parameters.strategy import SurfaceParameters
-from freecad_am.core.strategies import size
+from freecad_am.core.strategies import estimated_size
 
 def peak():
     return int(re.search(r"VmHWM:\\s+(\\d+)", open("/proc/self/status").read()).group(1)) * 1024e-9
@@ -413,4 +427,4 @@ def test_the_memory_of_a_mesh_wall_is_announced_as_it_is_used(count, rows, edge,
     )
     announced, used, points, vertices = json.loads(made.stdout)
     assert used / 2.5 < announced < 2.5 * used
-    assert 0 < points * size.GIGABYTES_A_POINT < announced and vertices > 5000
+    assert 0 < points * estimated_size.GIGABYTES_A_POINT < announced and vertices > 5000

@@ -17,7 +17,7 @@ from scipy.sparse.csgraph import connected_components
 
 from ...types import Array, Index, Mask
 from ..walls.surface import dot
-from .refined import Edges
+from .refine import Edges
 from .triangle_mesh import chains
 
 MAX_EDGE_TRIANGLES = (

@@ -13,9 +13,9 @@ import numpy as np
 from ...types import Array, Index, Mask
 from ..columns import columns
 from ..walls.surface import dot
-from .collapsed import doubled_areas
+from .coarsen import doubled_areas
 from .manifold import Hole, fill_holes, find_holes, separate_vertices
-from .refined import Edges
+from .refine import Edges
 
 BITS = 10  # of each coordinate in the order of the leaves
 MAX_BLOCK_PAIRS = 500_000  # pairs tested together

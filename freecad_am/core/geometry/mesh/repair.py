@@ -20,7 +20,7 @@ from ...types import Array, Index
 from ..formatting import place
 from .manifold import fill_holes, find_holes, separate_vertices
 from .near_triangles import find_crossings
-from .refined import Edges
+from .refine import Edges
 from .solid import SolidMesh, connected_pieces, orient_across, orient_triangles, split_solids
 
 WELDS_MM = (1e-5, 1e-4, 1e-3, 1e-2)  # mm; the first that closes the mesh

@@ -20,7 +20,7 @@ from ..columns import sides
 from ..formatting import place
 from ..walls.surface import dot
 from .near_triangles import find_crossings
-from .refined import Edges
+from .refine import Edges
 from .triangle_mesh import closest
 
 NEIGHBOUR_COUNT = 12

@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 
 from ...types import Array, Index, Mask
 from ..frames import unit
-from ..mesh.refined import boundary
+from ..mesh.refine import boundary
 from ..mesh.solid import SHARP_EDGE_RAD, SolidMesh
 from ..mesh.triangle_mesh import LevelLine, thin_points
 from .patch import Patch

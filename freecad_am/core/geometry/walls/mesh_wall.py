@@ -15,10 +15,10 @@ from scipy.spatial import cKDTree
 from ...issues import NOTE, InputError, Issue, Text
 from ...types import Array, Index, Mask
 from ..formatting import format_deviation, place
-from ..mesh.collapsed import SmoothMesh, collapse_edges, doubled_areas
+from ..mesh.coarsen import SmoothMesh, collapse_edges, doubled_areas
 from ..mesh.edge_runs import runs
 from ..mesh.near_triangles import find_crossings, remove_crossings
-from ..mesh.refined import Edges, boundary, flip_edges, refine_mesh
+from ..mesh.refine import Edges, boundary, flip_edges, refine_mesh
 from ..mesh.repair import WELDS_MM, connected_triangles, mended_issues
 from ..mesh.solid import Search, SolidMesh
 from ..mesh.triangle_mesh import Mesh

@@ -32,8 +32,8 @@ from ...types import Array, Index
 from ..cell import Cell
 from ..machines.machine import MAKER, Machine
 from .contact import PLATFORM, ArmContact, Touches
-from .own import NONE, Solid, place_cylinder, round_solid
 from .robot import flange_radius
+from .self_collision import NONE, Solid, place_cylinder, round_solid
 
 PENETRATION = 0.5  # mm; faces are triangles, and a shallower overlap is contact, not collision
 CORE = 1.0 / 3.0  # of the radius of a link

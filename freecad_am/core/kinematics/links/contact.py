@@ -49,7 +49,7 @@ from ...parameters.cell_records import ROBOT
 from ...types import Array, ArrayLike, Index, Mask
 from ..cell import Cell
 from .external_links import STANDS, ExternalLink
-from .own import NONE, OwnLinks, Solid, about_link, ball, round_solid
+from .self_collision import NONE, OwnLinks, Solid, about_link, ball, round_solid
 
 NOZZLE = "nozzle"
 SIDES = 24

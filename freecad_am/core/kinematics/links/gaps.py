@@ -22,7 +22,7 @@ from ...geometry import frames
 from ...geometry.columns import dots, lengths
 from ...types import Array, Index, Mask
 from .contact import NOZZLE, PART, TORCH, ArmContact, Group
-from .own import Solid, place_cylinder
+from .self_collision import Solid, place_cylinder
 
 OFF_RADIUS, OFF_END = (
     0.9,

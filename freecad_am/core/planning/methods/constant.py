@@ -10,11 +10,11 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ...geometry.frames import TURN, shortest
-from ...geometry.ties import first_most
+from ...geometry.tie_breaking import first_most
 from ...issues import NOTE, Issue, Text
 from ...toolpath import Bead
 from ...types import Array
-from .. import arm_clear, criteria
+from .. import clear_rotations, criteria
 from ..joint_path import BeadPath, numbered
 from ..points import Points, gather
 from ..rotation import global_search
@@ -146,7 +146,7 @@ def _keeps_clear(task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int
     points first.
     """
     assert task.kept is not None
-    arm_clearance, points = task.kept, gather(beads, task.cell, arm_clear.POINTS_PER_BEAD)
+    arm_clearance, points = task.kept, gather(beads, task.cell, clear_rotations.POINTS_PER_BEAD)
     few_points = np.zeros(len(points), dtype=bool)
     few_points[::POINT_STRIDE] = True
 

@@ -14,7 +14,7 @@ import numpy as np
 from ...issues import Issue
 from ...toolpath import Bead
 from ...types import Array
-from .. import arm_clear
+from .. import clear_rotations
 from ..joint_path import BeadPath
 from ..points import Points, gather
 from ..rotation import given, global_search, local_optimisation
@@ -89,8 +89,10 @@ def _searched(
     )
     if task.kept is not None:
         progress(0.2, "keeping the arm clear")
-        arm_points = gather(beads, task.cell, arm_clear.POINTS_PER_BEAD)
-        candidates = arm_clear.exclude_touching(task, task.kept, arm_points, bead_ids, candidates)
+        arm_points = gather(beads, task.cell, clear_rotations.POINTS_PER_BEAD)
+        candidates = clear_rotations.exclude_touching(
+            task, task.kept, arm_points, bead_ids, candidates
+        )
     best, bead_rows = candidates.best(), np.arange(len(beads))
     start = candidates.coefficients[best, bead_rows]
     # a bead that is infeasible from its own seam may be feasible from another, which is cheaper to
@@ -129,7 +131,9 @@ def _searched(
         reached = dataclasses.replace(
             refined, coefficients=np.array([path.coefficients for path in paths])
         )
-        clear, changed = arm_clear.brought_clear(task, task.kept, beads, bead_ids, start, reached)
+        clear, changed = clear_rotations.brought_clear(
+            task, task.kept, beads, bead_ids, start, reached
+        )
         if changed.any():
             moved = evaluate_paths(
                 task, beads, bead_ids, full, threshold, clear.coefficients, clear

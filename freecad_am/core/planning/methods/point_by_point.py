@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from ...geometry.frames import TURN
-from ...geometry.ties import first_most, index_of_minimum
+from ...geometry.tie_breaking import first_most, index_of_minimum
 from ...issues import Issue
 from ...toolpath import Bead
 from ...types import Array, Index

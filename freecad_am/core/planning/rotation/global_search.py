@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...geometry.frames import TURN, shortest
-from ...geometry.ties import first_most, index_of_minimum, is_tied
+from ...geometry.tie_breaking import first_most, index_of_minimum, is_tied
 from ...kinematics import jacobian as jac
 from ...toolpath import Bead
 from ...types import Array, ArrayLike, Index, Integers, Mask

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...geometry.ties import is_tied
+from ...geometry.tie_breaking import is_tied
 from ...kinematics import jacobian as jac
 from ...toolpath import Bead
 from ...types import Array, Integers, Mask

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from ...geometry.frames import TURN, shortest
-from ...geometry.ties import index_of_minimum
+from ...geometry.tie_breaking import index_of_minimum
 from ...issues import ERROR, NOTE, WARNING, Issue, Text
 from ...kinematics.cell import Cell
 from ...toolpath import Bead

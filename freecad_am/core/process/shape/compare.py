@@ -10,10 +10,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...geometry.columns import dots
-from ...geometry.fitted import DeviationMap, PredictedShape
 from ...geometry.formatting import place, round_step
-from ...geometry.mesh.collapsed import doubled_areas
+from ...geometry.mesh.coarsen import doubled_areas
 from ...geometry.mesh.solid import divide_triangles
+from ...geometry.toolpath_records import DeviationMap, PredictedShape
 from ...issues import WARNING, Issue, Text, Word
 from ...types import Array, Index, Mask
 from .laying import PredictedDeposit

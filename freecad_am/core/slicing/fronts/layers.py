@@ -33,7 +33,7 @@ from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...issues import Text
 from ...types import Array, Index, Mask
-from ..banded import HEAVY, refuse_too_many
+from ..smoothest_heights import HEAVY, refuse_too_many
 from .curve import Slicing, Smoothing, fit_front, fit_to_wall
 from .rims import (
     Feet,

@@ -20,7 +20,7 @@ from ...geometry.step_count import step_count
 from ...geometry.walls.patch_wall import PatchWall
 from ...geometry.walls.surface import dot
 from ...types import Array, Mask
-from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, lightest, smooth_between
+from ..smoothest_heights import AIM, HEAVY, MARGIN, WEIGHTS, lightest, smooth_between
 from ..wall_directions import turns_in_wall
 from .curve import Slicing, fit_to_wall
 from .rims import ON_RIM, local_distances, nearest_feet, resample, smooth_points, spline

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...geometry.formatting import place
-from ...geometry.mesh.collapsed import doubled_areas
+from ...geometry.mesh.coarsen import doubled_areas
 from ...geometry.mesh.solid import Search, SolidMesh, divide_triangles
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Base, Group, Seat, SolidsOnHub, downwards, middle_azimuth

@@ -16,8 +16,8 @@ import numpy as np
 from ...geometry.walls.surface import Surface
 from ...issues import InputError
 from ...types import Array
-from ..banded import refuse_too_many
 from ..first_layer import ROUNDS, finer_grid
+from ..smoothest_heights import refuse_too_many
 from .offset import Offset, Places
 from .smooth_spacing import WallLayer
 

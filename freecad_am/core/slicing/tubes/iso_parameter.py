@@ -8,8 +8,8 @@ import numpy as np
 from ...geometry.walls.surface import Surface, dot
 from ...issues import InputError
 from ...types import Array
-from ..banded import refuse_too_many
 from ..first_layer import ROUNDS, finer_grid
+from ..smoothest_heights import refuse_too_many
 from .smooth_spacing import WallLayer
 
 STEPS = 40

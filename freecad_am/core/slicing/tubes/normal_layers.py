@@ -18,7 +18,7 @@ from scipy.interpolate import CubicSpline
 from ...geometry.walls.surface import Surface, dot
 from ...issues import InputError
 from ...types import Array
-from ..banded import refuse_too_many
+from ..smoothest_heights import refuse_too_many
 from .smooth_spacing import WallLayer
 
 SECTIONS, SAMPLES_AROUND = (

@@ -22,7 +22,7 @@ from ...geometry.walls.surface import Surface, dot, normals
 from ...issues import InputError
 from ...types import Array
 from .. import wall_directions
-from ..banded import AIM, HEAVY, MARGIN, WEIGHTS, lightest, smooth_between
+from ..smoothest_heights import AIM, HEAVY, MARGIN, WEIGHTS, lightest, smooth_between
 from .offset import Offset
 
 

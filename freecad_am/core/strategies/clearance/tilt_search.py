@@ -16,7 +16,7 @@ import numpy as np
 
 from ...geometry import frames
 from ...geometry.obstacles import Body
-from ...geometry.ties import index_of_minimum, is_tied
+from ...geometry.tie_breaking import index_of_minimum, is_tied
 from ...issues import Text
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters

@@ -18,11 +18,11 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.cell import NozzleParameters
 from ...parameters.process import ProcessParameters
 from ...parameters.strategy import RevolutionParameters
-from ...process import classes, order
+from ...process import bead_order, classes
 from ...slicing import revolution
 from ...toolpath import Bead, BeadRole, Layer, MotionRules, Toolpath
 from ...types import Array, Index
-from .. import size
+from .. import estimated_size
 from ..clearance.nozzle_check import SEAM
 from ..progress import Progress, silent
 from . import clearance
@@ -97,7 +97,7 @@ def plan(
             "build_direction.mode",
             "symmetry-plane is not for parts of revolution; use local, layer or fixed",
         )
-    size.refuse_absurd(size.revolution_size(wall, strategy), strategy)
+    estimated_size.refuse_absurd(estimated_size.revolution_size(wall, strategy), strategy)
     progress(0.0, "cutting layers")
     under = clearance.under(wall, platform_diameter, platform_frame)
     leaning_build = classes.leaning(build, process, WALL)
@@ -242,12 +242,12 @@ def _layers(
         segments = turn_segments(
             radius, strategy.chord_error, wall.end - wall.start, strategy.min_points
         )
-        up = order.rising(process, int(layer) if wall.full else index, wall.full)
+        up = bead_order.rising(process, int(layer) if wall.full else index, wall.full)
         rising.append(up)
         azimuths.append(
-            order.closed_azimuths(process, int(layer), segments, up)
+            bead_order.closed_azimuths(process, int(layer), segments, up)
             if wall.full
-            else order.open_azimuths(wall.start, wall.end, segments, up)
+            else bead_order.open_azimuths(wall.start, wall.end, segments, up)
         )
     builds, tools, issues = tilting.resolve(
         slices.radius, slices.height, slices.tangent, azimuths, rising, slices.layer
@@ -351,7 +351,7 @@ def spiral_layers(
     turns = _turn_angles(wall.meridian, end, pitch, strategy)
     s = np.clip(pitch * (turns / (2.0 * math.pi) - 1.0), 0.0, end)
     radius, height, _ = wall.meridian.at(s)
-    rising = order.rising(process, 0, True)
+    rising = bead_order.rising(process, 0, True)
     parameter = process.seam.angle + (turns if rising else -turns)
     build, tool, issues = _directions(wall.meridian, turns, s, rising, tilting)
     bead = Bead(

@@ -33,9 +33,9 @@ from ...process.bead_model import BeadModel
 from ...process.model_notes import at_speed, limit_acceleration, radii, segment_speeds
 from ...toolpath import Bead, BeadRole
 from ...types import Array, Mask
-from .course import Course
 from .filling import bead_width
-from .lean import Lean, Turned, hold_torch
+from .flattened_bead import Course
+from .torch_tilt import Lean, Turned, hold_torch
 
 OUTLINE = 0.55  # of the bead spacing; beads along an outline are half a spacing inside, the next are farther
 PROBES = 9  # the longest edges, which decide the side of the outline

@@ -19,9 +19,9 @@ from ...process.model_notes import model_issues
 from ...toolpath import Layer
 from ...types import Array
 from .beads import MadeBead
-from .course import LEAST_DEPARTURE
 from .filling import FULL_RANGE
-from .lean import Turned
+from .flattened_bead import LEAST_DEPARTURE
+from .torch_tilt import Turned
 
 SLIGHTLY = 0.01  # of the travel speed; smaller differences are not reported
 WIDTH_TEXT = "as wide as the room that they have, {:.3g} to {:.3g} mm"

@@ -18,7 +18,7 @@ from ...geometry.curves.guide import Guide
 from ...geometry.curves.plane_curve import divide_edges
 from ...geometry.developable import Developable, Plane
 from ...geometry.formatting import place
-from ...geometry.mesh.collapsed import doubled_areas
+from ...geometry.mesh.coarsen import doubled_areas
 from ...geometry.mesh.solid import SolidMesh, connected_pieces
 from ...geometry.obstacles import Body
 from ...geometry.on_hub import Group, SolidsOnHub, solids_beyond
@@ -34,11 +34,11 @@ from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.bead_model import BeadModel
+from ...process.bead_order import Course, IslandOrder, RankedBead, order_beads
 from ...process.cooling_waits import add_waits
-from ...process.order import Course, IslandOrder, RankedBead, order_beads
 from ...toolpath import Bead, Checks, Layer, MotionRules, Toolpath
 from ...types import Array, Mask
-from .. import size
+from .. import estimated_size
 from ..progress import Progress, silent
 from .beads import MadeBead, bead_of, slab_volumes, twice_volume, volumes
 from .filling import Bare, Pictures, bead_width, over_fed, spaced
@@ -268,8 +268,8 @@ def plan(
     """
     _refuse_mode(solids.has_plane_layers(), strategy, build)
     strategy = spaced(strategy, process)
-    size.refuse_absurd(
-        size.solids_size(solids, strategy, strategy.bead_spacing),
+    estimated_size.refuse_absurd(
+        estimated_size.solids_size(solids, strategy, strategy.bead_spacing),
         strategy,
         None if strategy.bead_overlap is None else process.bead_width,
     )

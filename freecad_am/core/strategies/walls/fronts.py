@@ -29,7 +29,7 @@ from ...slicing.fronts.rims import Rims, local_distances, nearest_feet
 from ...slicing.fronts.smooth import turn
 from ...toolpath import Bead, Layer, MotionRules, Toolpath
 from ...types import Array
-from .. import size
+from .. import estimated_size
 from ..progress import Progress, silent
 from .beads import (
     BeadSettings,
@@ -311,7 +311,7 @@ def plan(
         TURN_LIMIT.
     """
     _refuse(strategy)
-    size.refuse_absurd(size.fronts_size(wall, strategy), strategy)
+    estimated_size.refuse_absurd(estimated_size.fronts_size(wall, strategy), strategy)
     settings = BeadSettings(build, process, symmetry_plane(wall, build), wall.label)
     height = strategy.layer_height
     smoothing = (

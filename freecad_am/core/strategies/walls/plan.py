@@ -21,7 +21,7 @@ from ...slicing.tubes import constant_distance, iso_parameter, smooth_spacing
 from ...slicing.tubes.smooth_spacing import WallLayer, local_distances
 from ...toolpath import Layer, MotionRules, Toolpath
 from ...types import Array, Mask
-from .. import size
+from .. import estimated_size
 from ..progress import Progress, silent
 from .beads import (
     Along,
@@ -81,7 +81,7 @@ def plan(
     ----------
     Chalvin 2019.
     """
-    size.refuse_absurd(size.tube_size(wall, strategy), strategy)
+    estimated_size.refuse_absurd(estimated_size.tube_size(wall, strategy), strategy)
     settings = BeadSettings(build, process, symmetry_plane(wall, build), wall.label)
     surface = wall.surface()
     progress(0.0, "finding layers")

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 
 from ...types import Array, Index, Mask
 from ..walls.surface import dot
-from .refined import Edges
+from .refine import Edges
 
 
 def doubled_areas(corners: Array) -> Array:

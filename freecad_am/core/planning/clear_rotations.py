@@ -18,10 +18,10 @@ import numpy as np
 from ..geometry.frames import TURN
 from ..issues import Issue
 from ..kinematics.links.gaps import Gaps
-from ..kinematics.links.own import NONE
+from ..kinematics.links.self_collision import NONE
 from ..toolpath import Bead
 from ..types import Array, Index, Mask
-from .arm_kept import ArmKept, Place, clearance_issue
+from .arm_clearance import ArmKept, Place, clearance_issue
 from .joint_path import BeadPath
 from .points import Points, gather
 from .rotation import refine_state

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import RevolvedWall
 from ..geometry.formatting import at_least, count
-from ..geometry.mesh.collapsed import doubled_areas
+from ..geometry.mesh.coarsen import doubled_areas
 from ..geometry.mesh.solid import SolidMesh
 from ..geometry.on_hub import SolidsOnHub
 from ..issues import NOTE, InputError, Issue, Text, Word

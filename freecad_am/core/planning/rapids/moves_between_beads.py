@@ -17,11 +17,11 @@ from ...motion import APPROACH, RETRACT, TRAVEL
 from ...parameters.joints import JointParameters
 from ...types import Array, Integers, Mask
 from .. import nozzle_obstacles
-from ..arm_kept import Cylinders, check_moves, clearance_issue, contact_of
+from ..arm_clearance import Cylinders, check_moves, clearance_issue, contact_of
 from ..joint_path import BeadPath, JointPath
 from .clearance import Moves, RapidObstacles
+from .path_around_obstacles import LARGEST_TURN, Attempt, LedRound, attempts
 from .retracts import DEFAULT_CHOICE, LIMIT, SINGULAR, Ends, Failure, Leg, Retracts, branch_of
-from .way_round import LARGEST_TURN, Attempt, LedRound, attempts
 
 # how many moves more than it takes such a turn is tried in, where a place between is near a singularity
 MORE_MOVES = 3

@@ -23,7 +23,7 @@ from ...layers.surface import LayerSurface
 from ...parameters.build_direction import BuildDirectionParameters
 from ...slicing.wall_directions import turn_rates
 from ...types import Array, Index, Mask
-from .course import LEAST_DEPARTURE, OF_NORMAL, RATE_MARGIN, Course, evened, limit
+from .flattened_bead import LEAST_DEPARTURE, OF_NORMAL, RATE_MARGIN, Course, evened, limit
 
 SLOPE = 0.75  # of half a stretch: the wider of the two boxes that make the trapezoid; a jump's ramp is steepest over it
 BLOCK = 128  # places worked on at once: their integrals begin nearby and keep their digits
