@@ -409,7 +409,7 @@ wall.project(wall.vertices)
 used = peak() - before
 first = FirstCurve(rings[0], *2 * (np.eye(3)[[0] * count],), True)
 wall = dataclasses.replace(wall, first=(first,))
-size = size.wall_size(wall, SurfaceParameters(layer_height=edge, chord_error=0.05))
+size = estimated_size.wall_size(wall, SurfaceParameters(layer_height=edge, chord_error=0.05))
 print(json.dumps([size.gigabytes, used, size.points, size.vertices]))
 """
 
