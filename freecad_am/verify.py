@@ -27,10 +27,8 @@ from .read_back.events import event_issues
 from .read_back.interpolation import time_issues, way_issues
 from .read_back.text_path import Planned
 
-STRAYS = (
-    "the path between two points leaves the straight line by {:.3g} mm, more than the chord error"
-)
-WANDERS = "the way between two beads leaves the one that was checked by up to {} mm and {:.3g} deg"
+STRAYS = "the path between two points deviates from the straight line by {:.3g} mm, more than the chord error"
+WANDERS = "the path between two beads deviates from the checked path by up to {} mm and {:.3g} deg"
 
 
 @dataclass(frozen=True)
@@ -65,7 +63,7 @@ def verify(
     read_moves, rows = post.read(files), np.flatnonzero(motion.moves)
     if len(read_moves.deposit) != len(rows):
         message = Text(
-            "the text has {} moves, but {} are planned", len(read_moves.deposit), len(rows)
+            "the program has {} moves, but {} are planned", len(read_moves.deposit), len(rows)
         )
         return Verification((Issue(ERROR, "VERIFY_COUNT", message),), np.inf, np.inf, np.inf, ())
     planned = Planned(motion, rows)
@@ -130,7 +128,9 @@ def _verify_poses(
     issues += points.point_issues(planned, poses)
     issues += points.twice_issues(cell, planned, program, read_moves, flange)
     twisted = points.turned_otherwise(required, flange, poses)
-    issues += planned.issue("VERIFY_ROTATION", twisted, "the tool is turned otherwise than planned")
+    issues += planned.issue(
+        "VERIFY_ROTATION", twisted, "the program turns the tool differently than planned"
+    )
     strayed = 0.0
     # a constant tool moves straight from point to point; so does a fixed tool in the frame of a
     # held part

@@ -371,7 +371,7 @@ def test_a_text_that_leads_beyond_a_limit_is_caught_at_its_point(
     (issue,) = result.issues
     first = rows[np.argmax(motion.joints[rows, axis] > most - np.radians(0.01))]
     assert (issue.layer, issue.bead) == (motion.layer[first], motion.bead[first])
-    assert issue.message.startswith(f"the text takes {cell.limits.labels[axis]} up to 0.0")
+    assert issue.message.startswith(f"the program moves {cell.limits.labels[axis]} up to 0.0")
 
 
 @pytest.fixture(scope="module")

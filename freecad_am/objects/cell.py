@@ -22,7 +22,7 @@ class Cell(Stage):
 
     kind = "cell"
     sections = (Section(CellParameters, "cell", "Cell"),)
-    figures = (("MachineTitle", "App::PropertyString", "Maker and model of the machine."),)
+    figures = (("MachineTitle", "App::PropertyString", "Manufacturer and model of the machine."),)
 
     def prepare(self, obj: Any) -> Work:
         parameters, folders = self.parameters(obj, CellParameters), user_machines.folders()

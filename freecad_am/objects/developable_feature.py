@@ -50,13 +50,13 @@ class DevelopableFeature(FeatureStage):
         Link(
             "Substrate",
             "",
-            "The hub; none is needed where it is one of the solids, or the base is given by numbers.",
+            "The hub; not needed if it is one of the solids, or if numbers define the base.",
             required=False,
         ),
         Link(
             "BaseFaces",
             "",
-            "The cylinders and cones of the hub to grow on; found when left out.",
+            "The cylinders and cones of the hub to grow on; detected if empty.",
             required=False,
             type_name="App::PropertyLinkSub",
         ),

@@ -43,10 +43,10 @@ class Inspection(Stage):
         ),
     )
     figures = (
-        ("Points", "App::PropertyInteger", "Number of points that count."),
-        ("Mean", "App::PropertyDistance", "Mean deviation, outside with a plus."),
+        ("Points", "App::PropertyInteger", "Number of points used."),
+        ("Mean", "App::PropertyDistance", "Mean deviation; positive is outside."),
         ("Deviation", "App::PropertyDistance", "Standard deviation of the deviations."),
-        ("Least", "App::PropertyDistance", "Least deviation."),
+        ("Least", "App::PropertyDistance", "Smallest deviation."),
         ("Most", "App::PropertyDistance", "Largest deviation."),
         ("WithinTolerance", "App::PropertyFloat", "Share of the points within tolerance (%)."),
         (

@@ -194,7 +194,7 @@ class JointPath(Stage):
             notes = (*_not_kept(cell), *_not_known(cell), *_drawn_plain(cell), *_fit_notes(cell))
             issues_found = (*joint_path.issues, *rapid_issues, *margin_notes)
             if not has_errors(issues_found):
-                progress.report(TRYING, "looking for collisions of the arm")
+                progress.report(TRYING, "checking the arm for collisions")
                 issues_found = (
                     *issues_found,
                     *collision_issues(motion, cell, toolpath, process),

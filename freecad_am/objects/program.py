@@ -178,7 +178,9 @@ def _refuse_trigger(by: str, no_trigger: str) -> None:
     if no_trigger:
         raise refusals.trigger_refused(no_trigger)
     if by == program_beads.ARC:
-        raise refusals.trigger_refused("arc instructions switch the deposit at times of their own")
+        raise refusals.trigger_refused(
+            "arc instructions time the switching of the deposit themselves"
+        )
 
 
 def posted(job: Job) -> Posted:
@@ -223,7 +225,7 @@ def _write_program(job: Job, label: str) -> Outcome:
         raise InfeasibleError(
             "NOT_VERIFIED",
             label,
-            "the program does not read back as the planned path; do not use it",
+            "the program, read back, differs from the planned path; do not use it",
             issues=tuple(checked.issues),
         )
     issues = (

@@ -94,7 +94,7 @@ class Stage(Stored):
             "App::PropertyEnumeration",
             "Status",
             _RESULT,
-            "Whether the result fits.",
+            "Whether the result matches its inputs.",
             READ_ONLY | OUTPUT,
         ):
             obj.Status = list(STATUSES)
@@ -124,14 +124,14 @@ class Stage(Stored):
             "Fingerprint of the inputs the result was made from.",
             hidden,
         )
-        add("App::PropertyFloat", "Seconds", _RESULT, "How long computing took.", hidden)
+        add("App::PropertyFloat", "Seconds", _RESULT, "Computing time.", hidden)
         add("App::PropertyFloatList", "ResultData", _RESULT, "Arrays of the result.", hidden)
         add("App::PropertyString", "ResultLayout", _RESULT, "Contents of the arrays.", hidden)
         if add(
             "App::PropertyString",
             CLASS_PROPERTY,
             _RESULT,
-            "What the object is, should its proxy be lost.",
+            "Type of the object, in case its proxy is lost.",
             hidden,
         ):
             setattr(obj, CLASS_PROPERTY, f"{type(self).__module__}.{type(self).__name__}")

@@ -32,13 +32,13 @@ class SurfaceFeature(FeatureStage):
         Link(
             "Substrate",
             "",
-            "The solid part or closed mesh that the wall grows on; none is needed where edges are chosen.",
+            "The solid part or closed mesh that the wall grows on; not needed if start edges are chosen.",
             required=False,
         ),
         Link(
             "StartEdges",
             "",
-            "Edges of the wall in which layers start, in place of where it leaves the substrate.",
+            "Edges of the wall from which layers start, instead of its intersection with the substrate.",
             required=False,
             type_name="App::PropertyLinkSub",
         ),

@@ -38,7 +38,7 @@ _VIEWS = (
     _View("Seen from behind", (-1.0, 0.0, 0.0), (0.0, math.cos(TILT), math.sin(TILT))),
     _View("Seen from below", (1.0, 0.0, 0.0), (0.0, 0.0, -1.0)),
 )
-X, UP = Quantity("across", "mm"), Quantity("up in the picture", "mm")
+X, UP = Quantity("across", "mm"), Quantity("upwards in the view", "mm")
 
 
 def charts(deviations: DeviationMap, allowance: float) -> tuple[Chart, ...]:

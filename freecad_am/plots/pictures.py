@@ -307,7 +307,7 @@ def travel(source: Source, rows: Rows) -> tuple[Chart, ...]:
     if feed is not None and (feed.slowed & motion.deposit).any():
         slowed = rows.select_rates(np.where(feed.slowed & motion.deposit, feed.achieved, np.nan))
         slowed[rows.standing] = np.nan
-        curves.append(Curve("as the axes can", rows.x, slowed, "bad", STEP, rows.layer))
+        curves.append(Curve("limited by the axes", rows.x, slowed, "bad", STEP, rows.layer))
     top = 1.12 * float(np.nanmax([np.nanmax(curve.y, initial=0.0) for curve in curves])) or 1.0
     chart = Chart(
         "Speed along the path",
@@ -362,7 +362,7 @@ def distances(
     share = np.histogram(values, edges)[0] * (100.0 / max(len(values), 1))
     title = Text("{}: distance", name) if name else "Distance"
     return Chart(
-        Text("{} to the layer before (asked: {:g} mm)", Word(title), layer_height),
+        Text("{} to the previous layer (requested: {:g} mm)", Word(title), layer_height),
         Quantity("local distance", "mm"),
         Quantity("share of the points", "%"),
         bars=Bars("share", edges, share),
@@ -442,7 +442,7 @@ def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tu
             marks=((layer_height, f"layer height {layer_height:g} mm"),),
         ),
         Chart(
-            "Sum of the heights, off the layers",
+            "Sum of the heights, minus the planned layers",
             layer,
             Quantity("off", "mm"),
             (curve("drift", [row["drift_mm"] for row in rows], 3),),
@@ -481,7 +481,7 @@ def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
             ),
         ),
         Chart(
-            Text("Deposited of the part: {:.4g} %", percent),
+            Text("Deposited share of the part: {:.4g} %", percent),
             layer,
             Quantity("share", "%"),
             (Curve("share", x, share, 0, MARKED),),
@@ -596,7 +596,7 @@ PICTURES = {
     "accelerations": Entry("Joint accelerations", accelerations, machine=True),
     "jerks": Entry("Joint jerks", jerks, machine=True),
     "condition": Entry(
-        "Condition", condition, machine=True, lacking="this machine has no condition"
+        "Condition", condition, machine=True, lacking="this machine has no condition number"
     ),
     "travel": Entry("Speed along the path", travel),
     "deposit": Entry("Deposit rate", deposit),

@@ -117,7 +117,7 @@ class Track:
             UNREADABLE_PROGRAM for a second output.
         """
         if self.output not in (0, output):
-            raise unreadable(where, "a second analogue output is set")
+            raise unreadable(where, "it sets a second analogue output")
         self.output, self.wire = output, value
 
     def add(self, sort: str, words: dict[str, str], where: str, stops: bool = False) -> None:
@@ -140,13 +140,13 @@ class Track:
             UNREADABLE_PROGRAM for a move that cannot be understood.
         """
         if float(words.get("F", "0")) <= 0.0:
-            raise unreadable(where, "a move without a feed of its own")
+            raise unreadable(where, "it moves without setting a feed")
         row = sort, tuple(words)
         if row not in self.checked_words:
             self._check_words(sort, tuple(name for name in words if name != "F"), where)
             self.checked_words.add(row)
         if sort in (SLIDES, AXES) and (not self.rows or self.rows[-1][0] == TIP):
-            raise unreadable(where, "the way of the move, and so its time, is not known")
+            raise unreadable(where, "the length of the move, and therefore its time, is unknown")
         self.rows.append((sort, words))
         self.lines.add(where)
         self.deposit.append(self.on)
@@ -159,16 +159,18 @@ class Track:
         """Check that the words form a move; the first move sets the axes."""
         if sort == TIP:
             if not set(_LINEAR) <= set(names) or not self.axes:
-                raise unreadable(where, "a position needs X Y Z, and a move in axes before it")
+                raise unreadable(
+                    where, "a position needs X Y Z, and an earlier move in axis values"
+                )
         elif not self.axes and set(_LINEAR) <= set(names) and not set(names) & set(_VECTOR):
             self.axes = names
         elif names != self.axes:
-            raise unreadable(where, "the move is not given in the axes of the first one")
+            raise unreadable(where, "the move names other axes than the first move")
 
     def moves(self) -> ReadMoves:
         """All moves. Raises InputError UNREADABLE_PROGRAM without moves."""
         if not self.rows:
-            raise unreadable("program", "there are no moves")
+            raise unreadable("program", "it has no moves")
         sorts = np.array([sort for sort, _ in self.rows])
         tips = sorts == TIP
         linear = np.array([name in _LINEAR for name in self.axes])

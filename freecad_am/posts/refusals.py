@@ -133,16 +133,14 @@ def refuse_schedules(
         raise InputError(
             "SCHEDULE",
             "process.start.schedule",
-            "beads change their schedule, but this controller appears to set outputs between "
-            "moves ahead of the motion; let start and end change only the speed, or use another "
-            "controller",
+            "beads change their schedule, but this controller appears to set outputs before the motion reaches them; change only the speed at start and end, or use another controller",
         )
     numbers = [block.number for block in program.blocks if isinstance(block, Schedule)]
     if numbers and not 1 <= program.schedule_output <= last_output:
         raise InputError(
             "SCHEDULE",
             "program.schedule.output",
-            "the schedule number needs an output from 1 to {}, not {}; choose one in this range",
+            "schedule numbers need an output from 1 to {}, not {}; choose one in this range",
             last_output,
             program.schedule_output,
         )
@@ -178,7 +176,7 @@ def refuse_weave(program: Program, max_weave: int) -> None:
         )
 
 
-JOINT_WEAVE = "as far as is known controllers weave on linear moves, and these are joint moves"
+JOINT_WEAVE = "controllers weave on linear moves only, and this program has joint moves"
 
 
 def weave_refused(why: str, where: str = "process.weave") -> InputError:
@@ -347,8 +345,7 @@ def refuse_external(program: Program, last_axis: int, unit: str, form: str) -> N
         raise InputError(
             "UNSUPPORTED_AXES",
             "program.axes.first",
-            "the external axes would end with number {}, but the controller has {}; use a "
-            "smaller first number",
+            "external axes would be numbered up to {}, but the controller has only {}; use a smaller first number",
             end,
             last_axis,
         )
@@ -368,7 +365,7 @@ def refuse_named_track(program: Program, what: str) -> None:
         raise InputError(
             "UNSUPPORTED_AXES",
             "program.axes.unit",
-            "a track has no name here, it is {}; remove unit",
+            "this controller does not name tracks (the track is {}); remove unit",
             what,
         )
 
@@ -382,8 +379,7 @@ def refuse_continuous(program: Program) -> None:
         raise InputError(
             "ENDLESS_AXIS",
             "cell.limits",
-            "axis {} has no limits, but joint values of the controller count every turn up to a "
-            "limit; use a limit set with one for axis {}",
+            "axis {} has no limits, but the controller needs limits to count the turns of its joint values; use a limit set that limits axis {}",
             axis,
             axis,
         )
@@ -401,8 +397,7 @@ def refuse_without_speeds(program: Program, axes: int) -> None:
     raise InputError(
         "NO_JOINT_SPEED",
         "cell.machine" if axis < program.own_axes else "cell.external",
-        "on this controller the speed of joint moves is programmed in percent of the axes' largest speeds, and the "
-        "machine file of {} does not give them; add {}",
+        "this controller programs joint moves in percent of the maximum axis speeds, which the machine file of {} lacks; add {}",
         (program.axis_machines or (program.machine,) * axes)[axis],
         in_urdf if program.of_urdf and program.of_urdf[axis] else Text("`max_speed` to its joints"),
     )

@@ -78,13 +78,13 @@ def _timed(event: Event, distance_before: float, speed: Array) -> Event:
 
 # error code and message, and the kinds of events that they cover
 _FAMILIES = (
-    ("VERIFY_DEPOSIT", "the deposit is switched otherwise than planned", ("on", "off")),
-    ("VERIFY_SCHEDULE", "the schedule that is sent is not the planned one", ("schedule",)),
-    ("VERIFY_WEAVE", "beads are woven otherwise than planned", ("weave",)),
-    ("VERIFY_WAIT", "it is waited otherwise than planned", ("wait", "input")),
-    ("VERIFY_COOLING", "a temperature is waited for otherwise", ("below",)),
-    ("VERIFY_CALL", "other programs are called than planned", ("call",)),
-    ("VERIFY_LAYER", "layers begin at other places than planned", ("layer",)),
+    ("VERIFY_DEPOSIT", "the program switches the deposit differently than planned", ("on", "off")),
+    ("VERIFY_SCHEDULE", "the program sends another schedule than planned", ("schedule",)),
+    ("VERIFY_WEAVE", "the program weaves beads differently than planned", ("weave",)),
+    ("VERIFY_WAIT", "the program waits differently than planned", ("wait", "input")),
+    ("VERIFY_COOLING", "the program waits for another temperature than planned", ("below",)),
+    ("VERIFY_CALL", "the program calls other programs than planned", ("call",)),
+    ("VERIFY_LAYER", "layers do not begin where planned", ("layer",)),
 )
 
 
@@ -101,10 +101,12 @@ def event_issues(planned: Planned, program: Program, text: ReadMoves) -> list[Is
     if text.wire_output not in (None, program.nc.wire_output):
         wrong |= expected
     issues = planned.issue(
-        "VERIFY_DEPOSIT", text.deposit != expected, "the deposit is switched otherwise than planned"
+        "VERIFY_DEPOSIT",
+        text.deposit != expected,
+        "the program switches the deposit differently than planned",
     )
     issues += planned.issue(
-        "VERIFY_WIRE", wrong, "the speed of the wire in the text is not the planned one"
+        "VERIFY_WIRE", wrong, "the wire feed in the program differs from the plan"
     )
     codes = {issue.code for issue in issues}
     events, due = (
@@ -120,7 +122,11 @@ def event_issues(planned: Planned, program: Program, text: ReadMoves) -> list[Is
         (event.row, event.kind) for event in due
     ]:
         issues.append(
-            Issue(ERROR, "VERIFY_ORDER", "events between moves are not in the planned order")
+            Issue(
+                ERROR,
+                "VERIFY_ORDER",
+                "events between moves are out of order compared with the plan",
+            )
         )
     return issues
 

@@ -106,8 +106,7 @@ def _arm(cell: Cell, text: ReadMoves, flanges: Array, rows: slice, previous: Arr
             raise InputError(
                 "NO_CONFIGURATION",
                 "program",
-                "it starts with a position without a configuration of the arm; set it in the "
-                "cell, branch: [front, up, flip]",
+                "the program starts with a position that has no arm configuration; set one in the cell, such as branch: [front, up, flip]",
             )
         previous = joint_solutions[0, cell.branch]
     return _nearest(
@@ -151,8 +150,7 @@ def _as_named(cell: Cell, text: ReadMoves, solutions: Array, words: Index, rows:
         raise InputError(
             "NOT_YET",
             "program",
-            "it names turns of axes other than the last one, which cannot be simulated; use "
-            "joint values for these positions",
+            "the program gives turn numbers for axes other than the last one, which cannot be simulated; use joint values for these positions",
         )
     named_values = controller_values[np.arange(len(solutions)), named.argmax(axis=1)]
     named_values -= TURN * np.rint(named_values / TURN)

@@ -35,7 +35,7 @@ def time_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
     text_speed = np.full(len(timed), np.nan) if text.speed is None else text.speed
     by_speed = np.isfinite(text_speed)
     off = by_speed & ~(np.abs(text_speed - planned.speed) <= text.speed_digits + 1e-9)
-    issues = planned.issue("VERIFY_SPEED", off, "the speed in the text is not the planned one")
+    issues = planned.issue("VERIFY_SPEED", off, "the speed in the program differs from the plan")
     timed &= ~by_speed
     allowed = np.where(expected < LONGEST_MSEC, MILLISECOND, TENTH) + 1e-9
     text_times, coarse = text.duration, allowed > TENTH
@@ -64,7 +64,7 @@ def time_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
         & ~((text_times - expected <= allowed) & (expected - text_times <= allowed_below))
     )
     issues += planned.issue(
-        "VERIFY_TIME", wrong, "the time in the text does not give the planned speed"
+        "VERIFY_TIME", wrong, "the time in the program does not match the planned speed"
     )
     share = np.nan if text.share is None else float(text.share[0])
     is_slow_first = (
@@ -81,7 +81,7 @@ def time_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
         excess = np.abs(np.add.reduceat(off, beads)) > MILLISECOND + np.add.reduceat(rounded, beads)
         is_slow_first = np.isin(np.arange(len(timed)), beads[excess])
         issues += planned.issue(
-            "VERIFY_TIME", is_slow_first, "the times of a bead do not add up to the planned one"
+            "VERIFY_TIME", is_slow_first, "the times of a bead do not add up to the planned time"
         )
     return issues
 
@@ -144,12 +144,12 @@ def way_issues(cell: Cell, planned: Planned, program: Program, text: ReadMoves) 
         *planned.issue(
             "VERIFY_INTERPOLATION",
             text.linear != linear,
-            "the text moves straight in space where straight in the joints was planned, or the other way",
+            "the program has a linear move where a joint move is planned, or the reverse",
         ),
         *planned.issue(
             "VERIFY_BLEND",
             _rounded_otherwise(cell, planned, program, text),
-            "the text stops, or rounds the corner, otherwise than planned",
+            "the program stops at the point or rounds the corner differently than planned",
         ),
         *_frame_issues(cell, planned, program, text, linear),
         *_configuration_issues(cell, planned, program, text.configuration),
@@ -235,7 +235,7 @@ def _frame_issues(
     if text.tool_frame is not None:
         wrong |= text.tool_frame != program.tool_frame
     message = Text(
-        "the text selects another frame or tool than {} and {}",
+        "the program selects another frame or tool than {} and {}",
         program.user_frame,
         program.tool_frame,
     )
@@ -249,7 +249,7 @@ def _frame_issues(
                 ERROR,
                 "VERIFY_FRAME",
                 Text(
-                    "the text moves {} from axis {} on, but the program {} from axis {} on",
+                    "the text moves {} from axis {} on, but the plan moves {} from axis {} on",
                     text.unit or "no positioner",
                     text.first_external,
                     program.unit,
@@ -270,7 +270,7 @@ def _near_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
     )
     wrong |= np.isnan(text.near).any(axis=1) & ~text.linear
     return planned.issue(
-        "VERIFY_CONFIGURATION", wrong, "the text asks for joint values other than the planned ones"
+        "VERIFY_CONFIGURATION", wrong, "the joint values in the program differ from the plan"
     )
 
 
@@ -286,7 +286,7 @@ def _configuration_issues(
             Issue(
                 ERROR,
                 "VERIFY_CONFIGURATION",
-                "the text names arm configurations, which the machine does not have",
+                "the program names arm configurations, but the machine has none",
             )
         ]
     names = np.array([spherical_wrist.branch_name(index) for index in range(8)])[
@@ -306,5 +306,5 @@ def _configuration_issues(
         named.up != (names[:, 1] == "up")
     )
     differs |= named.front != (names[:, 0] == "front")
-    message = "the text asks for another configuration of the arm, or other turns"
+    message = "the program uses another arm configuration or other turns than planned"
     return planned.issue("VERIFY_CONFIGURATION", np.asarray(turned | differs), message)

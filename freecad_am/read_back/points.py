@@ -205,7 +205,7 @@ def joint_issues(cell: Cell, planned: Planned, text: ReadMoves, continuous: Mask
     for axis in np.flatnonzero(wrong.any(axis=0)):
         largest = np.abs(differences[:, axis]).max() / cell.machine.unit_values[axis]
         message = Text(
-            "axis {} is up to {:.3g} {} from the planned value",
+            "axis {} is up to {:.3g} {} off the planned value",
             cell.machine.axes[axis],
             largest,
             cell.machine.units[axis],
@@ -232,7 +232,7 @@ def limit_issues(cell: Cell, planned: Planned, text: Joints) -> list[Issue]:
     unit = cell.machine.units[label] if label < limits.axes else "deg"
     excess = worst / (cell.machine.unit_values[label] if label < limits.axes else np.radians(1.0))
     message = Text(
-        "the text takes {} up to {:.3g} {} beyond its limit", limits.labels[label], excess, unit
+        "the program moves {} up to {:.3g} {} beyond its limit", limits.labels[label], excess, unit
     )
     return planned.issue("VERIFY_LIMIT", wrong, message)
 
@@ -241,12 +241,12 @@ def point_issues(planned: Planned, path: Path) -> list[Issue]:
     off = lengths(path.position - planned.position)
     tilted = lengths(path.tool - planned.tool)
     message = Text(
-        "the text leads up to {} mm away from the planned point, more than its digits explain",
+        "the program moves the tip up to {} mm away from the planned point, more than its rounding explains",
         format_deviation(float(off.max())),
     )
     issues = planned.issue("VERIFY_POINT", ~(off <= path.bound), message)
     message = Text(
-        "the tool is tilted by up to {:.3g} deg, more than the digits explain",
+        "the program tilts the tool by up to {:.3g} deg off the plan, more than its rounding explains",
         np.degrees(tilted.max()),
     )
     return issues + planned.issue("VERIFY_TOOL", ~(tilted <= path.tool_bound), message)
@@ -270,7 +270,7 @@ def twice_issues(
         text_flanges, flange, path
     )
     return planned.issue(
-        "VERIFY_POINT", twice & off, "the text gives another position there than the joint values"
+        "VERIFY_POINT", twice & off, "the position in the program does not match its joint values"
     )
 
 
@@ -302,7 +302,11 @@ def second_opinion(
         wrong[rows] |= _differ(
             arm.forward(cell.machine.from_controller(controller_values[rows])), flange[rows]
         )
-    issues = planned.issue("VERIFY_SOLVERS", wrong, "PyKDL and the joint-frame chain disagree")
+    issues = planned.issue(
+        "VERIFY_SOLVERS",
+        wrong,
+        "PyKDL and the joint-frame chain compute different poses for this program",
+    )
     return issues, ("chain", "pykdl")
 
 

@@ -86,8 +86,7 @@ def _numbers(
         changed = numbered[numbers[numbered] != first_number]
         if len(changed):
             message = Text(
-                "{} {:.0f} is selected after moves in {:.0f}: only one is known here, and all "
-                "moves are simulated in it; use a program with a single one",
+                "{} {:.0f} is selected after moves in {:.0f}, but only one can be simulated, so all moves use it; use a program with a single one",
                 kind,
                 numbers[changed[0]],
                 first_number,
@@ -95,8 +94,7 @@ def _numbers(
             yield _finding_at(ERROR, "FRAME_NUMBER", message, motion, int(rows[changed[0]]))
         elif number is not None and first_number != number:
             message = Text(
-                "{} {:.0f} is selected, but the job has {}: moves are simulated with the cell's "
-                "own; compare the two, and correct the program or the job",
+                "the program selects {} {:.0f}, but the job has {}: the simulation uses that of the cell; compare the two, and correct the program or the job",
                 kind,
                 first_number,
                 number,
@@ -149,7 +147,7 @@ def _findings(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
         if event.kind not in ("on", "off"):
             continue
         if on and event.kind == "on":
-            message = Text("the deposit is switched on although it is already on")
+            message = Text("the program switches the deposit on although it is already on")
             yield _finding("DEPOSIT_SWITCH", message, motion, rows, event.row)
         on = event.kind == "on"
         seconds = _time_of_its_move(event, motion.duration[rows])
@@ -163,7 +161,7 @@ def _findings(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
             )
             yield _finding("TRIGGER_LEAD", message, motion, rows, event.row - 1)
     if on:
-        message = Text("the deposit is still on at the end of the program")
+        message = Text("the program ends with the deposit still on")
         yield _finding("DEPOSIT_SWITCH", message, motion, rows, len(rows))
 
 

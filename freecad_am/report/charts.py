@@ -128,7 +128,7 @@ def path_charts(compared: Sequence[Compared]) -> list[Chart]:
         points = np.vstack([line for layer in shown for line in (layer[::stride], PEN_UP)])
         name = f"{method}: {by_method[method].layers} layers"
         curves.append(Curve(name, *(points @ to_picture).T, colour, OUTLINE))
-    axes = Quantity("across", "mm"), Quantity("up in the picture", "mm")
+    axes = Quantity("across", "mm"), Quantity("upwards in the view", "mm")
     return [Chart("Both paths", *axes, tuple(curves), plane=True)]
 
 

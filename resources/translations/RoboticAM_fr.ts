@@ -60,13 +60,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Change of the input value in a program per degree.</source>
-        <translation>De combien la valeur de l&apos;entrée dans un programme monte par degré.</translation>
+        <source>Change of the input value, as the program reads it, per degree.</source>
+        <translation>Variation par degré de la valeur de l&apos;entrée, telle que le programme la lit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
-        <source>Clamps and other bodies around the part, which the nozzle is kept clear of.</source>
-        <translation>Brides et autres corps autour de la pièce, dont la buse est tenue éloignée.</translation>
+        <source>Clamps and other bodies around the part that the nozzle must clear.</source>
+        <translation>Brides et autres corps autour de la pièce, que la buse doit éviter.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -77,6 +77,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Compare the joint path with a lower bound over all rotations about the tool axis. Takes up to seconds per bead.</source>
         <translation>Compare la trajectoire articulaire à une borne inférieure sur toutes les rotations autour de l’axe de l’outil. Prend jusqu’à quelques secondes par cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>Computing time.</source>
+        <translation>Durée du calcul.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -120,8 +125,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Diameter of the platform; counts in clearance.</source>
-        <translation>Diamètre du plateau ; compte dans le dégagement.</translation>
+        <source>Diameter of the platform, used for clearance.</source>
+        <translation>Diamètre du plateau, utilisé pour le dégagement.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -154,6 +159,11 @@
         <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, là où ni les courbes ni des faces n&apos;en indiquent.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Distance along Z from the flange, or from the face of a rotary table, to the mounting plane; or a pose relative to it. (mm)</source>
+        <translation>Distance selon Z de la bride, ou de la face d&apos;un axe rotatif, au plan de montage ; ou une pose relative à elle. (mm)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Distance between neighbouring beads of a layer.</source>
         <translation>Distance entre cordons voisins d&apos;une couche.</translation>
@@ -165,18 +175,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
-        <source>Draw beads as lines, or as tubes as wide and high as they are.</source>
-        <translation>Dessiner les cordons en lignes, ou en tubes aussi larges et hauts qu&apos;eux.</translation>
+        <source>Draw beads as lines, or as tubes of their width and height.</source>
+        <translation>Dessiner les cordons en lignes, ou en tubes de leur largeur et hauteur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Dry run: the same motion without deposit.</source>
+        <translation>Marche à vide : le même mouvement sans dépôt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
-        <source>Edges of the wall in which layers start, in place of where it leaves the substrate.</source>
-        <translation>Arêtes de la paroi où commencent les couches, au lieu de là où elle quitte le substrat.</translation>
+        <source>Edges of the wall from which layers start, instead of its intersection with the substrate.</source>
+        <translation>Arêtes de la paroi d&apos;où partent les couches, au lieu de son intersection avec le substrat.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
         <source>Edges, wire or sketch as a guide; layers are normal to it; none: the centre line of the solid.</source>
         <translation>Arêtes, fil ou esquisse comme guide ; les couches lui sont normales ; aucun : la ligne médiane du solide.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Effective bead width when solids on hubs are filled: the bead spacing, or the bead width; auto: the bead width if it is set, kept by a bead model, or used by an overlap.</source>
+        <translation>Largeur effective des cordons au remplissage de solides sur moyeu : l&apos;écart entre cordons, ou la largeur de cordon ; auto : la largeur de cordon si elle est donnée, tenue par un modèle de cordon, ou employée par un recouvrement.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -264,11 +284,6 @@
         <translation>Du cercle de base au sommet du cône, le long de l&apos;axe ; inf : un cylindre. (mm)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>From the flange, or the face of a rotary table, to the mounting plane along its Z, or a pose on it. (mm)</source>
-        <translation>De la bride, ou de la face d&apos;un axe rotatif, au plan de montage le long de son Z, ou une pose sur elle. (mm)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Further features, deposited after it in this order.</source>
         <translation>Autres éléments, déposés après lui dans cet ordre.</translation>
@@ -339,19 +354,14 @@
         <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
-        <source>How long computing took.</source>
-        <translation>Combien de temps a pris le calcul.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How wide the beads of solids on hubs count in filling: as the spacing, or as the bead width; auto: as the bead width where it is given, held by a bead model, or an overlap counts with it.</source>
-        <translation>Largeur pour laquelle comptent au remplissage les cordons de solides sur moyeu : la distance des cordons, ou la largeur de cordon ; auto : la largeur de cordon si elle est donnée, tenue par un modèle de cordon, ou si un recouvrement compte avec elle.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Initial fit: three or more pairs of a measured point and the same point on the part, each x y z &gt; x y z in mm, separated by semicolons; empty: automatic.</source>
         <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Input value, as the program reads it, at 0 degrees Celsius.</source>
+        <translation>Valeur de l&apos;entrée à 0 degré Celsius, telle que le programme la lit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -444,41 +454,6 @@
         <translation>Temps d&apos;avance et de retard et attentes entre les couches (s).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/inspection.py"/>
-        <source>Least deviation.</source>
-        <translation>Plus petit écart.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time between the end of a layer of a solid and the start of its next.</source>
-        <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time between the end of a layer of a solid and the start of its next. (s)</source>
-        <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante. (s)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed, and islands keep the same order in every layer, so that each cools while others are printed.</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon au premier de la suivante ; la machine attend au besoin, et les îlots gardent le même ordre à chaque couche, afin que chacun refroidisse pendant que d&apos;autres sont déposés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed, and islands keep the same order in every layer, so that each cools while others are printed. (s)</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon au premier de la suivante ; la machine attend au besoin, et les îlots gardent le même ordre à chaque couche, afin que chacun refroidisse pendant que d&apos;autres sont déposés. (s)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed.</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed. (s)</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque. (s)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Length by which a closed bead continues past its seam.</source>
         <translation>De combien un cordon fermé continue au-delà de sa couture.</translation>
@@ -489,14 +464,14 @@
         <translation>Distance sur laquelle la torche revient sur un cordon ouvert depuis sa fin, en déposant toujours, afin de remplir son cratère.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Length next to it over which the speed changes in steps to the speed of the bead.</source>
-        <translation>Longueur à côté, le long de laquelle la vitesse passe par paliers à celle du cordon.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Length of all beads.</source>
         <translation>Longueur de tous les cordons.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length of bead with these settings.</source>
+        <translation>Longueur de cordon avec ces réglages.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/scan.py"/>
@@ -505,8 +480,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Length of the bead that it covers.</source>
-        <translation>Quelle longueur du cordon c&apos;est.</translation>
+        <source>Length of the adjacent ramp, in which the speed changes in steps to that of the bead.</source>
+        <translation>Longueur de la rampe voisine, où la vitesse passe par paliers à celle du cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -545,8 +520,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>LinuxCNC: how far corners may be rounded (G64 P).</source>
-        <translation>LinuxCNC : de combien les angles peuvent être arrondis (G64 P).</translation>
+        <source>LinuxCNC: tolerance for rounding corners (G64 P).</source>
+        <translation>LinuxCNC : tolérance pour arrondir les angles (G64 P).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -570,7 +545,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/cell.py"/>
-        <source>Maker and model of the machine.</source>
+        <source>Manufacturer and model of the machine.</source>
         <translation>Constructeur et modèle de la machine.</translation>
     </message>
     <message>
@@ -590,8 +565,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
-        <source>Mean deviation, outside with a plus.</source>
-        <translation>Écart moyen, vers l&apos;extérieur avec un plus.</translation>
+        <source>Mean deviation; positive is outside.</source>
+        <translation>Écart moyen ; positif vers l&apos;extérieur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -622,6 +597,36 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Minimum length of beads that close gaps; shorter beads are otherwise omitted. auto: 2 mm, or the bead spacing if that is less. (mm)</source>
         <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté. auto : 2 mm, ou l&apos;espacement des cordons s&apos;il est plus petit. (mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Minimum time between the end of a layer of a solid and the start of its next layer.</source>
+        <translation>Temps minimal entre la fin d&apos;une couche d&apos;un solide et le début de sa couche suivante.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Minimum time between the end of a layer of a solid and the start of its next layer. (s)</source>
+        <translation>Temps minimal entre la fin d&apos;une couche d&apos;un solide et le début de sa couche suivante. (s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; the machine waits if needed, and islands keep the same order in every layer, so that each cools while others are printed.</source>
+        <translation>Durée minimale d&apos;une couche, du début de son premier cordon au premier de la suivante ; la machine attend au besoin, et les îlots gardent le même ordre à chaque couche, afin que chacun refroidisse pendant que d&apos;autres sont déposés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; the machine waits if needed, and islands keep the same order in every layer, so that each cools while others are printed. (s)</source>
+        <translation>Durée minimale d&apos;une couche, du début de son premier cordon au premier de la suivante ; la machine attend au besoin, et les îlots gardent le même ordre à chaque couche, afin que chacun refroidisse pendant que d&apos;autres sont déposés. (s)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; the machine waits if needed.</source>
+        <translation>Durée minimale d&apos;une couche, du début de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; the machine waits if needed. (s)</source>
+        <translation>Durée minimale d&apos;une couche, du début de son premier cordon à celui de la suivante ; la machine attend ce qui manque. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -715,8 +720,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
-        <source>Number of points that count.</source>
-        <translation>Nombre de points qui comptent.</translation>
+        <source>Number of points used.</source>
+        <translation>Nombre de points utilisés.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
@@ -795,13 +800,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Points within this height of such a level count, moved to it along the planned surface.</source>
-        <translation>Les points jusqu&apos;à cette distance au-dessus ou au-dessous d&apos;une telle hauteur y comptent, glissés le long de la surface prévue.</translation>
+        <source>Points within this height of an evaluated height are used, moved to it along the planned surface.</source>
+        <translation>Les points à moins de cette distance d&apos;une hauteur évaluée sont utilisés, amenés à elle le long de la surface prévue.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Position of the locked axis; auto: the position with the smallest residual angle. (deg)</source>
         <translation>Position de l&apos;axe bloqué ; auto : la position où l&apos;angle restant est le plus petit. (deg)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Quantity that the polynomial describes: the true rotation about the tool axis, or RZ of Chalvin 2020.</source>
+        <translation>Grandeur que décrit le polynôme : la vraie rotation autour de l&apos;axe de l&apos;outil, ou RZ de Chalvin 2020.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -875,13 +885,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Schedule number with which the welder or extruder deposits beads; program.schedule defines how it is sent.</source>
-        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
+        <source>Schedule for this length, sent without a stop.</source>
+        <translation>Programme de soudage pour cette longueur, transmis sans arrêt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Schedule to send there, without a stop.</source>
-        <translation>Programme de soudage qui y est transmis, sans arrêt.</translation>
+        <source>Schedule number with which the welder or extruder deposits beads; program.schedule defines how it is sent.</source>
+        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -955,8 +965,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
-        <source>Show the build direction of every how many-th point.</source>
-        <translation>Montrer la direction de dépôt d&apos;un point sur combien.</translation>
+        <source>Show the build direction at every n-th point.</source>
+        <translation>Montrer la direction de dépôt tous les n points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
@@ -992,6 +1002,11 @@
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>Smallest condition of the Jacobian while depositing.</source>
         <translation>Plus petite condition du jacobien pendant le dépôt.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Smallest deviation.</source>
+        <translation>Plus petit écart.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -1080,8 +1095,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>The cylinders and cones of the hub to grow on; found when left out.</source>
-        <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
+        <source>The cylinders and cones of the hub to grow on; detected if empty.</source>
+        <translation>Les cylindres et cônes du moyeu sur lesquels croître ; détectés si le champ est vide.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/curves_feature.py"/>
@@ -1110,13 +1125,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>The hub; none is needed where it is one of the solids, or the base is given by numbers.</source>
-        <translation>Le moyeu ; inutile s&apos;il est l&apos;un des solides, ou si la base est donnée par des nombres.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>The input&apos;s value in a program at 0 degrees Celsius.</source>
-        <translation>Valeur de l&apos;entrée dans un programme à 0 degré Celsius.</translation>
+        <source>The hub; not needed if it is one of the solids, or if numbers define the base.</source>
+        <translation>Le moyeu ; inutile s&apos;il est l&apos;un des solides, ou si des nombres définissent la base.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -1135,11 +1145,6 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>The same motion without deposit.</source>
-        <translation>Le même mouvement sans dépôt.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>The schedule number is set on a group output; or arc instructions name it and switch the deposit; or it selects the program to call.</source>
         <translation>Le numéro de programme de soudage est mis sur une sortie groupée ; ou les instructions d&apos;arc le nomment et commutent le dépôt ; ou il choisit le programme à appeler.</translation>
     </message>
@@ -1150,8 +1155,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
-        <source>The solid part or closed mesh that the wall grows on; none is needed where edges are chosen.</source>
-        <translation>La pièce solide ou le maillage fermé sur lequel croît la paroi ; inutile si des arêtes sont choisies.</translation>
+        <source>The solid part or closed mesh that the wall grows on; not needed if start edges are chosen.</source>
+        <translation>La pièce solide ou le maillage fermé sur lequel croît la paroi ; inutile si des arêtes de départ sont choisies.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
@@ -1250,8 +1255,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Travel speed there. (mm/s)</source>
-        <translation>Vitesse de la torche à cet endroit. (mm/s)</translation>
+        <source>Travel speed in this length. (mm/s)</source>
+        <translation>Vitesse de la torche sur cette longueur. (mm/s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -1267,6 +1272,11 @@
         <location filename="../../freecad_am/objects/table_part.py"/>
         <source>Type of the file.</source>
         <translation>Ce qu&apos;est le fichier.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>Type of the object, in case its proxy is lost.</source>
+        <translation>Type de l&apos;objet, au cas où son proxy serait perdu.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -1309,24 +1319,14 @@
         <translation>Ce que disent les couleurs des cordons.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
-        <source>What the object is, should its proxy be lost.</source>
-        <translation>Ce qu&apos;est l&apos;objet, si son proxy était perdu.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>What the polynomial gives: the true rotation about the tool axis, or RZ of the paper.</source>
-        <translation>Ce que donne le polynôme : la vraie rotation autour de l&apos;axe de l&apos;outil, ou le RZ de l&apos;article.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
-        <source>Whether the result fits.</source>
-        <translation>Si le résultat correspond.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Whether the robot carries the tool or the part, or a machine with rotary axes.</source>
-        <translation>Ce que porte le robot, la pièce ou l&apos;outil, ou une machine à axes rotatifs.</translation>
+        <source>What the robot carries, tool or part; or a machine with rotary axes.</source>
+        <translation>Ce que porte le robot, l&apos;outil ou la pièce ; ou une machine à axes rotatifs.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>Whether the result matches its inputs.</source>
+        <translation>Si le résultat correspond à ses entrées.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -1498,7 +1498,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
-        <source>95 % of the amounts within</source>
+        <source>95 % of the absolute deviations within</source>
         <translation>95 % des écarts absolus sous</translation>
     </message>
     <message>
@@ -1592,9 +1592,14 @@
         <translation>Une copie d&apos;une autre machine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
+        <source>A dry run has tried loading parts, and tools that are attached to other tools</source>
+        <translation>Une marche à vide a essayé le chargement des parties et les outils fixés à d&apos;autres outils</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
-        <source>A joint would need {:.0f} % of its speed: the planner will slow it down, or reject the curve</source>
-        <translation>Une articulation devrait aller à {:.0f} % de sa vitesse : le planificateur la ralentira, ou refusera</translation>
+        <source>A joint would need {:.0f} % of its maximum speed: the planner will slow the bead down, or reject the curve</source>
+        <translation>Une articulation aurait besoin de {:.0f} % de sa vitesse maximale : le planificateur ralentira le cordon, ou refusera la courbe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -1625,16 +1630,6 @@
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>A table of Denavit and Hartenberg</source>
         <translation>Un tableau de Denavit et Hartenberg</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move</source>
-        <translation>AOUT entre deux mouvements d&apos;un job INFORM est réglé quand sa ligne est atteinte, ce que les coins arrondis déplacent</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>AO[] between two moves of a FANUC is set when its line is read, ahead of the motion</source>
-        <translation>AO[] entre deux mouvements d&apos;un FANUC est réglé à la lecture de sa ligne, avant le mouvement</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/revolution.py"/>
@@ -1695,11 +1690,6 @@
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>All files</source>
         <translation>Tous les fichiers</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>All of the part is deposited</source>
-        <translation>Toute la pièce est déposée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -1803,13 +1793,33 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>ArcL is a linear move, and these are joint moves, which motion: cartesian replaces</source>
-        <translation>ArcL est un mouvement linéaire, et ceux-ci sont des mouvements articulaires, que motion: cartesian remplace</translation>
+        <source>ArcL carries the weave, and a dry run has no ArcL; block weld and weave on the controller instead</source>
+        <translation>ArcL porte le balayage, et une marche à vide n&apos;a pas de ArcL ; bloquez plutôt soudage et balayage sur la commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>ArcL carries the weave, and only program.schedule.by: arc writes ArcL</source>
+        <translation>ArcL porte le balayage, et seul program.schedule.by: arc écrit ArcL</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>ArcL is a linear move, but this program has joint moves; motion: cartesian has linear ones</source>
+        <translation>ArcL est un mouvement linéaire, mais ce programme a des mouvements articulaires ; motion: cartesian a des mouvements linéaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/text.py"/>
         <source>ArcTech ends the arc with the last move of a bead and waits there for the crater time of its weld data; use lead_off 0 and set the crater time of {0}, or another program.schedule.by</source>
         <translation>ArcTech termine l&apos;arc avec le dernier mouvement d&apos;un cordon et y reste le temps de cratère de ses données de soudage ; employez lead_off 0 et réglez le temps de cratère de {0}, ou un autre program.schedule.by</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>ArcTech has no such line here, or it names other data than the lines before it</source>
+        <translation>ArcTech n&apos;a pas de telle ligne ici, ou elle nomme d&apos;autres données que les lignes précédentes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
+        <source>ArcTech keeps the weave in its weld data, which is made on the pendant, so a weave has no number</source>
+        <translation>ArcTech garde le balayage dans ses données de soudage, créées sur le pupitre, donc un balayage n&apos;a pas de numéro</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
@@ -1863,8 +1873,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>BASE_DATA and TOOL_DATA of the numbers in the program are those of the cell, with their load</source>
-        <translation>Les BASE_DATA et TOOL_DATA des numéros du programme sont ceux de la cellule, avec leur charge</translation>
+        <source>BASE_DATA and TOOL_DATA with the numbers in the program match the cell, and the load is set</source>
+        <translation>BASE_DATA et TOOL_DATA aux numéros du programme correspondent à la cellule, et la charge est réglée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -1945,11 +1955,6 @@
         <location filename="../../freecad_am/core/parameters/place.py"/>
         <source>Best</source>
         <translation>Meilleure</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>Between its points the text keeps to the planned path</source>
-        <translation>Entre ses points, le texte suit la trajectoire planifiée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2038,8 +2043,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
-        <source>Cancelled: nothing was made.</source>
-        <translation>Annulé : rien n&apos;a été fait.</translation>
+        <source>Cancelled: nothing was exported.</source>
+        <translation>Annulé : rien n&apos;a été exporté.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cell.py"/>
@@ -2083,8 +2088,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
-        <source>Certificate: {:.4g} as planned, no rotation goes below {:.4g}: a gap of {:.1f} %, {:.1f} % in layer {} bead {}</source>
-        <translation>Certificat : {:.4g} tel que planifié, aucune rotation ne descend sous {:.4g} : un écart de {:.1f} %, de {:.1f} % dans la couche {} cordon {}</translation>
+        <source>Certificate: {:.4g} as planned, lower bound over all rotations {:.4g}: a gap of {:.1f} %, the largest, {:.1f} %, in layer {} bead {}</source>
+        <translation>Certificat : {:.4g} tel que planifié, borne inférieure sur toutes les rotations {:.4g} : un écart de {:.1f} %, le plus grand, {:.1f} %, dans la couche {} cordon {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -2098,8 +2103,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Change of the input value in a program per degree.</source>
-        <translation>De combien la valeur de l&apos;entrée dans un programme monte par degré.</translation>
+        <source>Change of the input value, as the program reads it, per degree.</source>
+        <translation>Variation par degré de la valeur de l&apos;entrée, telle que le programme la lit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
@@ -2178,8 +2183,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
-        <source>Clamps and other bodies around the part, which the nozzle is kept clear of.</source>
-        <translation>Brides et autres corps autour de la pièce, dont la buse est tenue éloignée.</translation>
+        <source>Clamps and other bodies around the part that the nozzle must clear.</source>
+        <translation>Brides et autres corps autour de la pièce, que la buse doit éviter.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2323,8 +2328,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/post.py"/>
-        <source>Configuration supervision may be off (ConfL), and joint values mean what the machine file says</source>
-        <translation>La surveillance des configurations peut être désactivée (ConfL), et les valeurs articulaires signifient ce que dit le fichier de machine</translation>
+        <source>Configuration supervision (ConfL) may be off, and joint values have the meaning in the machine file</source>
+        <translation>La surveillance des configurations (ConfL) peut être désactivée, et les valeurs articulaires ont le sens que donne le fichier machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -2513,8 +2518,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/plots/pictures.py"/>
-        <source>Deposited of the part: {0} %</source>
-        <translation>Déposé de la pièce : {0} %</translation>
+        <source>Deposited share of the part: {0} %</source>
+        <translation>Part déposée de la pièce : {0} %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -2583,8 +2588,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Diameter of the platform; counts in clearance.</source>
-        <translation>Diamètre du plateau ; compte dans le dégagement.</translation>
+        <source>Diameter of the platform, used for clearance.</source>
+        <translation>Diamètre du plateau, utilisé pour le dégagement.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2627,6 +2632,11 @@
         <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, là où ni les courbes ni des faces n&apos;en indiquent.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Distance along Z from the flange, or from the face of a rotary table, to the mounting plane; or a pose relative to it.</source>
+        <translation>Distance selon Z de la bride, ou de la face d&apos;un axe rotatif, au plan de montage ; ou une pose relative à elle.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Distance between layers</source>
         <translation>Distance entre les couches</translation>
@@ -2643,7 +2653,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/plots/pictures.py"/>
-        <source>Distance to the layer before (asked: {0} mm)</source>
+        <source>Distance to the previous layer (requested: {0} mm)</source>
         <translation>Distance à la couche précédente (demandée : {0} mm)</translation>
     </message>
     <message>
@@ -2692,9 +2702,14 @@
         <translation>Marche à vide</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Dry run: the same motion without deposit.</source>
+        <translation>Marche à vide : le même mouvement sans dépôt.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>E1 of the robot&apos;s own motion group</source>
-        <translation>E1 du groupe de mouvement du robot lui-même</translation>
+        <source>E1 of the motion group of the robot</source>
+        <translation>E1 du groupe de mouvement du robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -2703,8 +2718,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
-        <source>Edges of the wall in which layers start, in place of where it leaves the substrate.</source>
-        <translation>Arêtes de la paroi où commencent les couches, au lieu de là où elle quitte le substrat.</translation>
+        <source>Edges of the wall from which layers start, instead of its intersection with the substrate.</source>
+        <translation>Arêtes de la paroi d&apos;où partent les couches, au lieu de son intersection avec le substrat.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/solid.py"/>
@@ -2730,6 +2745,11 @@
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
         <source>Edit…</source>
         <translation>Modifier…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Effective bead width when solids on hubs are filled: the bead spacing, or the bead width; auto: the bead width if it is set, kept by a bead model, or used by an overlap.</source>
+        <translation>Largeur effective des cordons au remplissage de solides sur moyeu : l&apos;écart entre cordons, ou la largeur de cordon ; auto : la largeur de cordon si elle est donnée, tenue par un modèle de cordon, ou employée par un recouvrement.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -2817,6 +2837,11 @@
         <translation>Lequel des axes externes de la commande est e1 ; les autres suivent : eax_a, E1 sont 1.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
+        <source>FANUC sets AO[] between two moves when it reads the line, ahead of the motion</source>
+        <translation>FANUC règle AO[] entre deux mouvements à la lecture de la ligne, avant le mouvement</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/cladding.py"/>
         <source>Faces</source>
         <translation>Faces</translation>
@@ -2865,6 +2890,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Fastest travel speed for the material; faster beads are reported.</source>
         <translation>Vitesse d&apos;avance la plus rapide pour le matériau ; les cordons plus rapides sont signalés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>Feasible points, %</source>
+        <translation>Points faisables, %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/revolution.py"/>
@@ -3002,6 +3032,11 @@
         <translation>Ouvrez d&apos;abord une pièce, ou importez-en une dans ce document.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/shape/compare.py"/>
+        <source>First set strategy.layer_height to the predicted height</source>
+        <translation>Réglez d&apos;abord strategy.layer_height sur la hauteur prédite</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Fit</source>
         <translation>Ajustement</translation>
@@ -3055,6 +3090,11 @@
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
         <source>Format of the export</source>
         <translation>Format de l&apos;export</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
+        <source>Forward to the next layer</source>
+        <translation>En avant à la couche suivante</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -3127,11 +3167,6 @@
         <translation>Du cercle de base au sommet du cône, le long de l&apos;axe ; inf : un cylindre.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>From the flange, or the face of a rotary table, to the mounting plane along its Z, or a pose on it.</source>
-        <translation>De la bride, ou de la face d&apos;un axe rotatif, au plan de montage le long de son Z, ou une pose sur elle.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
         <source>Further</source>
         <translation>Autres</translation>
@@ -3183,8 +3218,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>G53 in relative moves (G91) is not known; write G90 before it</source>
-        <translation>G53 en déplacements relatifs (G91) est inconnu ; écrivez G90 avant</translation>
+        <source>G53 with relative moves (G91) is not supported; write G90 before it</source>
+        <translation>G53 en déplacements relatifs (G91) n&apos;est pas pris en charge ; écrivez G90 avant</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -3210,11 +3245,6 @@
         <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>General</source>
         <translation>Général</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/families/filled_planner.py"/>
-        <source>Give strategy.margin {0} mm more than it has, or wider beads</source>
-        <translation>Donnez à strategy.margin {0} mm de plus, ou des cordons plus larges</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -3322,11 +3352,6 @@
         <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>How wide the beads of solids on hubs count in filling: as the spacing, or as the bead width; auto: as the bead width where it is given, held by a bead model, or an overlap counts with it.</source>
-        <translation>Largeur pour laquelle comptent au remplissage les cordons de solides sur moyeu : la distance des cordons, ou la largeur de cordon ; auto : la largeur de cordon si elle est donnée, tenue par un modèle de cordon, ou si un recouvrement compte avec elle.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Hub</source>
         <translation>Moyeu</translation>
@@ -3335,6 +3360,11 @@
         <location filename="../../freecad_am/posts/siemens/post.py"/>
         <source>H{0} switches the deposit; use another one for schedules</source>
         <translation>H{0} commute le dépôt ; prenez-en un autre pour les programmes de soudage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
+        <source>INFORM sets AOUT between two moves when it reaches the line, and rounded corners shift that moment</source>
+        <translation>INFORM règle AOUT entre deux mouvements quand il atteint la ligne, et les coins arrondis décalent ce moment</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
@@ -3362,6 +3392,11 @@
         <translation>Dans la tolérance</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/families/filled_planner.py"/>
+        <source>Increase strategy.margin by {0} mm, or use wider beads</source>
+        <translation>Augmentez strategy.margin de {0} mm, ou utilisez des cordons plus larges</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Infeasible:</source>
         <translation>Irréalisable :</translation>
@@ -3385,6 +3420,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Input</source>
         <translation>Entrée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Input value, as the program reads it, at 0 degrees Celsius.</source>
+        <translation>Valeur de l&apos;entrée à 0 degré Celsius, telle que le programme la lit.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/new_job.py"/>
@@ -3463,8 +3503,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>Joint programs rely on the nominal arm; the calibrated one stands up to millimetres off it</source>
-        <translation>Les programmes articulaires comptent sur le bras nominal ; le bras étalonné s&apos;en écarte jusqu&apos;à quelques millimètres</translation>
+        <source>Joint programs assume the nominal arm; the calibrated arm deviates by up to a few millimetres</source>
+        <translation>Les programmes articulaires supposent le bras nominal ; le bras étalonné s&apos;en écarte jusqu&apos;à quelques millimètres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -3478,8 +3518,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>Joint speeds of the machine file are those the controller calls 100 %</source>
-        <translation>Les vitesses articulaires du fichier de machine sont celles que la commande appelle 100 %</translation>
+        <source>Joint speeds in the machine file equal 100 % on the controller</source>
+        <translation>Les vitesses articulaires du fichier machine valent 100 % sur la commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -3488,13 +3528,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>Joint values mean what the machine file says, J3 above all</source>
-        <translation>Les valeurs articulaires ont le sens que dit le fichier machine, J3 surtout</translation>
+        <source>Joint values, above all J3, have the meaning in the machine file</source>
+        <translation>Les valeurs articulaires, surtout J3, ont le sens que donne le fichier machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>Joints</source>
         <translation>Articulations</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
+        <source>KRL sets an analogue output between approximated moves ahead of the motion</source>
+        <translation>KRL règle une sortie analogique entre des mouvements lissés en avance sur le mouvement</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cell.py"/>
@@ -3632,11 +3677,6 @@
         <translation>Dernières couches coupées au ras du bord supérieur de la paroi, ou couches entières seulement.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/shape/compare.py"/>
-        <source>Lay layers as high as they come out first</source>
-        <translation>Déposez d&apos;abord les couches à la hauteur qu&apos;elles ont réellement</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/path/infill_dock.py"/>
         <source>Layer</source>
         <translation>Couche</translation>
@@ -3687,11 +3727,6 @@
         <translation>Couches à la hauteur de couche du point le plus proche de celle du dessous (constant-distance), dans une bande autour d&apos;elle et sans angles (smooth), ou le long des lignes qui montent la paroi (iso-parameter).</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>Layers come out as high as they are planned</source>
-        <translation>Les couches ont la hauteur prévue</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Layers equally spaced along the wall (arc-length) or along the axis (iso-height).</source>
         <translation>Couches également espacées le long de la paroi (arc-length) ou le long de l&apos;axe (iso-height).</translation>
@@ -3732,46 +3767,6 @@
         <translation>Minimum</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Least condition</source>
-        <translation>Condition minimale</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
-        <source>Least condition: {0:.3f}, in layer {2}</source>
-        <translation>Condition la plus faible : {0:.3f}, couche {2}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/inspection.py"/>
-        <source>Least deviation.</source>
-        <translation>Plus petit écart.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/placement/figures.py"/>
-        <source>Least margin, %</source>
-        <translation>Plus petite marge, %</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/table.py"/>
-        <source>Least thickness</source>
-        <translation>Plus petite épaisseur</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time between the end of a layer of a solid and the start of its next.</source>
-        <translation>Temps minimal entre la fin de la couche d&apos;un solide et le début de la suivante.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed, and islands keep the same order in every layer, so that each cools while others are printed.</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon au premier de la suivante ; la machine attend au besoin, et les îlots gardent le même ordre à chaque couche, afin que chacun refroidisse pendant que d&apos;autres sont déposés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Least time of a layer, from its first bead to the first of the next; the machine waits if needed.</source>
-        <translation>Durée minimale d&apos;une couche, de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Length</source>
         <translation>Longueur</translation>
@@ -3792,19 +3787,19 @@
         <translation>Distance sur laquelle la torche revient sur un cordon ouvert depuis sa fin, en déposant toujours, afin de remplir son cratère.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Length next to it over which the speed changes in steps to the speed of the bead.</source>
-        <translation>Longueur à côté, le long de laquelle la vitesse passe par paliers à celle du cordon.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
         <source>Length of all beads.</source>
         <translation>Longueur de tous les cordons.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Length of the bead that it covers.</source>
-        <translation>Quelle longueur du cordon c&apos;est.</translation>
+        <source>Length of bead with these settings.</source>
+        <translation>Longueur de cordon avec ces réglages.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length of the adjacent ramp, in which the speed changes in steps to that of the bead.</source>
+        <translation>Longueur de la rampe voisine, où la vitesse passe par paliers à celle du cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -3883,28 +3878,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>LinuxCNC: how far corners may be rounded (G64 P).</source>
-        <translation>LinuxCNC : de combien les angles peuvent être arrondis (G64 P).</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>Little is deposited twice</source>
-        <translation>Peu de matière est déposée deux fois</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>Loaded parts and tools that stand on other tools have been tried with a dry run</source>
-        <translation>Le chargement des parties et les outils portés par d’autres outils ont été essayés à vide</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Locked at</source>
-        <translation>Bloqué à</translation>
+        <source>LinuxCNC: tolerance for rounding corners (G64 P).</source>
+        <translation>LinuxCNC : tolérance pour arrondir les angles (G64 P).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Locked axis</source>
         <translation>Axe bloqué</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Locked position</source>
+        <translation>Position bloquée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -3953,8 +3938,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>M428 and M429 switch the kinematics, and the work offset is that of the remarks</source>
-        <translation>M428 et M429 commutent la cinématique, et l’origine pièce est celle des remarques</translation>
+        <source>M428 and M429 switch the kinematics, and the work offset matches the remarks in the program</source>
+        <translation>M428 et M429 commutent la cinématique, et l’origine pièce correspond aux remarques du programme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -3992,14 +3977,19 @@
         <translation>Faire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/cell.py"/>
-        <source>Maker and model of the machine.</source>
-        <translation>Constructeur et modèle de la machine.</translation>
+        <location filename="../../freecad_am/objects/families/planner.py"/>
+        <source>Make beads {0} mm wider on either side (process.bead_width), or use a smaller allowance</source>
+        <translation>Faites des cordons plus larges de {0} mm de chaque côté (process.bead_width), ou utilisez une surépaisseur plus petite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Manufacturer and model</source>
         <translation>Constructeur et modèle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/cell.py"/>
+        <source>Manufacturer and model of the machine.</source>
+        <translation>Constructeur et modèle de la machine.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
@@ -4083,8 +4073,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
-        <source>Mean deviation, outside with a plus.</source>
-        <translation>Écart moyen, vers l&apos;extérieur avec un plus.</translation>
+        <source>Mean deviation; positive is outside.</source>
+        <translation>Écart moyen ; positif vers l&apos;extérieur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -4142,6 +4132,11 @@
         <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Min condition</source>
+        <translation>Condition minimale</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Min layer time</source>
         <translation>Durée minimale de couche</translation>
@@ -4155,6 +4150,21 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Minimum length of beads that close gaps; shorter beads are otherwise omitted. auto: 2 mm, or the bead spacing if that is less.</source>
         <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté. auto : 2 mm, ou l&apos;espacement des cordons s&apos;il est plus petit.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Minimum time between the end of a layer of a solid and the start of its next layer.</source>
+        <translation>Temps minimal entre la fin d&apos;une couche d&apos;un solide et le début de sa couche suivante.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; the machine waits if needed, and islands keep the same order in every layer, so that each cools while others are printed.</source>
+        <translation>Durée minimale d&apos;une couche, du début de son premier cordon au premier de la suivante ; la machine attend au besoin, et les îlots gardent le même ordre à chaque couche, afin que chacun refroidisse pendant que d&apos;autres sont déposés.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Minimum time of a layer, from the start of its first bead to the start of the next layer; the machine waits if needed.</source>
+        <translation>Durée minimale d&apos;une couche, du début de son premier cordon à celui de la suivante ; la machine attend ce qui manque.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -4258,8 +4268,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
-        <source>Near a singularity: condition {value:.3f}, allowed are {than:.3f}</source>
-        <translation>Près d&apos;une singularité : condition {value:.3f}, permis {than:.3f}</translation>
+        <source>Near a singularity: condition {value:.3f}, required at least {than:.3f}</source>
+        <translation>Près d&apos;une singularité : condition {value:.3f}, au moins {than:.3f} requis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
@@ -4293,8 +4303,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>No axis is asked for more than its largest speed</source>
-        <translation>Aucun axe ne doit dépasser sa vitesse maximale</translation>
+        <source>No axis exceeds its maximum speed</source>
+        <translation>Aucun axe ne dépasse sa vitesse maximale</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -4323,8 +4333,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
-        <source>None of the best is with all points.</source>
-        <translation>Aucune des meilleures ne l&apos;est avec tous les points.</translation>
+        <source>None of the best poses is feasible with all points.</source>
+        <translation>Aucune des meilleures poses n&apos;est faisable avec tous les points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -4398,8 +4408,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
-        <source>Number of points that count.</source>
-        <translation>Nombre de points qui comptent.</translation>
+        <source>Number of points used.</source>
+        <translation>Nombre de points utilisés.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
@@ -4472,11 +4482,6 @@
         <translation>Décalage le long de z, mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/simulation/fields.py"/>
-        <source>On to the next layer</source>
-        <translation>À la couche suivante</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>One back</source>
         <translation>Un en arrière</translation>
@@ -4503,7 +4508,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/fields.py"/>
-        <source>One point on</source>
+        <source>One point forward</source>
         <translation>Un point en avant</translation>
     </message>
     <message>
@@ -4538,8 +4543,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/whats_this.py"/>
-        <source>Opens the pages of the tools</source>
-        <translation>Ouvre les pages des outils</translation>
+        <source>Opens the help pages of the tools</source>
+        <translation>Ouvre les pages d&apos;aide des outils</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -4587,6 +4592,11 @@
         <translation>Torche tournée vers l&apos;extérieur autour du cordon sur les contours extérieurs.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>Over-deposition is small</source>
+        <translation>Le surdépôt est faible</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/panels/solid.py"/>
         <source>Overhang &gt; {}°</source>
         <translation>Surplomb &gt; {}°</translation>
@@ -4608,8 +4618,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>P asks for several turns, which are not known; write each turn out</source>
-        <translation>P demande plusieurs tours, ce qui est inconnu ; écrivez chaque tour</translation>
+        <source>P asks for several turns, which are not supported; write out each turn</source>
+        <translation>P demande plusieurs tours, ce qui n&apos;est pas pris en charge ; écrivez chaque tour</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/records.py"/>
@@ -4623,8 +4633,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>P[{0}] is recorded in another U{1} than the selected one</source>
-        <translation>P[{0}] est enregistré dans un autre U{1} que celui qui est choisi</translation>
+        <source>P[{0}] is recorded in a U{1} that is not selected</source>
+        <translation>P[{0}] est enregistré dans un U{1} qui n&apos;est pas choisi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/records.py"/>
@@ -4822,24 +4832,14 @@
         <translation>Points en valeurs articulaires, ou en positions de l&apos;outil.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/figures.py"/>
-        <source>Points served, %</source>
-        <translation>Points desservis, %</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Points that are unreachable, beyond a limit, near a singularity or not allowed</source>
         <translation>Points hors d&apos;atteinte, au-delà d&apos;une limite, près d&apos;une singularité ou non permis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Points within this height of such a level count, moved to it along the planned surface.</source>
-        <translation>Les points jusqu&apos;à cette distance au-dessus ou au-dessous d&apos;une telle hauteur y comptent, glissés le long de la surface prévue.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Polynomials give</source>
-        <translation>Les polynômes donnent</translation>
+        <source>Points within this height of an evaluated height are used, moved to it along the planned surface.</source>
+        <translation>Les points à moins de cette distance d&apos;une hauteur évaluée sont utilisés, amenés à elle le long de la surface prévue.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
@@ -4993,13 +4993,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>Pulses per degree of the machine file are the controller&apos;s, and zero pulses the zero of its angles</source>
-        <translation>Les impulsions par degré du fichier machine sont celles de la commande, et zéro impulsion le zéro de ses angles</translation>
+        <source>Pulses per degree in the machine file match the controller, and zero pulses are zero degrees</source>
+        <translation>Les impulsions par degré du fichier machine correspondent à la commande, et zéro impulsion vaut zéro degré</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
-        <source>PyKDL and the joint-frame chain disagree</source>
-        <translation>PyKDL et la chaîne des repères articulaires ne s&apos;accordent pas</translation>
+        <source>PyKDL and the joint-frame chain compute different poses for this program</source>
+        <translation>PyKDL et la chaîne des repères calculent des poses différentes pour ce programme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
@@ -5010,6 +5010,11 @@
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Quadratic</source>
         <translation>Quadratique</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Quantity of polynomials</source>
+        <translation>Grandeur des polynômes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -5023,8 +5028,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
-        <source>Quantity shown by the colours of the places</source>
-        <translation>Ce que disent les couleurs des endroits</translation>
+        <source>Quantity shown by the colours of the poses</source>
+        <translation>Grandeur que montrent les couleurs des poses</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>Quantity that the polynomial describes: the true rotation about the tool axis, or RZ of Chalvin 2020.</source>
+        <translation>Grandeur que décrit le polynôme : la vraie rotation autour de l&apos;axe de l&apos;outil, ou RZ de Chalvin 2020.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/dock.py"/>
@@ -5128,8 +5138,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
-        <source>Read the text…</source>
-        <translation>Lire le texte…</translation>
+        <source>Read the program…</source>
+        <translation>Lire le programme…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
@@ -5190,6 +5200,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Robot</source>
         <translation>Robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>Robot or positioner can carry the part</source>
+        <translation>Le robot ou le positionneur peut porter la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
@@ -5348,13 +5363,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Schedule number with which the welder or extruder deposits beads; program.schedule defines how it is sent.</source>
-        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
+        <source>Schedule for this length, sent without a stop.</source>
+        <translation>Programme de soudage pour cette longueur, transmis sans arrêt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Schedule to send there, without a stop.</source>
-        <translation>Programme de soudage qui y est transmis, sans arrêt.</translation>
+        <source>Schedule number with which the welder or extruder deposits beads; program.schedule defines how it is sent.</source>
+        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -5552,11 +5567,6 @@
         <translation>Signe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/post.py"/>
-        <source>Signals do1, di1 and so on have these names</source>
-        <translation>Les signaux portent les noms do1, di1 et ainsi de suite</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Simulate…</source>
         <translation>Simuler…</translation>
@@ -5592,6 +5602,16 @@
         <translation>Plus petite condition du jacobien pendant le dépôt.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/joint_path.py"/>
+        <source>Smallest condition: {0:.3f}, in layer {2}</source>
+        <translation>Condition la plus faible : {0:.3f}, couche {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/inspection.py"/>
+        <source>Smallest deviation.</source>
+        <translation>Plus petit écart.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Smallest inverse condition number allowed; auto: at each point a quarter of its value at RZ = 0, but at least 0.02.</source>
         <translation>Plus petite condition permise ; auto : en chaque point un quart de sa valeur à RZ = 0, mais au moins 0.02.</translation>
@@ -5600,6 +5620,16 @@
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
         <source>Smallest joint margin: {:.1f} %, of {} in layer {}</source>
         <translation>Marge articulaire la plus faible : {:.1f} %, de {}, couche {}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/placement/figures.py"/>
+        <source>Smallest margin, %</source>
+        <translation>Plus petite marge, %</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/table.py"/>
+        <source>Smallest thickness</source>
+        <translation>Plus petite épaisseur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -5873,8 +5903,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
-        <source>Sum of the heights, off the layers</source>
-        <translation>Somme des hauteurs, écart aux couches</translation>
+        <source>Sum of the heights, minus the planned layers</source>
+        <translation>Somme des hauteurs, moins les couches planifiées</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -5883,8 +5913,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/post.py"/>
-        <source>TRAORI and the work offset are those of the machine file and of the remarks</source>
-        <translation>TRAORI et l’origine pièce sont ceux du fichier machine et des remarques</translation>
+        <source>TRAORI matches the machine file, and the work offset matches the remarks in the program</source>
+        <translation>TRAORI correspond au fichier machine, et l’origine pièce aux remarques du programme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
@@ -5907,6 +5937,11 @@
         <translation>Température en degrés Celsius ; transmise telle quelle.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/siemens/post.py"/>
+        <source>The PLC handles the words that switch the deposit, and the inputs</source>
+        <translation>L’automate traite les mots qui commutent le dépôt, et les entrées</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>The arm stays clear of part, deposit, platform, nozzle and itself</source>
         <translation>Le bras reste dégagé de la pièce, du dépôt, du plateau, de la buse et de lui-même</translation>
@@ -5918,8 +5953,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
-        <source>The best one was planned with all points.</source>
-        <translation>La meilleure a été planifiée avec tous les points.</translation>
+        <source>The best pose was planned with all points.</source>
+        <translation>La meilleure pose a été planifiée avec tous les points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -5942,29 +5977,19 @@
         <translation>Les fichiers de la commande ; double-cliquez pour les lire et les exporter.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/post.py"/>
-        <source>The controller&apos;s world is the robot&apos;s base</source>
-        <translation>Le repère monde de la commande est la base du robot</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>The controller&apos;s world is the robot&apos;s base, and joint speeds are its nominal ones</source>
-        <translation>Le repère monde de la commande est la base du robot, et les vitesses articulaires sont les nominales</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>The cylinder or cone of the hub, or the whole hub: then the surface under each solid is detected.</source>
         <translation>Le cylindre ou le cône du moyeu sur lequel croître, ou le moyeu entier : alors sa surface est trouvée sous chaque solide.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>The cylinders and cones of the hub to grow on; found when left out.</source>
-        <translation>Les cylindres et cônes du moyeu sur lesquels croître ; trouvés s&apos;ils sont omis.</translation>
+        <source>The cylinders and cones of the hub to grow on; detected if empty.</source>
+        <translation>Les cylindres et cônes du moyeu sur lesquels croître ; détectés si le champ est vide.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>The deposit is on the part</source>
-        <translation>Ce qui est déposé se trouve sur la pièce</translation>
+        <source>The deposit lies on the part</source>
+        <translation>Le dépôt se trouve sur la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
@@ -6058,13 +6083,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>The hub; none is needed where it is one of the solids, or the base is given by numbers.</source>
-        <translation>Le moyeu ; inutile s&apos;il est l&apos;un des solides, ou si la base est donnée par des nombres.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>The input&apos;s value in a program at 0 degrees Celsius.</source>
-        <translation>Valeur de l&apos;entrée dans un programme à 0 degré Celsius.</translation>
+        <source>The hub; not needed if it is one of the solids, or if numbers define the base.</source>
+        <translation>Le moyeu ; inutile s&apos;il est l&apos;un des solides, ou si des nombres définissent la base.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
@@ -6083,8 +6103,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>The joints bring the tool to every point</source>
-        <translation>Les articulations amènent l’outil à chaque point</translation>
+        <source>The joint values reach every planned point</source>
+        <translation>Les valeurs articulaires atteignent chaque point planifié</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -6178,12 +6198,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>The nozzle stays clear of deposit, part and platform while it deposits</source>
+        <source>The nozzle stays clear of deposit, part and platform while depositing</source>
         <translation>La buse reste dégagée du dépôt, de la pièce et du plateau pendant le dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>The nozzle stays clear on the rapids</source>
+        <source>The nozzle stays clear on rapids</source>
         <translation>La buse reste dégagée pendant les rapides</translation>
     </message>
     <message>
@@ -6223,23 +6243,33 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>The predicted deposit holds what the wire feeds</source>
-        <translation>Le dépôt prédit contient ce que le fil apporte</translation>
+        <source>The predicted deposit has the volume of the wire fed</source>
+        <translation>Le dépôt prédit a le volume du fil amené</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/placement/dock.py"/>
-        <source>The robot can be at {} places of a grid of {:.0f} mm.</source>
-        <translation>Le robot peut atteindre {} endroits d&apos;une grille de {:.0f} mm.</translation>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>The predicted layers have the planned height</source>
+        <translation>Les couches prédites ont la hauteur planifiée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>The program follows the planned path between its points</source>
+        <translation>Le programme suit la trajectoire planifiée entre ses points</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>The program moves the tool to the planned points</source>
+        <translation>Le programme amène l’outil aux points planifiés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>The robot keeps the time of every move through the blends</source>
-        <translation>Le robot tient la durée de chaque mouvement à travers les lissages</translation>
+        <source>The robot keeps the time of every move through its blends</source>
+        <translation>Le robot tient la durée de chaque mouvement à travers ses lissages</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>The same motion without deposit.</source>
-        <translation>Le même mouvement sans dépôt.</translation>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
+        <source>The robot reaches {} points of a grid of {:.0f} mm.</source>
+        <translation>Le robot atteint {} points d&apos;une grille de {:.0f} mm.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -6250,6 +6280,11 @@
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>The shape to deposit, or some of its faces.</source>
         <translation>La forme à déposer, ou certaines de ses faces.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
+        <source>The signals are called do1, di1 and so on</source>
+        <translation>Les signaux s&apos;appellent do1, di1 et ainsi de suite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
@@ -6268,8 +6303,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
-        <source>The solid part or closed mesh that the wall grows on; none is needed where edges are chosen.</source>
-        <translation>La pièce solide ou le maillage fermé sur lequel croît la paroi ; inutile si des arêtes sont choisies.</translation>
+        <source>The solid part or closed mesh that the wall grows on; not needed if start edges are chosen.</source>
+        <translation>La pièce solide ou le maillage fermé sur lequel croît la paroi ; inutile si des arêtes de départ sont choisies.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
@@ -6287,29 +6322,24 @@
         <translation>Les surfaces sur lesquelles reposent les solides.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>The text takes the tool to the planned points</source>
-        <translation>Le texte amène l’outil aux points planifiés</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>The time of the job</source>
         <translation>Le temps du travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>The tool file of the number in the job is the nozzle&apos;s tip, and speeds have the unit of the remarks</source>
-        <translation>Le fichier outil du numéro dans le job est la pointe de la buse, et les vitesses ont l&apos;unité des remarques</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>The tool keeps away from singularities while it deposits</source>
-        <translation>L’outil reste loin des singularités pendant le dépôt</translation>
+        <source>The tool file with the number in the job holds the nozzle tip, and speeds have the unit in the remarks</source>
+        <translation>Le fichier outil du numéro dans le job contient la pointe de la buse, et les vitesses ont l&apos;unité des remarques</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/post.py"/>
         <source>The tool offset has the torch&apos;s length, and G500 is the machine&apos;s zero</source>
         <translation>Le correcteur d’outil a la longueur de la torche, et G500 est le zéro machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>The tool stays away from singularities while depositing</source>
+        <translation>L’outil reste loin des singularités pendant le dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
@@ -6368,13 +6398,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>The wire feeds what the beads take</source>
-        <translation>Le fil amène ce que les cordons demandent</translation>
+        <source>The whole part is deposited</source>
+        <translation>Toute la pièce est déposée</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens/post.py"/>
-        <source>The words that switch the deposit and the inputs are taken up in the PLC</source>
-        <translation>Les mots qui commutent le dépôt et les entrées sont traités dans l’automate</translation>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>The wire feed matches the volume of the beads</source>
+        <translation>L&apos;avance du fil correspond au volume des cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/post.py"/>
+        <source>The world frame of the controller is the robot base</source>
+        <translation>Le repère monde de la commande est la base du robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
+        <source>The world frame of the controller is the robot base, and joint speeds are the nominal ones</source>
+        <translation>Le repère monde de la commande est la base du robot, et les vitesses articulaires sont les nominales</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
@@ -6383,8 +6423,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
-        <source>There is no 3D view to show places in; open one.</source>
-        <translation>Il n&apos;y a pas de vue 3D où montrer des endroits ; ouvrez-en une.</translation>
+        <source>There is no 3D view to show the poses in; open one.</source>
+        <translation>Il n&apos;y a pas de vue 3D où montrer les poses ; ouvrez-en une.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
@@ -6613,8 +6653,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Travel speed there.</source>
-        <translation>Vitesse de la torche à cet endroit.</translation>
+        <source>Travel speed in this length.</source>
+        <translation>Vitesse de la torche sur cette longueur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -6623,8 +6663,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>TriggSpeed follows the speed of linear moves, and these are joint moves</source>
-        <translation>TriggSpeed suit la vitesse de mouvements linéaires, et ceux-ci sont des mouvements articulaires</translation>
+        <source>TriggSpeed follows the speed of linear moves, but this program has joint moves</source>
+        <translation>TriggSpeed suit la vitesse de mouvements linéaires, mais ce programme a des mouvements articulaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -6663,8 +6703,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>UFRAME and UTOOL of the numbers in the program are those of the cell</source>
-        <translation>UFRAME et UTOOL aux numéros du programme sont ceux de la cellule</translation>
+        <source>UFRAME and UTOOL with the numbers in the program match the cell</source>
+        <translation>UFRAME et UTOOL aux numéros du programme correspondent à la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
@@ -6683,13 +6723,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>URScript has no documented output at a time before a place</source>
-        <translation>URScript n&apos;a pas de sortie commutée un temps avant un lieu, d&apos;après ce qui est documenté</translation>
+        <source>URScript has no documented way to switch an output ahead of a point</source>
+        <translation>URScript n&apos;a pas de moyen documenté de commuter une sortie en avance sur un point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>URScript has no documented weave of its own</source>
-        <translation>URScript n&apos;a pas de balayage propre, d&apos;après la documentation</translation>
+        <source>URScript has no documented weave</source>
+        <translation>URScript n&apos;a pas de balayage documenté</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
@@ -6698,8 +6738,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>URScript sets an output when the robot enters the blend before it, not where the bead asks for it</source>
-        <translation>URScript règle une sortie quand le robot entre dans le lissage qui précède, et non où le cordon la demande</translation>
+        <source>URScript sets an output when the robot enters the blend before the point, not at the point</source>
+        <translation>URScript règle une sortie quand le robot entre dans le lissage avant le point, et non au point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -6720,11 +6760,6 @@
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Up</source>
         <translation>Monter</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/families/planner.py"/>
-        <source>Use beads {0} mm wider on either side, by process.bead_width, or a smaller allowance</source>
-        <translation>Utilisez des cordons plus larges de {0} mm de chaque côté, par process.bead_width, ou laissez moins à usiner</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -6748,8 +6783,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>V has two units</source>
-        <translation>V a deux unités</translation>
+        <source>V is used with two units</source>
+        <translation>V est employé avec deux unités</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
@@ -6758,8 +6793,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>VAL 3 has no documented output at a time before a place</source>
-        <translation>VAL 3 n&apos;a pas de sortie commutée un temps avant un lieu, d&apos;après ce qui est documenté</translation>
+        <source>VAL 3 has no documented way to set several outputs to one number</source>
+        <translation>VAL 3 n&apos;a pas de moyen documenté de mettre plusieurs sorties à un numéro</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
+        <source>VAL 3 has no documented way to switch an output ahead of a point</source>
+        <translation>VAL 3 n&apos;a pas de moyen documenté de commuter une sortie en avance sur un point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
@@ -6768,13 +6808,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>VAL 3 sets outputs while the moves before are still in the queue</source>
-        <translation>VAL 3 règle les sorties pendant que les mouvements précédents sont encore dans la file</translation>
+        <source>VAL 3 sets outputs while earlier moves are still in the queue</source>
+        <translation>VAL 3 règle les sorties alors que des mouvements précédents sont encore dans la file</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>VJ is a share of the largest speeds of the machine file, those of the axis that takes longest</source>
-        <translation>VJ est une part des plus grandes vitesses du fichier machine, celle de l&apos;axe qui met le plus de temps</translation>
+        <source>VJ is a share of the maximum speed, in the machine file, of the slowest axis of a move</source>
+        <translation>VJ est une part de la vitesse maximale, dans le fichier machine, de l&apos;axe le plus lent d&apos;un mouvement</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -6882,24 +6922,14 @@
         <translation>Numéro du balayage propre à la commande avec lequel les cordons sont déposés ; 0 ou aucun : droits.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>What carries the part carries its weight</source>
-        <translation>Ce qui porte la pièce porte son poids</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>What the polynomial gives: the true rotation about the tool axis, or RZ of the paper.</source>
-        <translation>Ce que donne le polynôme : la vraie rotation autour de l&apos;axe de l&apos;outil, ou le RZ de l&apos;article.</translation>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>What the robot carries, tool or part; or a machine with rotary axes.</source>
+        <translation>Ce que porte le robot, l&apos;outil ou la pièce ; ou une machine à axes rotatifs.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
         <source>What the robot carries. If the job is infeasible in the proposed cell, another position, another branch or a positioner is proposed and shown.</source>
         <translation>Ce que porte le robot. Si le travail ne peut se faire dans la cellule qui convient au robot, un autre emplacement, une autre branche ou un positionneur est proposé, et le robot y est montré.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Whether the robot carries the tool or the part, or a machine with rotary axes.</source>
-        <translation>Ce que porte le robot, la pièce ou l&apos;outil, ou une machine à axes rotatifs.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -7127,19 +7157,14 @@
         <translation>un cercle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>a comment that may be carried out, or a line that is too long</source>
-        <translation>un commentaire qui peut être exécuté, ou une ligne trop longue</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>a cone</source>
         <translation>un cône</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>a corner has no end from which the time of a trigger counts</source>
-        <translation>un coin n&apos;a pas de fin d&apos;où compterait le temps d&apos;un déclencheur</translation>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>a coordinate is not a number, or is larger than {0} mm; export it again</source>
+        <translation>une coordonnée n&apos;est pas un nombre, ou dépasse {0} mm ; exportez-le à nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/curves.py"/>
@@ -7197,11 +7222,6 @@
         <translation>une clé doit être un mot (ligne {0}) ; écrivez-en un devant les deux-points</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>a layer all around the hub is filled with {0}; strategy.fill = {1} needs regions with an end</source>
-        <translation>une couche sur tout le tour du moyeu est remplie de {0} ; strategy.fill = {1} est pour les régions qui ont une fin</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/slicing/tubes/iso_parameter.py"/>
         <source>a layer height of {0} mm is too large for the bend of the wall; lower it</source>
         <translation>une hauteur de couche de {0} mm est plus que ne permet le coude de la paroi ; réduisez-la</translation>
@@ -7247,19 +7267,14 @@
         <translation>un module demanderait plus de {0} données de vitesse ; utilisez moins de vitesses, ou un program.max_points plus petit</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>a move before G1, G21, G90 and a work offset are said</source>
-        <translation>un mouvement avant que G1, G21, G90 et un décalage d&apos;origine soient dits</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>a move before G1, G90 and G710 are said</source>
-        <translation>un mouvement avant que G1, G90 et G710 soient dits</translation>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <source>a move does not fit the form in which its position is recorded (joint or Cartesian)</source>
+        <translation>un mouvement ne convient pas à la forme dans laquelle sa position est enregistrée (articulaire ou cartésienne)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>a move of ArcTech is a linear one that stops, behind all the lines that belong to it</source>
-        <translation>un mouvement d&apos;ArcTech est linéaire et s&apos;arrête, derrière toutes les lignes qui en font partie</translation>
+        <source>a move of ArcTech must be linear and stop, and follow all lines that belong to it</source>
+        <translation>un mouvement d&apos;ArcTech doit être linéaire et s&apos;arrêter, et suivre toutes les lignes qui en font partie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_numbers.py"/>
@@ -7282,11 +7297,6 @@
         <translation>un mouvement prend {0} s, moins que les {1} s qui peuvent s&apos;écrire ; prenez une erreur de corde plus grande ou une vitesse plus faible</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_read.py"/>
-        <source>a move without a feed of its own</source>
-        <translation>un mouvement sans avance à lui</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/staubli/numbers.py"/>
         <source>a move would need {0} % of the largest joint speed, which cannot be written; use a speed that gives {1} to 100 %</source>
         <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, ce qui ne peut pas être écrit ; utilisez une autre vitesse, pour qu&apos;il soit de {1} à 100 %</translation>
@@ -7303,13 +7313,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>a part does not end</source>
-        <translation>une partie ne finit pas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>a part is loaded without stopping where it cannot be</source>
-        <translation>une partie est chargée sans arrêt là où cela ne se peut pas</translation>
+        <source>a part of the program has no end</source>
+        <translation>une partie du programme n&apos;a pas de fin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
@@ -7332,29 +7337,14 @@
         <translation>une pose a six nombres, et non {0} ; donnez [x, y, z, RX, RY, RZ]</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>a position is moved to in another way than it is recorded</source>
-        <translation>on va à une position autrement qu&apos;elle n&apos;est enregistrée</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>a position is not a number up to {0} mm; export it again</source>
-        <translation>une position n&apos;est pas un nombre d&apos;au plus {0} mm ; exportez-le à nouveau</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
-        <source>a position needs X Y Z, and a move in axes before it</source>
-        <translation>une position demande X Y Z, et un mouvement des axes avant elle</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>a position of a station or of base axes has one value per axis, from the first axis on; use 1, not {0}</source>
-        <translation>une position d&apos;une station ou d&apos;axes de base a une valeur pour chacun d&apos;eux à partir du premier ; utiliser 1, pas {0}</translation>
+        <source>a position needs X Y Z, and an earlier move in axis values</source>
+        <translation>une position demande X Y Z, et auparavant un mouvement en valeurs d&apos;axes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>a position on the part needs G94 and a work offset of its own</source>
-        <translation>une position sur la pièce demande G94 et un décalage d&apos;origine à elle</translation>
+        <source>a position on the part needs G94 and a work offset for the part</source>
+        <translation>une position sur la pièce demande G94 et une origine pièce propre à elle</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -7407,29 +7397,14 @@
         <translation>une région autour du moyeu n&apos;est nulle part aussi large qu&apos;un cordon ({0} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>a schedule is sent within a bead</source>
-        <translation>un programme de soudage est transmis à l&apos;intérieur d&apos;un cordon</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>a second U{0} is selected</source>
         <translation>un deuxième U{0} est choisi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>a second analogue output follows the speed, or a joint move, or without a deposit</source>
-        <translation>une seconde sortie analogique suit la vitesse, ou celle d&apos;un mouvement articulaire, ou sans dépôt</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/nc_read.py"/>
-        <source>a second analogue output is set</source>
-        <translation>une seconde sortie analogique est réglée</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>a second output is switched</source>
-        <translation>une seconde sortie est commandée</translation>
+        <source>a second analogue output follows the speed, or one does so on a joint move or without deposit</source>
+        <translation>une seconde sortie analogique suit la vitesse, ou l&apos;une le fait sur un mouvement articulaire ou sans dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -7472,11 +7447,6 @@
         <translation>une droite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>a temperature is waited for otherwise</source>
-        <translation>une température est attendue autrement</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>a time such as 0.1 s</source>
         <translation>un temps comme 0.1 s</translation>
@@ -7492,24 +7462,24 @@
         <translation>un tore</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>a track has no name here, it is {0}; remove unit</source>
-        <translation>un rail n&apos;a pas ici de nom à lui, c&apos;est {0} ; laisser unit de côté</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>a triangle in it has a point with a number of more than 64 bits</source>
         <translation>un triangle y a un point dont le numéro dépasse 64 bits</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
-        <source>a trigger is not of the module, or set twice</source>
-        <translation>un déclencheur n&apos;est pas du module, ou est défini deux fois</translation>
+        <source>a trigger is not declared in the module, or is set twice</source>
+        <translation>un déclencheur n&apos;est pas déclaré dans le module, ou est défini deux fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>a trigger is not set, or named twice, or the arc burns on</source>
-        <translation>un déclencheur n&apos;est pas défini, ou est nommé deux fois, ou l&apos;arc brûle encore</translation>
+        <source>a trigger is not set or is named twice, or the arc is still on</source>
+        <translation>un déclencheur n&apos;est pas défini ou est nommé deux fois, ou l&apos;arc est encore allumé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>a trigger needs a move that ends at its point, but the corner is rounded</source>
+        <translation>un déclencheur demande un mouvement qui finit à son point, mais l&apos;angle est arrondi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
@@ -7540,16 +7510,6 @@
         <location filename="../../freecad_am/brep/files/read.py"/>
         <source>a vertex of a triangle is not a number; export the part again</source>
         <translation>un sommet d&apos;un triangle n&apos;est pas un nombre ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>a weave is an argument of ArcL, which a dry run does not have; block weld and weave on the controller instead</source>
-        <translation>un balayage est un argument de ArcL, qu&apos;une marche à vide n&apos;a pas ; bloquez plutôt soudage et balayage sur la commande</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>a weave is an argument of ArcL, which program.schedule.by: arc writes</source>
-        <translation>un balayage est un argument de ArcL, que program.schedule.by: arc écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
@@ -7602,9 +7562,14 @@
         <translation>environ {0} sur {1} cm3 de cordons sont hors de {2}, qui a {3} mm d&apos;épaisseur, alors que les cordons ont {4} mm de large ; fixez process.bead_width, ou usinez l&apos;excès</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>above its maximum</source>
+        <translation>au-dessus de son maximum</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>absolute centres of arcs are not known; give I and J from the start of the arc</source>
-        <translation>les centres d&apos;arc absolus sont inconnus ; donnez I et J depuis le début de l&apos;arc</translation>
+        <source>absolute arc centres are not supported; give I and J from the start of the arc</source>
+        <translation>les centres d&apos;arc absolus ne sont pas pris en charge ; donnez I et J depuis le début de l&apos;arc</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -7707,11 +7672,6 @@
         <translation>un alias renvoie à lui-même ; écrivez la valeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>an analogue output that KRL sets between approximated moves is set ahead of the motion</source>
-        <translation>une sortie analogique que KRL règle entre des mouvements lissés l&apos;est en avance sur le mouvement</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>an angle such as 30 deg</source>
         <translation>un angle comme 30 deg</translation>
@@ -7747,14 +7707,19 @@
         <translation>il a un objet du type {0}, inconnu de 3MF</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>an output is switched too, or the arc burns already, or not yet</source>
-        <translation>une sortie est commutée aussi, ou l&apos;arc brûle déjà, ou pas encore</translation>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>an orientation is not a unit quaternion</source>
+        <translation>une orientation n&apos;est pas un quaternion unitaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>an output switches the deposit too, or the arc is lit or ended twice</source>
-        <translation>une sortie commute aussi le dépôt, ou l&apos;arc est allumé ou terminé deux fois</translation>
+        <source>an output switches the deposit too, or the arc is started or ended twice</source>
+        <translation>une sortie commute aussi le dépôt, ou l&apos;arc est amorcé ou terminé deux fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <source>an output switches the deposit too, the arc is already on, or it is not on yet</source>
+        <translation>une sortie commute aussi le dépôt, l&apos;arc est déjà allumé, ou il ne l&apos;est pas encore</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
@@ -7782,29 +7747,19 @@
         <translation>plage d&apos;angles</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>another analogue input is read than the one that is waited for</source>
-        <translation>une autre entrée analogique est lue que celle qui est attendue</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>another computation is running; wait until it ends, or cancel it</source>
         <translation>autre chose est en cours de calcul ; attendez que ce soit fini, ou annulez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>another program is called within a bead</source>
-        <translation>un autre programme est appelé au sein d&apos;un cordon</translation>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>another mechanical unit is active than in earlier moves</source>
+        <translation>une autre unité mécanique est active que dans les mouvements précédents</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/placement/place.py"/>
         <source>another set-up</source>
         <translation>une autre installation</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>another unit is active than in moves before</source>
-        <translation>une autre unité est active que dans les mouvements d&apos;avant</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -7813,8 +7768,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
-        <source>arc instructions switch the deposit at times of their own</source>
-        <translation>les instructions d&apos;arc commutent le dépôt à leurs propres instants</translation>
+        <source>arc instructions time the switching of the deposit themselves</source>
+        <translation>les instructions d&apos;arc règlent elles-mêmes les instants de commutation du dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -7823,8 +7778,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>arcs are in the plane of X and Z (G18), which Klipper and other controllers turn in opposite ways; let the slicer write arcs in another plane, or lines only</source>
-        <translation>les arcs sont dans le plan X-Z (G18), que Klipper et d&apos;autres commandes tournent en sens opposés ; faites écrire au trancheur des arcs dans un autre plan ou seulement des droites</translation>
+        <source>arcs are in the plane of X and Z (G18), which Klipper and other controllers turn in opposite ways; set the slicer to write arcs in another plane, or lines only</source>
+        <translation>les arcs sont dans le plan X Z (G18), que Klipper et d&apos;autres commandes parcourent en sens opposés ; réglez le trancheur pour qu&apos;il écrive des arcs dans un autre plan, ou seulement des lignes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -7842,11 +7797,6 @@
         <translation>comme FreeCAD affiche les vitesses</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>as far as is known controllers weave on linear moves, and these are joint moves</source>
-        <translation>les commandes balaient sur des mouvements linéaires, à ce que l&apos;on sait, et ceux-ci sont articulaires</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>as found</source>
         <translation>tel que trouvé</translation>
@@ -7862,14 +7812,9 @@
         <translation>comme sur le pupitre de</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/canvas.py"/>
-        <source>as the axes can</source>
-        <translation>selon les axes</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>as wide as the room that they have, {0} to {1} mm</source>
-        <translation>la largeur de la place qu’ils ont, {0} à {1} mm</translation>
+        <source>as wide as the available space, {0} to {1} mm</source>
+        <translation>de la largeur de l&apos;espace disponible, {0} à {1} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/new_job.py"/>
@@ -7948,18 +7893,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>axes 2 and 3 are the same line</source>
-        <translation>les axes 2 et 3 sont la même droite</translation>
+        <source>axes 2 and 3 coincide</source>
+        <translation>les axes 2 et 3 coïncident</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>axes move in a frame other than the machine frame</source>
         <translation>des axes sont déplacés dans un autre repère que celui de la machine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
-        <source>axes that follow each other are the same line</source>
-        <translation>deux axes qui se suivent sont la même droite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -7983,8 +7923,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>axis {0} has no limits, but joint values of the controller count every turn up to a limit; use a limit set with one for axis {1}</source>
-        <translation>l&apos;axe {0} n&apos;a pas de limites, mais les valeurs articulaires de ce contrôleur comptent chaque tour jusqu&apos;à une limite ; utilisez des limites qui en ont une pour l&apos;axe {1}</translation>
+        <source>axis {0} has no limits, but the controller needs limits to count the turns of its joint values; use a limit set that limits axis {1}</source>
+        <translation>l&apos;axe {0} n&apos;a pas de limites, mais la commande en a besoin pour compter les tours de ses valeurs articulaires ; utilisez un jeu de limites qui limite l&apos;axe {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/records.py"/>
@@ -8003,8 +7943,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
-        <source>axis {0} is up to {1} {2} from the planned value</source>
-        <translation>l&apos;axe {0} est jusqu&apos;à {1} {2} de la valeur planifiée</translation>
+        <source>axis {0} is up to {1} {2} off the planned value</source>
+        <translation>l&apos;axe {0} s&apos;écarte jusqu&apos;à {1} {2} de la valeur planifiée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
@@ -8092,14 +8032,9 @@
         <translation>les cordons sont prévus hauts de {0} à {1} mm, {2} mm en moyenne, pour des couches de {3} mm{4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>beads are woven otherwise than planned</source>
-        <translation>les cordons sont balayés autrement que prévu</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>beads change their schedule, but this controller appears to set outputs between moves ahead of the motion; let start and end change only the speed, or use another controller</source>
-        <translation>les cordons changent de programme de soudage, et ce contrôleur met les sorties entre les mouvements en avance sur le mouvement, autant qu&apos;on sache ; ne donnez à start et end que d&apos;autres vitesses, ou prenez un autre contrôleur</translation>
+        <source>beads change their schedule, but this controller appears to set outputs before the motion reaches them; change only the speed at start and end, or use another controller</source>
+        <translation>les cordons changent de programme de soudage, mais cette commande semble régler les sorties avant que le mouvement ne les atteigne ; ne changez que la vitesse dans start et end, ou utilisez une autre commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/void_and_double.py"/>
@@ -8177,19 +8112,19 @@
         <translation>au-delà d&apos;une limite</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/inspection/view.py"/>
+        <source>beyond the edges</source>
+        <translation>au-delà des bords</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/plots/deviation.py"/>
         <source>beyond the faces</source>
         <translation>au-delà des faces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>block numbers do not rise</source>
-        <translation>les numéros de bloc ne montent pas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>blocks with a time are compressed into one, which would take the time of the last</source>
-        <translation>des blocs qui disent un temps sont comprimés en un seul, qui prendrait le temps du dernier</translation>
+        <source>block numbers do not increase</source>
+        <translation>les numéros de bloc ne sont pas croissants</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences_page.py"/>
@@ -8225,11 +8160,6 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>bottom</source>
         <translation>bas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/plan.py"/>
-        <source>bounding the objective</source>
-        <translation>encadrement de l’objectif</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
@@ -8292,9 +8222,19 @@
         <translation>les cellules sont écrites en .yaml ; terminez le nom ainsi</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/colouring.py"/>
+        <source>centre bead</source>
+        <translation>cordon central</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
-        <source>check it where it was drawn (Part, Check geometry), and draw those faces again or sew them</source>
-        <translation>vérifiez-le là où il a été dessiné (Part, Vérifier la géométrie), et redessinez ou cousez ces faces</translation>
+        <source>check it in the CAD system or by Part, Check geometry, and redraw or sew those faces</source>
+        <translation>vérifiez-le dans le système de CAO ou par Part, Vérifier la géométrie, et redessinez ou cousez ces faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/joint_path.py"/>
+        <source>checking the arm for collisions</source>
+        <translation>vérification des collisions du bras</translation>
     </message>
     <message>
         <location filename="../../freecad_am/report/of_document.py"/>
@@ -8388,8 +8328,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
-        <source>closes a gap</source>
-        <translation>comble un jour</translation>
+        <source>closing bead</source>
+        <translation>cordon de comblement</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -8417,6 +8357,11 @@
         <translation>recherche de la couche {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/plan.py"/>
+        <source>computing the lower bound of the objective</source>
+        <translation>calcul de la borne inférieure de l’objectif</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>condition</source>
         <translation>condition</translation>
@@ -8430,6 +8375,11 @@
         <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>cone, R {:.4g} mm, half angle {:.4g}°</source>
         <translation>cône, R {:.4g} mm, demi-angle {:.4g}°</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>configuration supervision (ConfL) is on, but its positions name no configurations</source>
+        <translation>la surveillance des configurations (ConfL) est active, mais ses positions ne nomment pas de configurations</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -8463,8 +8413,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
-        <source>contour, or closed</source>
-        <translation>contour, ou fermé</translation>
+        <source>contour or closed bead</source>
+        <translation>contour ou cordon fermé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -8475,6 +8425,11 @@
         <location filename="../../freecad_am/core/geometry/regions/region.py"/>
         <source>contours that cross or touch were repaired; {0} mm^2 changed</source>
         <translation>des contours qui se croisent ou se touchent ont été réparés ; {0} mm^2 ont changé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>controllers weave on linear moves only, and this program has joint moves</source>
+        <translation>les commandes ne balaient que sur des mouvements linéaires, et ce programme a des mouvements articulaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -8495,11 +8450,6 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>counter-clockwise</source>
         <translation>sens antihoraire</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>cubes of the deposit against wire section x feed x time, or what beads count where no wire is known</source>
-        <translation>cubes du dépôt contre section du fil x vitesse x temps, ou ce que comptent les cordons là où aucun fil n&apos;est connu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/planned.py"/>
@@ -8543,8 +8493,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>deposit and closed substrate, at {0} g/cm3 (process.density), compared with the payload of {1}, and its moment about the last axis, as it grows</source>
-        <translation>dépôt et substrat fermé, à {0} g/cm3 (process.density), comparés à la charge de {1}, et son moment autour du dernier axe, à mesure qu&apos;il croît</translation>
+        <source>deposit and closed substrate, at {0} g/cm3 (process.density), compared with the payload of {1}, and its moment about the last axis as the deposit grows</source>
+        <translation>dépôt et substrat fermé, à {0} g/cm3 (process.density), comparés à la charge de {1}, et son moment autour du dernier axe à mesure que le dépôt croît</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -8608,8 +8558,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>direct moves of steppers are not known; let the slicer write G1</source>
-        <translation>les mouvements directs des moteurs pas à pas ne sont pas connus ; faites écrire G1 par le trancheur</translation>
+        <source>direct stepper moves are not supported; set the slicer to write G1</source>
+        <translation>les mouvements directs des moteurs pas à pas ne sont pas pris en charge ; réglez le trancheur pour qu&apos;il écrive G1</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -8618,23 +8568,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>distance by which the predicted deposit, in cubes of {0} mm filled bead by bead from the wire feed, extends beyond {1} points on the part faces, along their normals</source>
-        <translation>de combien un dépôt de cubes de {0} mm, remplis cordon par cordon de ce que le fil apporte, dépasse {1} endroits des faces de la pièce, le long de leurs normales</translation>
+        <source>distance by which the predicted deposit (cubes of {0} mm, filled bead by bead from the wire feed) extends beyond the part at {1} points of its faces, along their normals</source>
+        <translation>distance dont le dépôt prédit (cubes de {0} mm, remplis cordon par cordon par l&apos;avance du fil) dépasse la pièce en {1} points de ses faces, le long de leurs normales</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>distance in space of each point to the layer below, against what the strategy allows</source>
-        <translation>distance dans l’espace de chaque point à la couche du dessous, comparée à ce que permet la stratégie</translation>
+        <source>distance of each point from the layer below, compared with the range that the strategy allows</source>
+        <translation>distance de chaque point à la couche inférieure, comparée à la plage que permet la stratégie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>distance of {0} bead points to the original shape, independent of slicing</source>
-        <translation>distance de {0} endroits des cordons à la forme elle-même, que le tranchage n’emploie pas</translation>
+        <source>distance of {0} bead points from the original shape, independent of slicing</source>
+        <translation>distance de {0} points des cordons à la forme d&apos;origine, indépendamment du tranchage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>distance of {0} bead points to the original shape, less the layer shift from a scan</source>
-        <translation>distance de {0} endroits des cordons à la forme elle-même, moins ce dont un scan a déplacé leurs couches</translation>
+        <source>distance of {0} bead points from the original shape, without the layer shift due to a scan</source>
+        <translation>distance de {0} points des cordons à la forme d&apos;origine, sans le décalage des couches dû à un scan</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/pictures.py"/>
@@ -8650,11 +8600,6 @@
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>down</source>
         <translation>bas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
-        <source>draw it apart there, or let it overlap there and fuse it (Part, Boolean)</source>
-        <translation>écartez-le à cet endroit, ou faites-le s’y recouvrir et fusionnez-le (Part, Booléen)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/report/of_document.py"/>
@@ -8673,8 +8618,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>each short piece of a bead, against its build direction, above earlier deposit with its actual width and existing parts</source>
-        <translation>chaque court morceau de cordon, contre sa direction de dépôt, au-dessus du dépôt antérieur à sa largeur réelle et des pièces existantes</translation>
+        <source>earlier deposit, at its actual width, or an existing part below each short piece of a bead, against the build direction</source>
+        <translation>dépôt antérieur, à sa largeur réelle, ou pièce existante sous chaque court morceau de cordon, contre la direction de dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
@@ -8713,12 +8658,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>
-        <source>events between moves are not in the planned order</source>
-        <translation>les événements entre les mouvements ne sont pas dans l&apos;ordre planifié</translation>
+        <source>events between moves are out of order compared with the plan</source>
+        <translation>les événements entre les mouvements ne sont pas dans l&apos;ordre du plan</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>every point of the motion, rapids included, against the machine file</source>
+        <source>every point of the motion, rapids included, compared with the machine file</source>
         <translation>chaque point du mouvement, rapides compris, comparé au fichier machine</translation>
     </message>
     <message>
@@ -8733,18 +8678,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>external axes do not run at {0} % of their speeds</source>
-        <translation>les axes externes ne tournent pas à {0} % de leurs vitesses</translation>
+        <source>external axes are not set to {0} % of their speeds</source>
+        <translation>les axes externes ne sont pas réglés à {0} % de leurs vitesses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>external axes have no value, or their unit is not active, or not the object&apos;s</source>
-        <translation>des axes externes n&apos;ont pas de valeur, ou leur unité n&apos;est pas active, ou n&apos;est pas celle de l&apos;objet</translation>
+        <source>external axes have no value, or their mechanical unit is not active or does not carry the work object</source>
+        <translation>des axes externes n&apos;ont pas de valeur, ou leur unité mécanique n&apos;est pas active ou ne porte pas l&apos;objet de travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>external axes would be numbered up to {0}, but the controller has only {1}; use a smaller first number</source>
+        <translation>les axes externes seraient numérotés jusqu&apos;à {0}, mais la commande n&apos;en a que {1} ; utilisez un premier numéro plus petit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>external axes would move although it is fixed</source>
-        <translation>des axes externes bougeraient là où il est à l&apos;arrêt</translation>
+        <source>external axes would move although the instruction does not move the robot</source>
+        <translation>des axes externes bougeraient alors que l&apos;instruction ne déplace pas le robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -8767,11 +8717,6 @@
         <translation>échoué</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/path/colouring.py"/>
-        <source>faster than it can</source>
-        <translation>plus vite qu&apos;elle ne peut</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>feature</source>
         <translation>élément à déposer</translation>
@@ -8788,8 +8733,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/colouring.py"/>
-        <source>fill, or open</source>
-        <translation>remplissage, ou ouvert</translation>
+        <source>fill or open bead</source>
+        <translation>remplissage ou cordon ouvert</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/regions/region.py"/>
@@ -8830,6 +8775,11 @@
         <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>first layer: {} contours, {:.1f} mm</source>
         <translation>première couche : {} contours, {:.1f} mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>fitting the points to the part</source>
+        <translation>ajustement des points sur la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -8987,11 +8937,6 @@
         <translation>donnez la géométrie avec plus de chiffres</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/methods/point_by_point.py"/>
-        <source>going from point to point</source>
-        <translation>passage de point en point</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>grey</source>
         <translation>gris</translation>
@@ -9005,6 +8950,16 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>gyroid</source>
         <translation>gyroïde</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
+        <source>has another dimension</source>
+        <translation>a une autre dimension</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/fields/quantities.py"/>
+        <source>has no unit</source>
+        <translation>n&apos;a pas d&apos;unité</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -9023,8 +8978,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>height of each point over the nearest place of the layer below, along the build direction there</source>
-        <translation>hauteur de chaque point au-dessus de l’endroit le plus proche de la couche inférieure, selon la direction de dépôt à cet endroit</translation>
+        <source>height of each point above the nearest point of the layer below, along the build direction there</source>
+        <translation>hauteur de chaque point au-dessus du point le plus proche de la couche inférieure, selon la direction de dépôt à cet endroit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -9035,16 +8990,6 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>honeycomb</source>
         <translation>nid d&apos;abeilles</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>how a job waits for an analogue input differs with the controller&apos;s options, and the post yaskawa knows none</source>
-        <translation>la façon dont un job attend une entrée analogique dépend des options de la commande, et le post-processeur yaskawa n&apos;en connaît aucune</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>how an INFORM job switches an output ahead of a place was not confirmed</source>
-        <translation>la façon dont un programme INFORM commute une sortie avant un lieu n&apos;a pas été confirmée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
@@ -9060,11 +9005,6 @@
         <location filename="../../freecad_am/core/strategies/clearance/nozzle_check.py"/>
         <source>in layers {0} to {1}, tool axes are tilted back for clearance, by up to {2} deg</source>
         <translation>dans les couches {0} à {1}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {2} deg</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/path/colouring.py"/>
-        <source>in the middle</source>
-        <translation>au milieu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -9093,13 +9033,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>inverse condition number of the Jacobian at the points of the deposit, against the least one allowed</source>
-        <translation>inverse du conditionnement de la jacobienne aux points du dépôt, comparé au minimum permis</translation>
+        <source>inverse condition number of the Jacobian at the deposit points, compared with the required minimum</source>
+        <translation>inverse du conditionnement de la jacobienne aux points du dépôt, comparé au minimum requis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>inverse condition number {0} is below the required {1}: too near a singularity</source>
-        <translation>la condition {0} est au-dessous de {1} demandés : trop près d&apos;une singularité</translation>
+        <source>inverse condition number {0} is below the required {1}, too close to a singularity; move the part in the cell, or lower joints.min_condition</source>
+        <translation>l&apos;inverse du conditionnement {0} est au-dessous des {1} requis, trop près d&apos;une singularité ; déplacez la pièce dans la cellule, ou diminuez joints.min_condition</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
@@ -9132,16 +9072,6 @@
         <translation>est un angle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/fields/quantities.py"/>
-        <source>is of another dimension</source>
-        <translation>est d&apos;une autre dimension</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/fields/quantities.py"/>
-        <source>is without unit</source>
-        <translation>est sans unité</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>iso-height</source>
         <translation>hauteur constante</translation>
@@ -9168,13 +9098,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it calls a subprogram; write its moves out</source>
+        <source>it calls a subprogram; write out its moves</source>
         <translation>il appelle un sous-programme ; écrivez ses déplacements</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>it calls another program within a bead</source>
+        <translation>il appelle un autre programme au sein d&apos;un cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>it calls itself</source>
         <translation>il s&apos;appelle lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>it cancels an object while the program runs; remove the object in the slicer</source>
+        <translation>il abandonne un objet pendant le programme ; retirez l&apos;objet dans le trancheur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/planned.py"/>
@@ -9205,6 +9145,11 @@
         <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>it closes on itself both ways; choose a tube that is closed around</source>
         <translation>elle se ferme sur elle-même dans les deux sens ; choisissez un tube fermé sur son tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
+        <source>it contains characters other than ASCII</source>
+        <translation>il contient d&apos;autres caractères que l&apos;ASCII</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -9253,8 +9198,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>it declares a document type, which no controller writes</source>
-        <translation>il déclare un type de document, ce qu&apos;aucune commande n&apos;écrit</translation>
+        <source>it declares a document type, which controllers never write</source>
+        <translation>il déclare un type de document, ce que les commandes n&apos;écrivent jamais</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -9277,14 +9222,9 @@
         <translation>il ne finit pas par M30, ou s&apos;appelle lui-même</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>it does not say how many pulses there are to a degree of each axis, a mm of a track</source>
-        <translation>il ne dit pas combien d&apos;impulsions fait un degré de chaque axe, ou un mm d&apos;un rail</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>it does not say what unit V has</source>
-        <translation>il ne dit pas quelle unité a V</translation>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>it does not set the axes to which the feed applies (FGROUP)</source>
+        <translation>il ne règle pas les axes auxquels l&apos;avance s&apos;applique (FGROUP)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
@@ -9292,14 +9232,9 @@
         <translation>elle ne tourne pas autour de l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it drops an object while the program runs; let the slicer leave the object out</source>
-        <translation>il abandonne un objet pendant le programme ; retirez l&apos;objet dans le trancheur</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>it ends before the last move does</source>
-        <translation>il finit avant le dernier mouvement</translation>
+        <source>it ends before its last move</source>
+        <translation>il finit avant son dernier mouvement</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
@@ -9437,6 +9372,11 @@
         <translation>il n&apos;a pas de faces ; choisissez une pièce avec les faces de la paroi</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>it has no moves</source>
+        <translation>il n&apos;a pas de mouvements</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/interop.py"/>
         <source>it has no path; choose a toolpath, joint path or program</source>
         <translation>il n&apos;a pas de trajectoire ; choisissez une trajectoire d&apos;outil, une trajectoire articulaire ou un programme</translation>
@@ -9480,11 +9420,6 @@
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>it has no {0}; choose from the open ends of the mesh, sorted by height: {1}</source>
         <translation>il n&apos;a pas de {0} ; choisissez parmi les extrémités ouvertes du maillage, par hauteur : {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>it has other characters than ASCII</source>
-        <translation>il contient d&apos;autres caractères que l&apos;ASCII</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
@@ -9628,8 +9563,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it is declared behind an instruction</source>
-        <translation>il est déclaré après une instruction</translation>
+        <source>it is declared after an instruction; declarations come first</source>
+        <translation>il est déclaré après une instruction ; les déclarations viennent d&apos;abord</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/catalogue.py"/>
@@ -9680,11 +9615,6 @@
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>it is nested too deeply for a machine file; choose another file</source>
         <translation>ses niveaux sont trop nombreux pour un fichier de machine ; choisissez un autre fichier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it is none of the lines that ArcTech has here, or names other data than the ones before it</source>
-        <translation>ce n&apos;est aucune des lignes qu&apos;ArcTech a ici, ou elle nomme d&apos;autres données que celles d&apos;avant</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -9797,11 +9727,6 @@
         <translation>ce n&apos;est pas une seule fonction de la première ligne à la dernière</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>it is not said which axes the feed is the speed of</source>
-        <translation>il n&apos;est pas dit de quels axes l&apos;avance est la vitesse</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
         <source>it is not text in UTF-8</source>
         <translation>ce n&apos;est pas un texte en UTF-8</translation>
@@ -9823,8 +9748,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it is set ahead of the motion, or its outputs cannot carry such a number</source>
-        <translation>il est mis en avance sur le mouvement, ou ses sorties ne peuvent transmettre un tel numéro</translation>
+        <source>it is set ahead of the motion, or its outputs are too few for the number</source>
+        <translation>il est réglé en avance sur le mouvement, ou ses sorties sont trop peu nombreuses pour le numéro</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
@@ -9857,14 +9782,24 @@
         <translation>il est tronqué : son dernier solide n&apos;a pas de fin ; exportez la pièce de nouveau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>it is waited for an analogue input within a bead</source>
-        <translation>une entrée analogique est attendue au milieu d&apos;un cordon</translation>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
+        <source>it is unconfirmed how an INFORM job switches an output ahead of a point</source>
+        <translation>il n&apos;est pas confirmé comment un job INFORM commute une sortie en avance sur un point</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>it is waited otherwise than planned</source>
-        <translation>les attentes sont autres que planifié</translation>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>it is unconfirmed that ArcL weaves when the robot moves the part below a fixed torch</source>
+        <translation>il n&apos;est pas confirmé que ArcL balaie quand le robot déplace la pièce sous une torche fixe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>it is unconfirmed that TriggSpeed follows the speed relative to a moving part</source>
+        <translation>il n&apos;est pas confirmé que TriggSpeed suive la vitesse relative à une pièce mobile</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
+        <source>it is unconfirmed whether the speed of linear moves includes the motion of the track, which depends on the setup of the rail; use `motion: joint`, which keeps the speed by times</source>
+        <translation>il n&apos;est pas confirmé si la vitesse des mouvements linéaires comprend le mouvement du rail, ce qui dépend de sa configuration ; utilisez `motion: joint`, qui tient la vitesse par des durées</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
@@ -9882,9 +9817,24 @@
         <translation>il est à {0} mm hors du plan du fil et de son axe ; dessinez le fil dans un plan qui contient l&apos;axe</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>it loads a part where the robot cannot stop</source>
+        <translation>il charge une partie là où le robot ne peut pas s&apos;arrêter</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>it may hold only the letters A to Z, digits and underscores</source>
         <translation>il ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <source>it mixes joint and Cartesian positions</source>
+        <translation>il mêle des positions articulaires et cartésiennes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>it mixes positions in more than one frame</source>
+        <translation>il mêle des positions dans plus d&apos;un repère</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -9892,24 +9842,34 @@
         <translation>il ne déplace qu&apos;un moteur ; retirez-le</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>it moves before G1, G21, G90 and a work offset are set</source>
+        <translation>il se déplace avant que G1, G21, G90 et une origine pièce soient réglés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>it moves before G1, G90 and G710 are set</source>
+        <translation>il se déplace avant que G1, G90 et G710 soient réglés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>it moves other groups than the programs before</source>
-        <translation>il déplace d&apos;autres groupes que les programmes précédents</translation>
+        <source>it moves other motion groups than the programs before it</source>
+        <translation>il déplace d&apos;autres groupes de mouvement que les programmes précédents</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>it moves without a tool, without the platform, or in joints where positions are given</source>
-        <translation>il se déplace sans outil, sans plateau, ou en valeurs articulaires là où des positions sont dites</translation>
+        <source>it moves without a tool or platform, or in joint values where positions are given</source>
+        <translation>il se déplace sans outil ou sans plateau, ou en valeurs articulaires là où des positions sont données</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <source>it moves without setting a feed</source>
+        <translation>il se déplace sans régler d&apos;avance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>it must start with {0}</source>
         <translation>il doit commencer par {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/followed.py"/>
-        <source>it names turns of axes other than the last one, which cannot be simulated; use joint values for these positions</source>
-        <translation>il nomme des tours d&apos;autres axes que le dernier, ce qui ne peut être suivi ; donnez ces positions en valeurs d&apos;axes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -9923,13 +9883,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it prints a pattern of the machine&apos;s own; leave it out</source>
-        <translation>il imprime un motif propre à la machine ; retirez-le</translation>
+        <source>it prints a built-in pattern of the machine; remove it</source>
+        <translation>il imprime un motif intégré à la machine ; retirez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it prints copies side by side; print one</source>
-        <translation>il imprime des copies côte à côte ; n&apos;en imprimez qu&apos;une</translation>
+        <source>it prints copies side by side; export a single copy</source>
+        <translation>il imprime des copies côte à côte ; exportez-en une seule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>it reads another analogue input than the one it waits for</source>
+        <translation>il lit une autre entrée analogique que celle qu&apos;il attend</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
@@ -9943,17 +9908,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it repeats lines of the program; write the moves out</source>
-        <translation>il répète des lignes du programme ; écrivez les mouvements</translation>
+        <source>it repeats lines of the program; write out the moves</source>
+        <translation>il répète des lignes du programme ; écrivez les déplacements</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it returns from a subprogram, or repeats the program; leave it out</source>
+        <source>it returns from a subprogram, or repeats the program; remove it</source>
         <translation>il revient d&apos;un sous-programme ou répète le programme ; retirez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it returns to a stored position; write the move out</source>
+        <source>it returns to a stored position; write out the move</source>
         <translation>il revient à une position mémorisée ; écrivez le déplacement</translation>
     </message>
     <message>
@@ -9962,29 +9927,34 @@
         <translation>il revient à son départ, en {0}, si bien que la dernière couche recouvrirait la première ; retirez une arête</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>it rounds corners or accelerates in a way that is not understood</source>
-        <translation>il arrondit les angles ou accélère d&apos;une façon qui n&apos;est pas comprise</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it scales axes; leave it out</source>
+        <source>it scales axes; remove it</source>
         <translation>il met les axes à l&apos;échelle ; retirez-le</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>it sends a schedule within a bead</source>
+        <translation>il transmet un programme de soudage au sein d&apos;un cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <source>it sets a second analogue output</source>
+        <translation>il règle une seconde sortie analogique</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
+        <source>it sets tool or platform a second time</source>
+        <translation>il règle l&apos;outil ou le plateau une seconde fois</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it shifts the origin; leave it out, or use G92</source>
+        <source>it shifts the origin; remove it, or use G92</source>
         <translation>il décale l&apos;origine ; retirez-le ou utilisez G92</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/followed.py"/>
-        <source>it starts with a position without a configuration of the arm; set it in the cell, branch: [front, up, flip]</source>
-        <translation>il commence par une position et ne nomme aucune configuration du bras ; indiquez-la dans la cellule, branch: [front, up, flip]</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
-        <source>it still does with {0} (all tested); {1}</source>
-        <translation>elle la touche encore avec {0} (tous essayés) ; {1}</translation>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>it switches a second output</source>
+        <translation>il commute une seconde sortie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
@@ -9995,6 +9965,11 @@
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>it turns back by {0} deg at {1}: layers would cut through the deposit; choose edges that lead forward</source>
         <translation>il rebrousse de {0} deg en {1} : des couches traverseraient le dépôt ; choisissez des arêtes qui mènent en avant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>it waits for an analogue input within a bead</source>
+        <translation>il attend une entrée analogique au sein d&apos;un cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/solids/equidistant.py"/>
@@ -10057,6 +10032,11 @@
         <translation>ses colonnes ont des unités différentes : {0} ; exportez-les dans une seule</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>its comment may be executed, or its line is too long</source>
+        <translation>son commentaire peut être exécuté, ou sa ligne est trop longue</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
         <source>its curved faces are tangent to {0}, which is flat; select the wall faces, or name them in part.faces of a job</source>
         <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
@@ -10093,8 +10073,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>its first axis slides and carries the six that turn, as a track does</source>
-        <translation>son premier axe coulisse et porte les six qui tournent, comme un rail</translation>
+        <source>its first axis is prismatic and carries the six revolute axes, like a track</source>
+        <translation>son premier axe est prismatique et porte les six axes rotatifs, comme un rail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -10113,8 +10093,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>its header names other motion groups than programs before</source>
+        <source>its header names other motion groups than the programs before it</source>
         <translation>son en-tête nomme d&apos;autres groupes de mouvement que les programmes précédents</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>its inverse solutions do not reproduce its poses</source>
+        <translation>ses solutions inverses ne redonnent pas ses poses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -10138,8 +10123,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
-        <source>its module is called {0}, but the file has another name, or another file has the same one</source>
-        <translation>son module s&apos;appelle {0}, mais pas le fichier, ou un autre porte ce nom aussi</translation>
+        <source>its module is called {0}, but the file has another name, or another module has the same name</source>
+        <translation>son module s&apos;appelle {0}, mais le fichier a un autre nom, ou un autre module a le même nom</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
@@ -10152,6 +10137,16 @@
         <translation>ses déplacements sont {0} et strategy.roles vaut {1} : il ne reste rien à déposer ; nommez d&apos;autres rôles</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>its moves use different external axes</source>
+        <translation>ses mouvements emploient des axes externes différents</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>its moves use more than one track or station</source>
+        <translation>ses mouvements emploient plus d&apos;un rail ou d&apos;une station</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
         <source>its operation {0} deposits nothing; export only the operations that deposit</source>
         <translation>l&apos;une de ses opérations est {0}, qui ne dépose rien ; n&apos;exportez que les opérations qui déposent</translation>
@@ -10162,29 +10157,24 @@
         <translation>ses positions ne sont pas des impulsions d&apos;un seul outil</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>its rounding of corners or acceleration is not understood</source>
+        <translation>son lissage d&apos;angles ou son accélération n&apos;est pas compris</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>its routine {0} and the file have different names; rename one</source>
         <translation>sa routine {0} et le fichier ont des noms différents ; renommez l&apos;un des deux</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
-        <source>its solutions do not give back its poses</source>
-        <translation>ses solutions ne redonnent pas ses poses</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>its speed is limited, or its tool fixed, in a way that is not understood</source>
-        <translation>sa vitesse est limitée, ou son outil fixé, d&apos;une façon qui n&apos;est pas comprise</translation>
+        <source>its speed limit or the fixture of its tool is not understood</source>
+        <translation>sa limite de vitesse ou la fixation de son outil n&apos;est pas comprise</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/surface_patch.py"/>
         <source>its surface ({0}) cannot be converted to a spline; rebuild the face, for instance as a loft</source>
         <translation>sa surface ({0}) ne peut pas être dite par une spline ; reconstruisez la face, par exemple par lissage</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>its time, speed or blend is none that is kept</source>
-        <translation>sa durée, sa vitesse ou son lissage n&apos;est pas de ceux qui sont tenus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/views/joint_path.py"/>
@@ -10193,8 +10183,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>its triggers are not numbered in a row</source>
-        <translation>ses déclencheurs ne sont pas numérotés à la suite</translation>
+        <source>its triggers are not numbered consecutively</source>
+        <translation>ses déclencheurs ne sont pas numérotés de suite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -10213,8 +10203,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>its weld data has no speed, or is of another seam</source>
-        <translation>ses données de soudage n&apos;ont pas de vitesse, ou sont d&apos;un autre cordon</translation>
+        <source>its weld data has no speed, or belongs to another seam</source>
+        <translation>ses données de soudage n&apos;ont pas de vitesse, ou appartiennent à un autre cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/placed.py"/>
@@ -10237,11 +10227,6 @@
         <translation>articulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>joint and Cartesian positions are mixed</source>
-        <translation>positions articulaires et cartésiennes sont mêlées</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>joint limits (Fournier)</source>
         <translation>limites articulaires (Fournier)</translation>
@@ -10260,11 +10245,6 @@
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>joint margin</source>
         <translation>marge articulaire</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/beads/chord_error.py"/>
-        <source>joint motion deviates from the bead between two points, no matter how many are added: it is near a singularity</source>
-        <translation>le mouvement articulaire quitte le cordon entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;une singularité</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
@@ -10398,8 +10378,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>
-        <source>layers begin at other places than planned</source>
-        <translation>des couches commencent ailleurs que planifié</translation>
+        <source>layers do not begin where planned</source>
+        <translation>les couches ne commencent pas là où c&apos;est prévu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
@@ -10432,11 +10412,6 @@
         <translation>`layers: {0}` n&apos;a pas de faces de départ ; utilisez layers: geodesic ou offset, ou omettez les faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>laying the points onto the part</source>
-        <translation>pose des points sur la pièce</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
         <source>lead and tilt together already exceed max_tilt ({0} deg); reduce them or raise the limit</source>
         <translation>l&apos;angle d&apos;avance et l&apos;inclinaison ensemble dépassent déjà max_tilt ({0} deg) ; réduisez-les ou augmentez la limite</translation>
@@ -10447,14 +10422,14 @@
         <translation>minimum permis</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>let the machine begin with the robot, and name the track in `cell.external` with `carries: robot`</source>
-        <translation>faites commencer la machine au robot, et nommez le rail dans `cell.external` avec `carries: robot`</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>level</source>
         <translation>à plat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
+        <source>limited by the axes</source>
+        <translation>limité par les axes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model_notes.py"/>
@@ -10543,18 +10518,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>linear moves of a robot on a track have the base axis go along, and whether their speed counts its way was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it</source>
-        <translation>les mouvements linéaires d&apos;un robot sur un rail entraînent l&apos;axe de base, et il n&apos;a pas été confirmé si leur vitesse en compte le chemin ; utiliser `motion: joint`, dont les parts des vitesses articulaires la tiennent</translation>
+        <source>linear moves of a robot on a track also move the base axis, and it is unconfirmed whether their speed includes its motion; use `motion: joint`, which keeps the speed by shares of the joint speeds</source>
+        <translation>les mouvements linéaires d&apos;un robot sur un rail déplacent aussi l&apos;axe de base, et il n&apos;est pas confirmé si leur vitesse comprend ce mouvement ; utilisez `motion: joint`, qui tient la vitesse par des parts des vitesses articulaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions are then seen from was not confirmed; use `motion: joint`, whose times hold the speed</source>
-        <translation>les mouvements linéaires sur une pièce portée par un positionneur sont du mouvement coordonné (COORD), et le repère utilisateur d&apos;où leurs positions sont alors vues n&apos;a pas été confirmé ; utilisez `motion: joint`, dont les durées tiennent la vitesse</translation>
+        <source>linear moves over a part on a positioner need coordinated motion (COORD), and the user frame of its positions is unconfirmed; use `motion: joint`, which keeps the speed by times</source>
+        <translation>les mouvements linéaires sur une pièce portée par un positionneur demandent le mouvement coordonné (COORD), et le repère utilisateur de ses positions n&apos;est pas confirmé ; utilisez `motion: joint`, qui tient la vitesse par des durées</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>linear moves over a part on a positioner are coordinated motion (SMOVL), and what their speed is of was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it</source>
-        <translation>les mouvements linéaires sur une pièce portée par un positionneur sont des mouvements coordonnés (SMOVL), et de quoi leur vitesse est celle n&apos;est pas confirmé ; utilisez `motion: joint`, dont les parts des vitesses articulaires la tiennent</translation>
+        <source>linear moves over a part on a positioner need coordinated motion (SMOVL), and it is unconfirmed what its speed refers to; use `motion: joint`, which keeps the speed by shares of the joint speeds</source>
+        <translation>les mouvements linéaires sur une pièce portée par un positionneur demandent le mouvement coordonné (SMOVL), et il n&apos;est pas confirmé à quoi se rapporte sa vitesse ; utilisez `motion: joint`, qui tient la vitesse par des parts des vitesses articulaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
@@ -10568,22 +10543,22 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
-        <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+        <source>link {0} comes closer than {1} mm to {2}, or touches it on the rapid to the bead; move the external axes (cell.external) or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez les axes externes (cell.external) ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>link {0} comes nearer than {1} mm to {2}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>link {0} comes closer than {1} mm to {2}, or touches it on the rapid to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>link {0} comes nearer than {1} mm to {2}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
-        <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+        <source>link {0} comes closer than {1} mm to {2}, or touches it; move the external axes (cell.external) or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez les axes externes (cell.external) ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>link {0} comes nearer than {1} mm to {2}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>link {0} comes closer than {1} mm to {2}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>le corps {0} s’approche à moins de {1} mm de {2}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
@@ -10602,9 +10577,9 @@
         <translation>le corps {0} du bras, tel que dessiné, touche {1} sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; la moitié intérieure de son rayon reste dégagée : vérifiez-le dans Simuler, ou fixez cell.arm_clearance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>links of the robot are drawn from the kinematics</source>
-        <translation>les corps du robot sont dessinés d’après la cinématique</translation>
+        <location filename="../../freecad_am/posts/staubli/post.py"/>
+        <source>links of analogue inputs differ between controllers, and the post staubli cannot know them</source>
+        <translation>les liens des entrées analogiques diffèrent d&apos;une commande à l&apos;autre, et le post-processeur staubli ne peut pas les connaître</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -10623,13 +10598,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/in_sequence.py"/>
-        <source>looking for beads over nothing</source>
-        <translation>recherche de cordons au-dessus du vide</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>looking for collisions of the arm</source>
-        <translation>recherche de collisions du bras</translation>
+        <source>looking for unsupported beads</source>
+        <translation>recherche de cordons sans appui</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
@@ -10703,8 +10673,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>mean speed of each axis on each move, rapids included, against the machine file</source>
+        <source>mean speed of each axis on each move, rapids included, compared with the machine file</source>
         <translation>vitesse moyenne de chaque axe sur chaque déplacement, rapides compris, comparée au fichier machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>mean surface height of each predicted layer, compared with the planned start of the next layer</source>
+        <translation>hauteur moyenne de la surface de chaque couche prédite, comparée au début planifié de la suivante</translation>
     </message>
     <message>
         <location filename="../../freecad_am/report/of_document.py"/>
@@ -10733,8 +10708,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>more than one axis is called the track, or it has no value</source>
-        <translation>plus d&apos;un axe est appelé le rail, ou il n&apos;a pas de valeur</translation>
+        <source>more than one axis is marked as the track, or the track has no value</source>
+        <translation>plus d&apos;un axe est désigné comme rail, ou le rail n&apos;a pas de valeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/clad_faces.py"/>
@@ -10768,18 +10743,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>moves of more than one tool or work object are mixed</source>
-        <translation>des mouvements de plus d&apos;un outil ou d&apos;un objet de travail sont mêlés</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>moves with another track or station than before are mixed</source>
-        <translation>des mouvements d&apos;un autre rail ou d&apos;une autre station qu&apos;auparavant sont mêlés</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>moves with other external axes are mixed</source>
-        <translation>des mouvements avec d&apos;autres axes externes sont mêlés</translation>
+        <source>moves use more than one tool or work object</source>
+        <translation>des mouvements emploient plus d&apos;un outil ou d&apos;un objet de travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -10795,11 +10760,6 @@
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>neighbouring triangles face opposite ways, for instance at {0}; make their orientation consistent (Mesh, Harmonize normals)</source>
         <translation>des triangles voisins regardent en sens opposés, par exemple en {0} ; tournez-les pareillement (Mesh, Harmoniser les normales)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
-        <source>neither is the wrist spherical nor do axes 4 and 5 meet</source>
-        <translation>le poignet n&apos;est pas sphérique et les axes 4 et 5 ne se coupent pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
@@ -10860,6 +10820,11 @@
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>no flip</source>
         <translation>non retourné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
+        <source>no issues</source>
+        <translation>aucun problème</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -10998,8 +10963,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/constant.py"/>
-        <source>none of {0} values of RZ works for the whole job; the best one is {1} deg</source>
-        <translation>aucune de {0} valeurs de RZ ne sert pour tout le travail ; la plus proche est {1} deg</translation>
+        <source>none of {0} values of RZ is feasible for the whole job, and the best one is {1} deg; joints.method: layer-by-layer uses one polynomial per bead</source>
+        <translation>aucune de {0} valeurs de RZ n&apos;est faisable pour tout le travail, et la meilleure est {1} deg ; joints.method : layer-by-layer emploie un polynôme par cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -11013,18 +10978,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked in full, for {0}: {1} links that move with their axes, every {2} deg of the whole motion, the nozzle every mm; they touch nothing</source>
-        <translation>non vérifié en entier, car {0} : {1} corps qui bougent avec leurs axes, tous les {2} deg du mouvement entier, la buse tous les mm ; ils ne touchent rien</translation>
+        <source>not checked in full, because {0}: {1} moving links, checked every {2} deg of the whole motion, and the nozzle every mm; they touch nothing</source>
+        <translation>non vérifié en entier, car {0} : {1} corps mobiles, vérifiés tous les {2} deg du mouvement entier, et la buse tous les mm ; ils ne touchent rien</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked in full, for {0}: {1} links that move with their axes, every {2} deg of the whole motion, the nozzle every mm; they touch {3} with {4}</source>
-        <translation>non vérifié en entier, car {0} : {1} corps qui bougent avec leurs axes, tous les {2} deg du mouvement entier, la buse tous les mm ; ils touchent {3} avec {4}</translation>
+        <source>not checked in full, because {0}: {1} moving links, checked every {2} deg of the whole motion, and the nozzle every mm; they touch {3} with {4}</source>
+        <translation>non vérifié en entier, car {0} : {1} corps mobiles, vérifiés tous les {2} deg du mouvement entier, et la buse tous les mm ; ils touchent {3} avec {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>not checked: a bead model, or nothing, says how wide the beads are</source>
-        <translation>non vérifié : un modèle de cordon, ou rien, dit la largeur des cordons</translation>
+        <source>not checked: an earlier version planned the toolpath; plan it again</source>
+        <translation>non vérifié : une version antérieure a planifié le parcours ; planifiez-le à nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -11032,9 +10997,9 @@
         <translation>non vérifié : build_direction.clearance vaut none</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>not checked: it is not known how wide the beads count</source>
-        <translation>non vérifié : la largeur des cordons qui compte n’est pas connue</translation>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>not checked: machines of this kind have no condition number</source>
+        <translation>non vérifié : les machines de ce type n&apos;ont pas de conditionnement</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -11043,18 +11008,33 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>not checked: no program was read back</source>
+        <translation>non vérifié : aucun programme n&apos;a été relu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: only the controller can show it</source>
         <translation>non vérifié : seule la commande peut le montrer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>not checked: planned by an earlier version</source>
-        <translation>non vérifié : planifié par une version antérieure</translation>
+        <source>not checked: process.wire.feed is 0, so there is no wire</source>
+        <translation>non vérifié : process.wire.feed vaut 0, il n’y a donc pas de fil</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>not checked: the file of {0} states no payload; deposit and closed substrate, at {1} g/cm3 (process.density)</source>
-        <translation>non vérifié : le fichier de {0} n&apos;indique pas de charge ; dépôt et substrat fermé, à {1} g/cm3 (process.density)</translation>
+        <source>not checked: schedules of the welder, unknown here, set the wire feed of {0}</source>
+        <translation>non vérifié : des programmes du poste de soudage, inconnus ici, règlent l&apos;avance du fil de {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>not checked: the bead width is not set, or a bead model varies it</source>
+        <translation>non vérifié : la largeur des cordons n&apos;est pas réglée, ou un modèle de cordon la fait varier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>not checked: the effective bead width is unknown</source>
+        <translation>non vérifié : la largeur effective des cordons est inconnue</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -11063,18 +11043,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>not checked: the machine file of {0} has no payload; deposit and closed substrate, at {1} g/cm3 (process.density)</source>
+        <translation>non vérifié : le fichier machine de {0} n&apos;a pas de charge ; dépôt et substrat fermé, à {1} g/cm3 (process.density)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>not checked: the part encloses no volume</source>
         <translation>non vérifié : la pièce n’enferme pas de volume</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>not checked: the part has no faces to measure from</source>
-        <translation>non vérifié : la pièce n’a pas de faces d’où mesurer</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>not checked: the welder schedules, unknown here, set the feed of {0}</source>
-        <translation>non vérifié : des programmes de soudage propres, que personne ne connaît ici, disent au poste comment alimenter {0}</translation>
+        <source>not checked: the part has no faces to compare with</source>
+        <translation>non vérifié : la pièce n’a pas de faces avec lesquelles comparer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
@@ -11082,23 +11062,13 @@
         <translation>non vérifié : il n’y a pas de trajectoire articulaire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>not checked: there is no program that was read back</source>
-        <translation>non vérifié : il n’y a pas de programme relu</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>not checked: there is no wire, process.wire.feed is 0</source>
-        <translation>non vérifié : il n’y a pas de fil, process.wire.feed est 0</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics come nearer than {0} mm to nothing, checked every {1} deg</source>
+        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics come closer than {0} mm to nothing, checked every {1} deg</source>
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique ne s’approchent à moins de {0} mm de rien, regardés tous les {1} deg</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics come nearer than {0} mm to {1} with {2}, checked every {3} deg</source>
+        <source>not checked: without the manufacturer&apos;s shapes, links drawn from the kinematics come closer than {0} mm to {1} with {2}, checked every {3} deg</source>
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique s’approchent à moins de {0} mm de {1} avec {2}, regardés tous les {3} deg</translation>
     </message>
     <message>
@@ -11112,11 +11082,6 @@
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique touchent {0} avec {1}, regardés tous les {2} deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>not known of this machine</source>
-        <translation>inconnu de cette machine</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/three_mf_roles.py"/>
         <source>not printable</source>
         <translation>non imprimable</translation>
@@ -11125,11 +11090,6 @@
         <location filename="../../freecad_am/objects/staleness.py"/>
         <source>note</source>
         <translation>remarque</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
-        <source>nothing forbids it</source>
-        <translation>rien ne l&apos;interdit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -11200,11 +11160,6 @@
         <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
         <source>on the travel from the previous bead the nozzle would hit {0} at every retract distance and direction tried, and no detour was found; move the seam or the part, or use a more slender nozzle</source>
         <translation>en venant du cordon précédent la buse rencontrerait {0} à chaque distance et direction de retrait essayée, et aucun contournement n’a été trouvé ; déplacez la couture ou la pièce, ou prenez une buse plus fine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>on this controller the speed of joint moves is programmed in percent of the axes&apos; largest speeds, and the machine file of {0} does not give them; add {1}</source>
-        <translation>ce contrôleur reçoit la vitesse des mouvements articulaires en pourcentage des vitesses maximales des axes, et le fichier de machine de {0} ne les donne pas ; ajoutez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
@@ -11338,13 +11293,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>other external axes have values than in moves before, or not all in a row</source>
-        <translation>d&apos;autres axes externes ont des valeurs que dans les mouvements précédents, ou ils ne se suivent pas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>other programs are called than planned</source>
-        <translation>d&apos;autres programmes sont appelés que ceux planifiés</translation>
+        <source>other external axes have values than in earlier moves, or there are gaps between them</source>
+        <translation>d&apos;autres axes externes ont des valeurs que dans les mouvements précédents, ou il y a des lacunes entre eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -11402,14 +11352,14 @@
         <translation>pièce sur le robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/view.py"/>
-        <source>past the edges</source>
-        <translation>au-delà des bords</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>path</source>
         <translation>trajectoire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>path between the points of the program, as the controller interpolates it</source>
+        <translation>trajectoire entre les points du programme, comme la commande l’interpole</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
@@ -11433,8 +11383,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>planned joints of the deposit driven through the joint-frame chain, which planning does not use</source>
-        <translation>articulations planifiées du dépôt menées par la chaîne des repères, que la planification n’emploie pas</translation>
+        <source>planned joint values of the deposit, converted to poses by the joint-frame chain, which planning does not use</source>
+        <translation>valeurs articulaires planifiées du dépôt, converties en poses par la chaîne des repères, que la planification n’emploie pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
@@ -11442,9 +11392,14 @@
         <translation>environ {0} points en {1} couches sont planifiés, ce qui prend environ {2} min de processeur et {3} Go de mémoire ; une plus grande valeur de strategy.layer_height ou de strategy.chord_error en réduit le nombre</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/methods/point_by_point.py"/>
+        <source>planning point by point</source>
+        <translation>planification point par point</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/placement/place.py"/>
-        <source>planning the whole job at one of the best poses, the {0}.</source>
-        <translation>planification de toute la tâche à l&apos;une des meilleures poses, la {0}e</translation>
+        <source>planning the whole job, best pose number {0}</source>
+        <translation>planification de toute la tâche, meilleure pose numéro {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/place.py"/>
@@ -11503,13 +11458,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>positions have a track and no remark says which axis it is, or the other way round</source>
-        <translation>les positions ont un rail et aucune remarque ne dit quel axe c&apos;est, ou l&apos;inverse</translation>
+        <source>positions have a value for a track but no remark names its axis, or the reverse</source>
+        <translation>des positions ont une valeur pour un rail mais aucune remarque ne nomme son axe, ou l&apos;inverse</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>positions of more than one frame are mixed</source>
-        <translation>des positions de plus d&apos;un repère sont mêlées</translation>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
+        <source>positions of a station or of base axes begin with the first axis; use 1, not {0}</source>
+        <translation>les positions d&apos;une station ou d&apos;axes de base commencent au premier axe ; utilisez 1, pas {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
@@ -11543,8 +11498,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>programs of five-axis machines switch the deposit between blocks, not at times before</source>
-        <translation>les programmes des machines à cinq axes commutent le dépôt entre les blocs, non un temps avant</translation>
+        <source>programs of five-axis machines switch the deposit between blocks only, not ahead of time</source>
+        <translation>les programmes des machines à cinq axes ne commutent le dépôt qu&apos;entre les blocs, pas en avance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
@@ -11618,13 +11573,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>read back by a reader of its own and driven through the joint-frame chain and PyKDL</source>
-        <translation>relu par un lecteur à part et mené par la chaîne des repères et PyKDL</translation>
+        <source>read back by an independent reader and converted to poses by the joint-frame chain and PyKDL</source>
+        <translation>relu par un lecteur indépendant et converti en poses par la chaîne des repères et PyKDL</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>read back by a reader of its own and driven through the joint-frame chain; PyKDL is not installed</source>
-        <translation>relu par un lecteur à part et mené par la chaîne des repères ; PyKDL n’est pas installé</translation>
+        <source>read back by an independent reader and converted to poses by the joint-frame chain; PyKDL is not installed</source>
+        <translation>relu par un lecteur indépendant et converti en poses par la chaîne des repères ; PyKDL n’est pas installé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -11703,13 +11658,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>root and type are of two mechanisms, or the base is not the one selected</source>
-        <translation>racine et type sont de deux mécanismes, ou la base n&apos;est pas celle choisie</translation>
+        <source>root and type belong to different mechanisms, or the base is not the selected one</source>
+        <translation>racine et type appartiennent à des mécanismes différents, ou la base n&apos;est pas celle choisie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>rotary-table</source>
         <translation>plateau rotatif</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>rotated coordinates are not supported; switch them off in the slicer</source>
+        <translation>les coordonnées tournées ne sont pas prises en charge ; désactivez-les dans le trancheur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
@@ -11743,8 +11703,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>scaled coordinates are not known; let the slicer leave them out</source>
-        <translation>les coordonnées à l&apos;échelle sont inconnues ; faites-les omettre par le trancheur</translation>
+        <source>scaled coordinates are not supported; switch them off in the slicer</source>
+        <translation>les coordonnées à l&apos;échelle ne sont pas prises en charge ; désactivez-les dans le trancheur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>schedule numbers need an output from 1 to {0}, not {1}; choose one in this range</source>
+        <translation>les numéros de programmes de soudage demandent une sortie de 1 à {0}, et non {1} ; choisissez-en une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
@@ -11768,8 +11733,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/constant.py"/>
-        <source>searching one RZ for all</source>
-        <translation>recherche d&apos;un RZ pour tous</translation>
+        <source>searching one RZ for the whole job</source>
+        <translation>recherche d&apos;un RZ pour tout le travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/layer_by_layer.py"/>
@@ -11782,11 +11747,6 @@
         <translation>second</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>section of the wire times its feed, against width x height x speed of beads of each class, their starts and ends</source>
-        <translation>section du fil fois sa vitesse, comparée à largeur x hauteur x vitesse des cordons de chaque classe, de leurs débuts et de leurs fins</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>select</source>
         <translation>sélectionner</translation>
@@ -11795,6 +11755,11 @@
         <location filename="../../freecad_am/brep/files/step_content.py"/>
         <source>selected component</source>
         <translation>composant sélectionné</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
+        <source>separate it there, or make it overlap there and fuse it (Part, Boolean)</source>
+        <translation>écartez-le à cet endroit, ou faites-le s’y recouvrir et fusionnez-le (Part, Booléen)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
@@ -11848,12 +11813,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>shapes of all links, also against each other, every {0} deg of the whole motion: they come nearer than {1} mm to nothing</source>
+        <source>shapes of all links, also against each other, every {0} deg of the whole motion: they come closer than {1} mm to nothing</source>
         <translation>formes de tous les corps, les uns par rapport aux autres aussi, tous les {0} deg de tout le mouvement : ils ne s’approchent à moins de {1} mm de rien</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>shapes of all links, also against each other, every {0} deg of the whole motion: they come nearer than {1} mm to {2} with {3}</source>
+        <source>shapes of all links, also against each other, every {0} deg of the whole motion: they come closer than {1} mm to {2} with {3}</source>
         <translation>formes de tous les corps, les uns par rapport aux autres aussi, tous les {0} deg de tout le mouvement : ils s’approchent à moins de {1} mm de {2} avec {3}</translation>
     </message>
     <message>
@@ -11947,6 +11912,16 @@
         <translation>solide de révolution</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>some files belong to no project, or to two</source>
+        <translation>certains fichiers n&apos;appartiennent à aucun projet, ou à deux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>some modules never run, or run twice</source>
+        <translation>certains modules ne s&apos;exécutent jamais, ou s&apos;exécutent deux fois</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
         <source>some of its faces have no surfaces: it holds triangles (AP242 tessellated geometry); {0}</source>
         <translation>certaines de ses faces n&apos;ont pas de surfaces : il contient des triangles (géométrie tessellée AP242) ; {0}</translation>
@@ -11958,8 +11933,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>some positions lack the external axes, or have only these</source>
-        <translation>certaines positions n&apos;ont pas les axes externes, ou n&apos;ont que ceux-ci</translation>
+        <source>some positions lack the external axes, or have no other axes</source>
+        <translation>certaines positions n&apos;ont pas les axes externes, ou n&apos;ont pas d&apos;autres axes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -11988,8 +11963,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>splines are not known; let the slicer write lines and arcs</source>
-        <translation>les splines ne sont pas connues ; faites écrire des lignes et des arcs au trancheur</translation>
+        <source>splines are not supported; set the slicer to write lines and arcs</source>
+        <translation>les splines ne sont pas prises en charge ; réglez le trancheur pour qu&apos;il écrive des lignes et des arcs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
@@ -12022,6 +11997,11 @@
         <translation>le début et la fin prennent {0} mm, et un cordon de cette classe dans la couche {1} est long de {2} mm ; raccourcissez-les pour la classe, ou ne déposez pas de cordons aussi courts</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>start the machine at the base of the robot, and name the track in `cell.external` with `carries: robot`</source>
+        <translation>faites commencer la machine à la base du robot, et nommez le rail dans `cell.external` avec `carries: robot`</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>such as: pendant of R-30iB, 21 November; or a simulator with its version</source>
         <translation>par exemple : pupitre du R-30iB, 21 novembre ; ou un simulateur avec sa version</translation>
@@ -12045,11 +12025,6 @@
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
         <source>surface finishing</source>
         <translation>finition de surface</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>surface of each layer of the predicted deposit, in the mean, against where the next one should begin</source>
-        <translation>surface de chaque couche du dépôt prédit, en moyenne, par rapport à l&apos;endroit où la suivante devrait commencer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
@@ -12102,11 +12077,6 @@
         <translation>prenez le repère tool0 d&apos;un URDF, ou tournez la bride</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>that VAL 3 sets several outputs to one number was not found documented</source>
-        <translation>il n&apos;a pas été trouvé documenté que VAL 3 mette plusieurs sorties à un seul numéro</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the X of {0} points out of the flange, not its Z; the flange frame is rotated, as tool0 is from flange</source>
         <translation>sur {0} X sort de la bride, et non Z ; le repère de bride est tourné, comme tool0 par rapport à flange</translation>
@@ -12122,34 +12092,24 @@
         <translation>le Z de la bride pointe vers le poignet et non vers l&apos;extérieur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>the analogue output stops the machine or its compressor within a bead</source>
+        <translation>la sortie analogique arrête la machine ou son compresseur au sein d&apos;un cordon</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>the analogue output stops the machine within a bead</source>
         <translation>la sortie analogique arrête la machine au sein d&apos;un cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>the analogue output stops the machine within a bead, or its compressor</source>
-        <translation>la sortie analogique arrête la machine au sein d&apos;un cordon, ou son compresseur</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>the arc burns on a move of another kind</source>
-        <translation>l&apos;arc brûle pendant un mouvement d&apos;une autre sorte</translation>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the arc ends at a point where the robot does not stop</source>
+        <translation>l&apos;arc s&apos;éteint en un point où le robot ne s&apos;arrête pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>the arc does not burn, or by another seam</source>
-        <translation>l&apos;arc ne brûle pas, ou par un autre cordon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>the arc ends where the robot does not stop</source>
-        <translation>l&apos;arc s&apos;éteint là où le robot ne s&apos;arrête pas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>the arc ends with other data than it burnt by</source>
-        <translation>l&apos;arc s&apos;éteint avec d&apos;autres données que celles par lesquelles il brûlait</translation>
+        <source>the arc ends with other weld data than it was started with</source>
+        <translation>l&apos;arc s&apos;éteint avec d&apos;autres données de soudage que celles de son amorçage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -12158,13 +12118,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>the arc is already on, or is struck while the robot moves</source>
+        <source>the arc is already on, or is started while the robot moves</source>
         <translation>l&apos;arc est déjà allumé, ou est amorcé pendant que le robot bouge</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>the arc is struck with other weld data, or another weave</source>
-        <translation>l&apos;arc est amorcé avec d&apos;autres données de soudage, ou un autre balayage</translation>
+        <source>the arc is off, or was started with another seam</source>
+        <translation>l&apos;arc est éteint, ou a été amorcé avec un autre cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>the arc is on during a move that is not an arc welding instruction</source>
+        <translation>l&apos;arc est allumé pendant un mouvement qui n&apos;est pas une instruction de soudage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the arc was started with other weld data or another weave</source>
+        <translation>l&apos;arc a été amorcé avec d&apos;autres données de soudage ou un autre balayage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/closed_form.py"/>
@@ -12198,22 +12168,22 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the base comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
-        <translation>la base s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+        <source>the base comes closer than {0} mm to {1}, or touches it on the rapid to the bead; move the external axes (cell.external) or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la base s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez les axes externes (cell.external) ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the base comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the base comes closer than {0} mm to {1}, or touches it on the rapid to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the base comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
-        <translation>la base s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+        <source>the base comes closer than {0} mm to {1}, or touches it; move the external axes (cell.external) or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la base s’approche à moins de {0} mm de {1}, ou le touche ; déplacez les axes externes (cell.external) ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the base comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the base comes closer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la base s’approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
@@ -12272,6 +12242,11 @@
         <translation>il n&apos;y a pas d&apos;étalonnage {0} ; donner le chemin du fichier YAML que ur_calibration a écrit pour ce bras</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka/post.py"/>
+        <source>the carrier of the robot base, which has no MACHINE_DEF</source>
+        <translation>le porteur de la base du robot, qui n&apos;a pas de MACHINE_DEF</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>the cell that runs it</source>
         <translation>la cellule qui l&apos;exécute</translation>
@@ -12317,14 +12292,14 @@
         <translation>{0} est un commentaire sans fin ; fermez-le par )</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>the compressor would merge blocks that each state a time, and only the last time would count</source>
+        <translation>le compresseur fusionnerait des blocs qui indiquent chacun une durée, et seule la dernière compterait</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/work/faults.py"/>
         <source>the computation needs more memory than available; use larger steps, such as layer height and chord error, or a smaller part</source>
         <translation>la mémoire ne suffit pas pour le calculer ; donnez des pas plus grands, comme la hauteur de couche et l&apos;erreur de corde, ou une pièce plus petite</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>the configurations that its positions name are supervised, and are none</source>
-        <translation>les configurations que nomment ses positions sont surveillées, et n&apos;en sont pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -12367,11 +12342,6 @@
         <translation>le coin avant le point de commutation est arrondi, ce qui laisse {0} s, moins que l&apos;avance de {1} s ; utilisez un program.trigger.lead d&apos;au plus {2} s, un program.blend plus petit, ou un strategy.chord_error plus grand</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/modules.py"/>
-        <source>the data taken from the controller is not weld data of the module, or is taken twice</source>
-        <translation>ce qui est repris de la commande n&apos;est pas une donnée de soudage du module, ou l&apos;est deux fois</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>the deleted object</source>
         <translation>l&apos;objet supprimé</translation>
@@ -12385,21 +12355,6 @@
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
         <source>the deposit is slowed at {0} short places, {1} mm in total, here to {2} mm/s, the limit of the axes; over-deposition is up to {3} mm of bead{4}</source>
         <translation>le dépôt est ralenti à {0} endroits courts, {1} mm en tout, ici à {2} mm/s, la limite des axes ; le surdépôt atteint {3} mm de cordon{4}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>the deposit is still on at the end of the program</source>
-        <translation>le dépôt est encore en marche là où le programme se termine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>the deposit is switched on although it is already on</source>
-        <translation>le dépôt est mis en marche là où il l’est déjà</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>the deposit is switched otherwise than planned</source>
-        <translation>le dépôt est commandé autrement que planifié</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/linear_approach.py"/>
@@ -12443,13 +12398,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>the external axes are out of order, or BASE is not coupled to the part they move</source>
-        <translation>les axes externes ne sont pas dans l&apos;ordre, ou BASE n&apos;est pas couplée à ce qu&apos;ils déplacent</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the external axes would end with number {0}, but the controller has {1}; use a smaller first number</source>
-        <translation>les axes externes finiraient au numéro {0}, et la commande en a {1} ; prenez un premier plus petit</translation>
+        <source>the external axes are out of order, or BASE is not coupled to the part that they move</source>
+        <translation>les axes externes ne sont pas dans l&apos;ordre, ou BASE n&apos;est pas couplée à la pièce qu&apos;ils déplacent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
@@ -12637,11 +12587,6 @@
         <translation>il n&apos;y a pas de dossier {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>the four numbers of an orientation are not those of a unit quaternion</source>
-        <translation>les quatre nombres d&apos;une orientation ne sont pas ceux d&apos;un quaternion unitaire</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
         <source>the geometry kernel cannot process this shape ({0}{1}); repair it (Part, Check geometry), or redraw its faces</source>
         <translation>le noyau géométrique ne peut pas travailler avec cette forme ({0}{1}) ; réparez-la (Part, Vérifier la géométrie), ou redessinez ses faces</translation>
@@ -12677,6 +12622,11 @@
         <translation>le moyeu, un cylindre ou cône sous les solides, est inconnu : choisissez-le comme substrat, choisissez ses faces, ou fixez strategy.base ; pour une base plane utilisez kind: solid</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
+        <source>the instruction that waits for an analogue input depends on options of the controller, which the post yaskawa cannot know</source>
+        <translation>l&apos;instruction qui attend une entrée analogique dépend d&apos;options de la commande, que le post-processeur yaskawa ne peut pas connaître</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>the instruction {0} is not understood</source>
         <translation>l&apos;instruction {0} n&apos;est pas comprise</translation>
@@ -12688,7 +12638,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>the instructions do not begin as those of a robot&apos;s job do</source>
+        <source>the instructions do not begin like those of a robot job</source>
         <translation>les instructions ne commencent pas comme celles d&apos;un job de robot</translation>
     </message>
     <message>
@@ -12707,9 +12657,19 @@
         <translation>les repères articulaires donnent</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/planning/beads/chord_error.py"/>
+        <source>the joint motion deviates from the bead between two points, near a singularity, no matter how many points are added; move the part in the cell, or choose another cell.branch</source>
+        <translation>le mouvement articulaire quitte le cordon entre deux points, près d&apos;une singularité, quel que soit le nombre de points ajoutés ; déplacez la pièce dans la cellule, ou choisissez une autre cell.branch</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/program.py"/>
         <source>the joint path to write</source>
         <translation>la trajectoire articulaire à écrire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
+        <source>the joint values in the program differ from the plan</source>
+        <translation>les valeurs articulaires dans le programme diffèrent du plan</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -12782,6 +12742,11 @@
         <translation>d&apos;après la prédiction, cette couche finit {0} mm au-dessous du début prévu de la suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut, et {2} mm sont prévus ; mettez strategy.layer_height à {3} mm, ou changez ce que le fil apporte</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <source>the length of the move, and therefore its time, is unknown</source>
+        <translation>la longueur du mouvement, et donc sa durée, est inconnue</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the limits of {0} run from {1} to {2} rad, many turns; a URDF uses radians: convert degrees, or make the joint continuous</source>
         <translation>les limites de {0} vont de {1} à {2} rad, soit de nombreux tours ; un URDF est en radians : convertissez les degrés ou rendez l&apos;articulation continue</translation>
@@ -12800,11 +12765,6 @@
         <location filename="../../freecad_am/core/planning/linear_approach.py"/>
         <source>the linear approach to the bead would leave the checked path by {0} mm; use a shorter retract distance, or another {1}</source>
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, qui s&apos;écarterait de {0} mm du chemin examiné ; donnez une distance de retrait plus courte, ou un autre {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>the lines after it are stored on the machine, not run; leave it out, with its M29</source>
-        <translation>les lignes qui le suivent sont stockées sur la machine, pas exécutées ; supprimez-le, avec son M29</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/in_language.py"/>
@@ -12837,9 +12797,9 @@
         <translation>il n&apos;y a pas de corps {0} ; nommez-en un qui existe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>the links of analogue inputs differ from controller to controller, and the post staubli knows none</source>
-        <translation>les liens des entrées analogiques diffèrent d&apos;une commande à l&apos;autre, et le post-processeur staubli n&apos;en connaît aucun</translation>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>the links of the robot are drawn from the kinematics only</source>
+        <translation>les corps du robot sont dessinés d’après la seule cinématique</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
@@ -12848,8 +12808,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>the local distance between layers is {0} to {1} mm, the layer height {2} mm; a larger strategy.tolerance says that this will do</source>
-        <translation>la distance locale entre les couches est de {0} à {1} mm, la hauteur de couche de {2} mm ; un strategy.tolerance plus grand dit que cela suffit</translation>
+        <source>the local distance between layers is {0} to {1} mm, the layer height {2} mm; set a larger strategy.tolerance to accept this</source>
+        <translation>la distance locale entre les couches est de {0} à {1} mm, la hauteur de couche de {2} mm ; réglez un strategy.tolerance plus grand pour l&apos;accepter</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
@@ -12862,11 +12822,6 @@
         <translation>la machine ne les donne pas ; voyez les écarts</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>the machine file gives no largest speeds</source>
-        <translation>le fichier machine ne donne pas de vitesses maximales</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>the machine file has no controller.pulses_per_degree; add them</source>
         <translation>le fichier machine n&apos;a pas de controller.pulses_per_degree ; ajoutez-les</translation>
@@ -12875,6 +12830,16 @@
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
         <source>the machine file has no controller.speed_unit; add it</source>
         <translation>le fichier machine n&apos;a pas de controller.speed_unit ; ajoutez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>the machine file has no maximum speeds</source>
+        <translation>le fichier machine n&apos;a pas de vitesses maximales</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the machine stores the lines after it and does not run them; remove it and its M29</source>
+        <translation>la machine stocke les lignes qui le suivent sans les exécuter ; retirez-le, avec son M29</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
@@ -12967,14 +12932,34 @@
         <translation>le maillage se coupe lui-même : {0} paires de triangles se croisent, par exemple en {1}, si bien que son intérieur n&apos;est pas défini ; fusionnez les solides qui se chevauchent dans la CAO, ou réparez le maillage (Mesh, Analyser, Auto-intersections)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>the module does not set all that the move counts on</source>
-        <translation>le module ne règle pas tout ce sur quoi compte le mouvement</translation>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the module does not define the speed {0}</source>
+        <translation>le module ne définit pas la vitesse {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>the module does not define the speed {0}, or the speed is set by an argument other than \T or \V</source>
+        <translation>le module ne définit pas la vitesse {0}, ou la vitesse est réglée par un autre argument que \T ou \V</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
+        <source>the module does not define the tool {0} or the work object {1}</source>
+        <translation>le module ne définit pas l&apos;outil {0} ou l&apos;objet de travail {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>the module does not define the zone {0}</source>
+        <translation>le module ne définit pas la zone {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>the move before it is to be approximated, and it stops there</source>
-        <translation>le mouvement qui précède doit être lissé, et s&apos;arrête là</translation>
+        <source>the module does not set base, tool, speed and rounding before the move</source>
+        <translation>le module ne règle pas base, outil, vitesse et lissage avant le mouvement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the move before it is approximated, but this line stops the robot</source>
+        <translation>le mouvement précédent est lissé, mais cette ligne arrête le robot</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -12982,9 +12967,14 @@
         <translation>le mouvement avant le point de commutation dure {0} s, moins que l&apos;avance de {1} s ; utilisez un program.trigger.lead d&apos;au plus {2} s, une distance de retrait plus grande avant la mise en marche, ou un strategy.chord_error plus grand avant l&apos;arrêt</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the move has another speed when the arc is blocked</source>
+        <translation>le mouvement a une autre vitesse quand l&apos;arc est bloqué</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
-        <source>the move is not given in the axes of the first one</source>
-        <translation>le mouvement n&apos;est pas dit dans les axes du premier</translation>
+        <source>the move names other axes than the first move</source>
+        <translation>le mouvement nomme d&apos;autres axes que le premier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -13022,6 +13012,11 @@
         <translation>la buse n&apos;est pas dégagée avec {0} non plus, ce qui a été essayé</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
+        <source>the nozzle still touches with {0} (all tested); {1}</source>
+        <translation>la buse touche encore avec {0} (tous essayés) ; {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>the nozzle touches platform or part</source>
         <translation>la buse touche le plateau ou la pièce</translation>
@@ -13033,12 +13028,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the nozzle touches {0} on the rapid way to the bead; lift the part over it by cell.platform, or move it in cell.external</source>
+        <source>the nozzle touches {0} on the rapid to the bead; lift the part over it by cell.platform, or move it in cell.external</source>
         <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the nozzle touches {0} on the rapid way to the bead; move it in cell.obstacles, the part or cell.deposition_point</source>
+        <source>the nozzle touches {0} on the rapid to the bead; move it in cell.obstacles, the part or cell.deposition_point</source>
         <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
     </message>
     <message>
@@ -13067,6 +13062,11 @@
         <translation>la buse touche {what}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
+        <source>the nozzle would be clear at these points with {0}; the other points were not tested</source>
+        <translation>la buse serait dégagée en ces points avec {0} ; les autres points n&apos;ont pas été essayés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>the number must be at most {0}, not {1}; use a smaller number</source>
         <translation>le numéro est au plus {0}, non {1} ; utilisez un numéro plus petit</translation>
@@ -13075,6 +13075,11 @@
         <location filename="../../freecad_am/posts/kuka/post.py"/>
         <source>the number of its MACHINE_DEF, 2 to 16</source>
         <translation>le numéro de son MACHINE_DEF, de 2 à 16</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the origin of another work offset is unknown; remove it</source>
+        <translation>l&apos;origine d&apos;un autre décalage de pièce est inconnue ; retirez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -13088,22 +13093,22 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
-        <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+        <source>the part comes closer than {0} mm to {1}, or touches it on the rapid to the bead; move the external axes (cell.external) or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez les axes externes (cell.external) ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the part comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the part comes closer than {0} mm to {1}, or touches it on the rapid to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the part comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
-        <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+        <source>the part comes closer than {0} mm to {1}, or touches it; move the external axes (cell.external) or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la pièce s’approche à moins de {0} mm de {1}, ou le touche ; déplacez les axes externes (cell.external) ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the part comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the part comes closer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
@@ -13138,13 +13143,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/verify.py"/>
-        <source>the path between two points leaves the straight line by {0} mm, more than the chord error</source>
-        <translation>la trajectoire entre deux points quitte la droite de {0} mm, plus que l&apos;erreur de corde</translation>
+        <source>the path between two beads deviates from the checked path by up to {0} mm and {1} deg</source>
+        <translation>la trajectoire entre deux cordons s&apos;écarte de celle vérifiée jusqu&apos;à {0} mm et {1} deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>the path of the text between its points, as the controller interpolates it</source>
-        <translation>la trajectoire du texte entre ses points, comme la commande l’interpole</translation>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the path between two points deviates from the straight line by {0} mm, more than the chord error</source>
+        <translation>la trajectoire entre deux points s&apos;écarte de la droite de {0} mm, plus que l&apos;erreur de corde</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/tubes/normal_layers.py"/>
@@ -13168,8 +13173,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>the points of {0} are not all in one frame</source>
-        <translation>les points de {0} ne sont pas tous dans un repère</translation>
+        <source>the points of {0} are in more than one frame</source>
+        <translation>les points de {0} sont dans plus d&apos;un repère</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
@@ -13190,6 +13195,11 @@
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>the pose at the serial zeros is missing; enter it too</source>
         <translation>la pose aux zéros en série manque ; saisissez-la aussi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/points.py"/>
+        <source>the position in the program does not match its joint values</source>
+        <translation>la position dans le programme ne correspond pas à ses valeurs articulaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
@@ -13242,14 +13252,29 @@
         <translation>le post-processeur {0} écrit {1} axes ; utilisez un autre post-processeur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>the program calls other programs than planned</source>
+        <translation>le programme appelle d&apos;autres programmes que prévu</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
         <source>the program calls {0}, which is missing, so its motions and signals are not simulated; add its file, or check it on the controller</source>
         <translation>le programme appelle {0}, qui manque, si bien que ses mouvements et signaux ne sont pas parcourus ; ajoutez son fichier, ou vérifiez-le sur la commande</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/program.py"/>
-        <source>the program does not read back as the planned path; do not use it</source>
-        <translation>la relecture du programme ne donne pas la trajectoire planifiée ; ne l&apos;utilisez pas</translation>
+        <location filename="../../freecad_am/read_back/selected.py"/>
+        <source>the program ends with the deposit still on</source>
+        <translation>le programme se termine avec le dépôt encore en marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/followed.py"/>
+        <source>the program gives turn numbers for axes other than the last one, which cannot be simulated; use joint values for these positions</source>
+        <translation>le programme donne des numéros de tour pour d&apos;autres axes que le dernier, ce qui ne peut pas être simulé ; donnez ces positions en valeurs articulaires</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
+        <source>the program has a linear move where a joint move is planned, or the reverse</source>
+        <translation>le programme a un mouvement linéaire là où un mouvement articulaire est planifié, ou l&apos;inverse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/records.py"/>
@@ -13272,14 +13297,109 @@
         <translation>le programme n&apos;a pas de positions ; utilisez `motion: joint`</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the program has {0} moves, but {1} are planned</source>
+        <translation>le programme a {0} mouvements, mais {1} sont planifiés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>the program lacks the flange poses, which blends depend on; plan the joint path again</source>
         <translation>le programme ne dit pas où est la bride, dont dépendent les lissages ; replanifiez la trajectoire articulaire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/points.py"/>
+        <source>the program moves the tip up to {0} mm away from the planned point, more than its rounding explains</source>
+        <translation>le programme amène la pointe jusqu&apos;à {0} mm du point planifié, plus que ses arrondis n&apos;expliquent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/points.py"/>
+        <source>the program moves {0} up to {1} {2} beyond its limit</source>
+        <translation>le programme amène {0} jusqu&apos;à {1} {2} au-delà de sa limite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
+        <source>the program names arm configurations, but the machine has none</source>
+        <translation>le programme nomme des configurations du bras, mais la machine n&apos;en a pas</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>the program of {0} will have about {1} points in {2} files, {3} MB: {4}. A larger strategy.chord_error or strategy.layer_height makes it smaller; program.max_points limits the size of a file</source>
         <translation>le programme de {0} aura environ {1} points dans {2} fichiers, {3} Mo : {4}. Un plus grand strategy.chord_error ou strategy.layer_height le réduit ; program.max_points fixe la taille d&apos;un fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
+        <source>the program selects another frame or tool than {0} and {1}</source>
+        <translation>le programme choisit un autre repère ou outil que {0} et {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/selected.py"/>
+        <source>the program selects {0} {1}, but the job has {2}: the simulation uses that of the cell; compare the two, and correct the program or the job</source>
+        <translation>le programme choisit {0} {1}, mais le travail a {2} : la simulation emploie celui de la cellule ; comparez les deux, et corrigez le programme ou le travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>the program sends another schedule than planned</source>
+        <translation>le programme transmet un autre programme de soudage que prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/followed.py"/>
+        <source>the program starts with a position that has no arm configuration; set one in the cell, such as branch: [front, up, flip]</source>
+        <translation>le programme commence par une position sans configuration du bras ; indiquez-en une dans la cellule, comme branch: [front, up, flip]</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
+        <source>the program stops at the point or rounds the corner differently than planned</source>
+        <translation>le programme s&apos;arrête au point ou arrondit l&apos;angle autrement que prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>the program switches the deposit differently than planned</source>
+        <translation>le programme commute le dépôt autrement que prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/selected.py"/>
+        <source>the program switches the deposit on although it is already on</source>
+        <translation>le programme met le dépôt en marche alors qu&apos;il l&apos;est déjà</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/points.py"/>
+        <source>the program tilts the tool by up to {0} deg off the plan, more than its rounding explains</source>
+        <translation>le programme incline l&apos;outil jusqu&apos;à {0} deg hors du plan prévu, plus que ses arrondis n&apos;expliquent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/verify.py"/>
+        <source>the program turns the tool differently than planned</source>
+        <translation>le programme tourne l&apos;outil autrement que prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
+        <source>the program uses another arm configuration or other turns than planned</source>
+        <translation>le programme emploie une autre configuration du bras ou d&apos;autres tours que prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>the program waits differently than planned</source>
+        <translation>le programme attend autrement que prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>the program waits for another temperature than planned</source>
+        <translation>le programme attend une autre température que prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>the program weaves beads differently than planned</source>
+        <translation>le programme balaie les cordons autrement que prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/program.py"/>
+        <source>the program, read back, differs from the planned path; do not use it</source>
+        <translation>le programme relu diffère de la trajectoire planifiée ; ne l&apos;utilisez pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>the pulses per degree of each axis, or per mm of a track, are missing or given twice</source>
+        <translation>les impulsions par degré de chaque axe, ou par mm d&apos;un rail, manquent ou sont données deux fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
@@ -13322,9 +13442,14 @@
         <translation>le retrait avant ou après le cordon est hors d&apos;atteinte à chaque hauteur, direction ou rotation essayée ; diminuez process.between_layers.lift ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
+        <source>the robot cannot keep its time, speed or blend</source>
+        <translation>le robot ne peut pas tenir sa durée, sa vitesse ou son lissage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
-        <source>the robot has to carry either the tool or the work object</source>
-        <translation>le robot doit porter soit l&apos;outil, soit l&apos;objet de travail</translation>
+        <source>the robot must carry either the tool or the work object, not both or neither</source>
+        <translation>le robot doit porter soit l&apos;outil, soit l&apos;objet de travail, pas les deux ni aucun</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/pendants.py"/>
@@ -13355,16 +13480,6 @@
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
         <source>the scan is {0} mm away from layer {1} at {2}, more than substrate.scan_within = {3} mm; check that it shows the right part, in the right unit and position</source>
         <translation>la numérisation est à {0} mm de la couche {1} en {2}, plus que substrate.scan_within = {3} mm ; vérifiez qu&apos;elle montre la bonne pièce, dans la bonne unité et à la bonne place</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the schedule number needs an output from 1 to {0}, not {1}; choose one in this range</source>
-        <translation>le numéro d&apos;un programme de soudage est mis sur une sortie de 1 à {0}, non {1} ; prenez l&apos;une d&apos;elles</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>the schedule that is sent is not the planned one</source>
-        <translation>un autre programme de soudage que prévu est transmis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
@@ -13488,8 +13603,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
-        <source>the solid touches itself along an edge, so that its inside is not known</source>
-        <translation>le solide se touche lui-même le long d’une arête, si bien que son intérieur est inconnu</translation>
+        <source>the solid touches itself along an edge, so its inside is undefined</source>
+        <translation>le solide se touche lui-même le long d’une arête, donc son intérieur est indéfini</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
@@ -13503,13 +13618,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the speed in the text is not the planned one</source>
-        <translation>la vitesse dans le texte n&apos;est pas celle planifiée</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>the speed of the wire in the text is not the planned one</source>
-        <translation>la vitesse du fil dans le texte n&apos;est pas celle planifiée</translation>
+        <source>the speed in the program differs from the plan</source>
+        <translation>la vitesse dans le programme diffère du plan</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -13542,74 +13652,24 @@
         <translation>la balise {0} n&apos;est pas admise ici ; écrivez la valeur simple</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the text asks for another configuration of the arm, or other turns</source>
-        <translation>le texte demande une autre configuration du bras, ou d&apos;autres tours</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the text asks for joint values other than the planned ones</source>
-        <translation>le texte demande d&apos;autres valeurs articulaires que celles prévues</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/points.py"/>
-        <source>the text gives another position there than the joint values</source>
-        <translation>le texte y dit une autre position que les valeurs articulaires</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/verify.py"/>
-        <source>the text has {0} moves, but {1} are planned</source>
-        <translation>le texte a {0} mouvements, {1} sont planifiés</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/sections/tree.py"/>
         <source>the text is not UTF-8 (line {0}); save it as UTF-8</source>
         <translation>le texte n&apos;est pas en UTF-8 (ligne {0}) ; enregistrez-le en UTF-8</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/points.py"/>
-        <source>the text leads up to {0} mm away from the planned point, more than its digits explain</source>
-        <translation>le texte mène jusqu&apos;à {0} mm du point planifié, plus que ses chiffres n&apos;expliquent</translation>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
+        <source>the text moves {0} from axis {1} on, but the plan moves {2} from axis {3} on</source>
+        <translation>le texte déplace {0} à partir de l&apos;axe {1}, mais le plan {2} à partir de l&apos;axe {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the text moves straight in space where straight in the joints was planned, or the other way</source>
-        <translation>le texte va droit dans l&apos;espace où il était planifié d&apos;aller droit dans les articulations, ou l&apos;inverse</translation>
+        <source>the time in the program does not match the planned speed</source>
+        <translation>la durée dans le programme ne correspond pas à la vitesse planifiée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the text moves {0} from axis {1} on, but the program {2} from axis {3} on</source>
-        <translation>le texte déplace {0} à partir de l&apos;axe {1}, le programme {2} à partir de l&apos;axe {3}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the text names arm configurations, which the machine does not have</source>
-        <translation>le texte nomme des configurations d&apos;un bras, et la machine n&apos;en a pas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the text selects another frame or tool than {0} and {1}</source>
-        <translation>le texte choisit un autre repère ou outil que {0} et {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the text stops, or rounds the corner, otherwise than planned</source>
-        <translation>le texte s&apos;arrête, ou arrondit l&apos;angle, autrement que planifié</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/points.py"/>
-        <source>the text takes {0} up to {1} {2} beyond its limit</source>
-        <translation>le texte mène {0} jusqu&apos;à {1} {2} au-delà de sa limite</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the time in the text does not give the planned speed</source>
-        <translation>le temps dans le texte ne donne pas la vitesse planifiée</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the times of a bead do not add up to the planned one</source>
-        <translation>les temps d&apos;un cordon ne font pas la somme planifiée</translation>
+        <source>the times of a bead do not add up to the planned time</source>
+        <translation>les durées d&apos;un cordon ne font pas la durée planifiée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/external/level.py"/>
@@ -13622,24 +13682,14 @@
         <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, build_direction.max_from_vertical permet {1} deg, et le positionneur ne peut pas compenser ; montez la pièce autrement, ou augmentez la limite</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/points.py"/>
-        <source>the tool is tilted by up to {0} deg, more than the digits explain</source>
-        <translation>l&apos;outil est incliné jusqu&apos;à {0} deg, plus que les chiffres n&apos;expliquent</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/verify.py"/>
-        <source>the tool is turned otherwise than planned</source>
-        <translation>l&apos;outil est tourné autrement que planifié</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>the tool passes a point by {0} mm without a stop, too little for a blend radius, so the robot would stop there with the deposit on; use a larger strategy.chord_error, or `program.blend: 0` to stop at every point</source>
         <translation>l&apos;outil parcourt {0} mm près d&apos;un point sans arrêt, trop peu pour un rayon de lissage, et le robot s&apos;y arrêterait en déposant ; utilisez un strategy.chord_error plus grand, ou `program.blend: 0` pour s&apos;arrêter à chaque point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>the tool rotation would be {0} deg, outside the allowed range</source>
-        <translation>la rotation autour de l&apos;axe de l&apos;outil serait de {0} deg, hors de la plage permise</translation>
+        <source>the tool rotation would be {0} deg, outside joints.rotation_range; widen the range, or move the part in the cell</source>
+        <translation>la rotation autour de l&apos;axe de l&apos;outil serait de {0} deg, hors de joints.rotation_range ; élargissez la plage, ou déplacez la pièce dans la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -13648,8 +13698,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>the tools of {0} are not all on one tool</source>
-        <translation>les outils de {0} ne sont pas tous sur un outil</translation>
+        <source>the tools of {0} are attached to more than one tool</source>
+        <translation>les outils de {0} sont fixés à plus d&apos;un outil</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/in_language.py"/>
@@ -13658,33 +13708,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
-        <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+        <source>the torch comes closer than {0} mm to {1}, or touches it on the rapid to the bead; move the external axes (cell.external) or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche, pendant le déplacement rapide vers le cordon ; déplacez les axes externes (cell.external) ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the torch comes nearer than {0} mm to {1}, or touches it on the rapid way to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the torch comes closer than {0} mm to {1}, or touches it on the rapid to the bead; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet, sur le déplacement rapide vers le cordon ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the torch comes nearer than {0} mm to {1}, or touches it; move one in cell.external or the part, try another cell.branch, or lower cell.arm_clearance</source>
-        <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche ; déplacez l’un d’eux dans cell.external, ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
+        <source>the torch comes closer than {0} mm to {1}, or touches it; move the external axes (cell.external) or the part, try another cell.branch, or lower cell.arm_clearance</source>
+        <translation>la torche s’approche à moins de {0} mm de {1}, ou le touche ; déplacez les axes externes (cell.external) ou la pièce, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the torch comes nearer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
+        <source>the torch comes closer than {0} mm to {1}, or touches it; move the part or cell.deposition_point, try another cell.branch, or lower cell.arm_clearance</source>
         <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the torch touches {what}</source>
         <translation>la torche touche {what}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>the torch weaves already, or not yet</source>
-        <translation>la torche oscille déjà, ou pas encore</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
@@ -13722,6 +13767,11 @@
         <translation>l&apos;unité de V est un réglage de la commande de {0}, et une autre unité est une autre vitesse ; donnez controller.speed_unit dans un fichier machine à vous, ou utilisez `motion: joint`</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>the unit of V is missing or unknown</source>
+        <translation>l&apos;unité de V manque ou est inconnue</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>the unit of the column {0} is not supported; use mm, cm, m, um or inch</source>
         <translation>l&apos;unité de la colonne {0} n&apos;est pas lue ; utilisez mm, cm, m, um ou inch</translation>
@@ -13748,8 +13798,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>the values of {0} do not run from 0 to its size, each once</source>
-        <translation>les valeurs de {0} ne sont pas celles de 0 à sa taille, chacune une fois</translation>
+        <source>the values of {0} must be numbered from 0 to its size, each once</source>
+        <translation>les valeurs de {0} doivent être numérotées de 0 à sa taille, chacune une fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -13842,34 +13892,29 @@
         <translation>la paroi à déposer, ou ses faces</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/verify.py"/>
-        <source>the way between two beads leaves the one that was checked by up to {0} mm and {1} deg</source>
-        <translation>le trajet entre deux cordons s&apos;écarte de celui qui a été vérifié de jusqu&apos;à {0} mm et {1}°</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/nc_read.py"/>
-        <source>the way of the move, and so its time, is not known</source>
-        <translation>le chemin du mouvement, et donc son temps, n&apos;est pas connu</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>the weave is another one within a bead</source>
+        <source>the weave changes within a bead</source>
         <translation>le balayage change au sein d&apos;un cordon</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>the weave of ArcTech is a part of its weld data, which the pendant makes, and has no number of its own</source>
-        <translation>le balayage d&apos;ArcTech fait partie de ses données de soudage, que le pupitre crée, et n&apos;a pas de numéro à lui</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>the weave that begins here does not end</source>
-        <translation>l&apos;oscillation qui commence ici ne se termine pas</translation>
+        <source>the weave that begins here has no end</source>
+        <translation>le balayage qui commence ici n&apos;a pas de fin</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>the wire feed of ArcL is set by its welddata</source>
-        <translation>le fil de ArcL est dit par ses welddata</translation>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
+        <source>the weld data copied from the controller is not declared in the module, or is copied twice</source>
+        <translation>les données de soudage copiées de la commande ne sont pas déclarées dans le module, ou sont copiées deux fois</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>the wire feed continues after the bead</source>
+        <translation>l&apos;avance du fil continue après le cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>the wire feed in the program differs from the plan</source>
+        <translation>l&apos;avance du fil dans le programme diffère du plan</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
@@ -13882,19 +13927,14 @@
         <translation>le fil amène {0} mm3/s, {1} mm/s de fil de {2} mm, mais des cordons de {3} x {4} mm à {5} mm/s demandent {6} mm3/s ; mettez process.wire.feed à {7} mm/s ou à auto, ou corrigez largeur, hauteur de couche et vitesse d&apos;avance</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>the wire goes on after its bead</source>
-        <translation>le fil continue après son cordon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>the wire is fed by two scales at once, or ends where it was not fed, or within a bead</source>
-        <translation>le fil est dévidé par deux échelles à la fois, ou s&apos;arrête là où il ne l&apos;était pas, ou au sein d&apos;un cordon</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>the wrist centre is above axis 3, without a forearm along axis 4</source>
         <translation>le centre du poignet est au-dessus de l&apos;axe 3, sans avant-bras le long de l&apos;axe 4</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>the wrist is not spherical, and axes 4 and 5 do not meet</source>
+        <translation>le poignet n&apos;est pas sphérique, et les axes 4 et 5 ne se coupent pas</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
@@ -13903,7 +13943,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots</source>
+        <source>the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as in arms of Universal Robots</source>
         <translation>le poignet n’est pas sphérique : l’axe 4 est parallèle aux axes 2 et 3, comme sur les bras d’Universal Robots</translation>
     </message>
     <message>
@@ -13915,21 +13955,6 @@
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>the wrist is not spherical: axis {0} passes {1} mm off the point where axes 5 and 6 meet</source>
         <translation>le poignet n&apos;est pas sphérique : l&apos;axe {0} passe à {1} mm du point où les axes 5 et 6 se rencontrent</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>there are files that belong to no project, or to two</source>
-        <translation>il y a des fichiers qui n&apos;appartiennent à aucun projet, ou à deux</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>there are modules that are never run, or run twice</source>
-        <translation>il y a des modules qui ne sont jamais exécutés, ou le sont deux fois</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>there are no moves</source>
-        <translation>il n&apos;y a pas de mouvements</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
@@ -13982,11 +14007,6 @@
         <translation>il n&apos;y a rien à voir dans ces couches</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
-        <source>these points would be clear with {0}, which was not tested for the others</source>
-        <translation>ces points auraient de la place avec {0}, ce qui n&apos;a pas été essayé pour les autres</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
         <source>theta, d, a and alpha must be numbers; give all four</source>
         <translation>theta, d, a et alpha doivent être des nombres ; donnez les quatre</translation>
@@ -14005,6 +14025,16 @@
         <location filename="../../freecad_am/sections/tree.py"/>
         <source>this Python cannot read YAML; install PyYAML into it</source>
         <translation>ce Python ne sait pas lire YAML ; installez-y PyYAML</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>this controller does not name tracks (the track is {0}); remove unit</source>
+        <translation>cette commande ne nomme pas les rails (le rail est {0}) ; supprimez unit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>this controller programs joint moves in percent of the maximum axis speeds, which the machine file of {0} lacks; add {1}</source>
+        <translation>cette commande programme les mouvements articulaires en pourcentage des vitesses maximales des axes, qui manquent dans le fichier machine de {0} ; ajoutez {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -14057,9 +14087,14 @@
         <translation>cette clé manque ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>this layer closes around the hub and is filled with {0}; strategy.fill = {1} needs regions that do not</source>
+        <translation>cette couche se ferme autour du moyeu et est remplie de {0} ; strategy.fill = {1} demande des régions qui ne le font pas</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
-        <source>this machine has no condition</source>
-        <translation>cette machine n&apos;a pas de condition</translation>
+        <source>this machine has no condition number</source>
+        <translation>cette machine n&apos;a pas de conditionnement</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -14108,8 +14143,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>tool lengths are not known; let the slicer leave them out</source>
-        <translation>les longueurs d&apos;outil ne sont pas connues ; faites-les omettre par le trancheur</translation>
+        <source>tool length offsets are not supported; switch them off in the slicer</source>
+        <translation>les correcteurs de longueur d&apos;outil ne sont pas pris en charge ; désactivez-les dans le trancheur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -14122,19 +14157,14 @@
         <translation>outil sur le robot, pièce sur un positionneur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>tool or platform is set again</source>
-        <translation>l&apos;outil ou le plateau est redéfini</translation>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>tool radius compensation and moves to points of a mesh are not supported; remove it</source>
+        <translation>la compensation de rayon d&apos;outil et les déplacements vers des points d&apos;un maillage ne sont pas pris en charge ; retirez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>tool radius compensation and moves to points of a mesh are not known; leave it out</source>
-        <translation>la compensation de rayon d&apos;outil et les déplacements vers des points d&apos;un maillage sont inconnus ; retirez-les</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>tool radius compensation is not known; leave it out</source>
-        <translation>la compensation de rayon d&apos;outil est inconnue ; retirez-la</translation>
+        <source>tool radius compensation is not supported; remove it</source>
+        <translation>la compensation de rayon d&apos;outil n&apos;est pas prise en charge ; retirez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -14202,14 +14232,19 @@
         <translation>rotation par longueur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>turned coordinates are not known; let the slicer leave them out</source>
-        <translation>les coordonnées tournées ne sont pas connues ; faites-les omettre par le trancheur</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
         <source>turning it about the centre of the sphere</source>
         <translation>une rotation autour du centre de la sphère</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>two analogue scales set the wire feed at once, or the wire feed ends before it begins or within a bead</source>
+        <translation>deux échelles analogiques règlent l&apos;avance du fil à la fois, ou l&apos;avance finit avant de commencer ou au sein d&apos;un cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>two consecutive axes coincide</source>
+        <translation>deux axes consécutifs coïncident</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
@@ -14272,11 +14307,6 @@
         <translation>haut</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/plots/deviation.py"/>
-        <source>up in the picture</source>
-        <translation>vers le haut de l&apos;image</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
         <source>up to date</source>
         <translation>à jour</translation>
@@ -14285,6 +14315,11 @@
         <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
         <source>up to {0} mm of the wall remain above the last whole layer</source>
         <translation>jusqu&apos;à {0} mm de la paroi restent au-dessus de la dernière couche entière</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/plots/deviation.py"/>
+        <source>upwards in the view</source>
+        <translation>vers le haut de la vue</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
@@ -14348,28 +14383,33 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>volume of the beads, as wide as their spacing, less the covered volume, compared with 10 % of the part</source>
-        <translation>volume des cordons, aussi larges que leur écartement, moins ce qu&apos;ils couvrent, par rapport à 10 % de la pièce</translation>
+        <source>volume by which the beads, at their effective width, exceed the thickness of the part</source>
+        <translation>volume dont les cordons, à leur largeur effective, dépassent l’épaisseur de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>volume of the beads, as wide as they count, that is wider than the part is thick</source>
-        <translation>volume des cordons, de la largeur qui compte, qui dépasse l’épaisseur de la pièce</translation>
+        <source>volume of the beads at the width of their spacing, minus the volume they cover, compared with 10 % of the part</source>
+        <translation>volume des cordons à la largeur de leur écartement, moins le volume qu&apos;ils couvrent, comparé à 10 % de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>volume of the beads, at their printed width, outside their layers, and of layers outside the part</source>
-        <translation>volume des cordons, aussi larges que déposés, hors de leurs couches, et des couches hors de la pièce</translation>
+        <source>volume of the beads, at their printed width, outside their layers, plus that of layers outside the part</source>
+        <translation>volume des cordons, à leur largeur déposée, hors de leurs couches, plus celui des couches hors de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>volume of the part deeper than half of a bead&apos;s width below the wall, or of its solids aside</source>
-        <translation>volume de la pièce plus profond qu’une demi-largeur de cordon sous la paroi, ou de ses solides à côté</translation>
+        <source>volume of the cubes against wire section x feed x time, or against the nominal volume of the beads if no wire is set</source>
+        <translation>volume des cubes comparé à section du fil x vitesse x temps, ou au volume nominal des cordons si aucun fil n&apos;est réglé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>volume of the part less what beads cover of each layer, as wide as they count, times the layer height</source>
-        <translation>volume de la pièce moins ce que les cordons couvrent de chaque couche, à la largeur comptée, fois la hauteur de couche</translation>
+        <source>volume of the part deeper than half a bead width below the wall, or of further solids</source>
+        <translation>volume de la pièce à plus d&apos;une demi-largeur de cordon sous la paroi, ou des autres solides</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>volume of the part minus the area that beads cover in each layer, at their effective width, times the layer height</source>
+        <translation>volume de la pièce moins l&apos;aire que les cordons couvrent dans chaque couche, à leur largeur effective, fois la hauteur de couche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model_notes.py"/>
@@ -14412,34 +14452,19 @@
         <translation>les points sont écrits en .csv ; terminez le nom ainsi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>weaving by moving the part below a fixed torch was not confirmed</source>
-        <translation>le balancement par le mouvement de la pièce sous une torche fixe n&apos;a pas été confirmé</translation>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>weaving is already on, or not on yet</source>
+        <translation>le balayage est déjà actif, ou ne l&apos;est pas encore</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
-        <source>weld data is not taken of the controller yet, has two speeds or another than declared</source>
-        <translation>des données de soudage ne sont pas encore reprises de la commande, ont deux vitesses ou une autre que déclarée</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>what the robot&apos;s own base is on, which no MACHINE_DEF gives</source>
-        <translation>ce qui porte la base du robot lui-même, qu&apos;aucun MACHINE_DEF ne dit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>where the coordinates of another work offset begin is not known; leave it out</source>
-        <translation>l&apos;origine d&apos;un autre décalage de pièce est inconnue ; retirez-le</translation>
+        <source>weld data is not copied from the controller yet, or its speed is set twice or differs from its declaration</source>
+        <translation>des données de soudage ne sont pas encore copiées de la commande, ou leur vitesse est réglée deux fois ou diffère de leur déclaration</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>whether TriggSpeed follows the speed over a part that moves was not confirmed</source>
-        <translation>que TriggSpeed suive la vitesse sur une pièce mobile n&apos;a pas été confirmé</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>whether the speed of linear moves counts the way that a track carries the robot depends on how its rail was set up, and was not confirmed; use `motion: joint`, whose times hold the speed</source>
-        <translation>si la vitesse des mouvements linéaires compte le chemin dont un rail porte le robot dépend de la manière dont ce rail a été configuré, et n&apos;a pas été confirmé ; utiliser `motion: joint`, dont les durées tiennent la vitesse</translation>
+        <source>welddata sets the wire feed of ArcL</source>
+        <translation>welddata règle l&apos;avance du fil de ArcL</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -14455,6 +14480,11 @@
         <location filename="../../freecad_am/core/process/wire.py"/>
         <source>wire feed {0} m/min is not a positive number; correct or remove the row</source>
         <translation>le dévidage {0} m/min n&apos;est pas un nombre positif ; corrigez la ligne, ou retirez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/checks.py"/>
+        <source>wire section x feed, compared with width x height x speed of the beads of each class, and of their starts and ends</source>
+        <translation>section du fil x avance, comparée à largeur x hauteur x vitesse des cordons de chaque classe, et de leurs débuts et fins</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop.py"/>
@@ -14477,14 +14507,9 @@
         <translation>avec des arêtes de {0} mm, une hauteur de couche, le maillage de la paroi a plus de {1} triangles ; prenez des couches plus hautes, ou déposez la paroi en plusieurs parties</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>with the arc blocked the move has another speed</source>
-        <translation>avec l&apos;arc bloqué le mouvement a une autre vitesse</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>with the part on the robot linear moves of KRL use a fixed tool ($IPO_MODE #TCP), and the reference of the points, nozzle or part, was not confirmed; use `setup: tool-on-robot`</source>
-        <translation>avec la pièce sur le robot, les mouvements linéaires de KRL ont un outil fixe ($IPO_MODE #TCP), et que les points soient alors la buse vue de la pièce ou la pièce vue de la buse n&apos;a pas été confirmé ; prenez `setup: tool-on-robot`</translation>
+        <source>with the part on the robot KRL needs a fixed tool ($IPO_MODE #TCP) for linear moves, and it is unconfirmed whether their points refer to nozzle or part; use `setup: tool-on-robot`</source>
+        <translation>avec la pièce sur le robot, KRL demande un outil fixe ($IPO_MODE #TCP) pour les mouvements linéaires, et il n&apos;est pas confirmé si leurs points se rapportent à la buse ou à la pièce ; utilisez `setup: tool-on-robot`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/catalogue.py"/>
@@ -14543,23 +14568,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
-        <source>write such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5</source>
-        <translation>écrivez par exemple : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5</translation>
+        <source>write it as in: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5</source>
+        <translation>écrivez-le comme dans : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
-        <source>write such as: contour: travel_speed 8, schedule 3; fill: lead 5</source>
-        <translation>écrivez par exemple `contour: travel_speed 8, schedule 3; fill: lead 5`</translation>
+        <source>write it as in: contour: travel_speed 8, schedule 3; fill: lead 5</source>
+        <translation>écrivez-le comme dans `contour: travel_speed 8, schedule 3; fill: lead 5`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
-        <source>write such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</source>
-        <translation>écrivez par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</translation>
+        <source>write it as in: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</source>
+        <translation>écrivez-le comme dans : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
-        <source>write such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0</source>
-        <translation>écrivez par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0</translation>
+        <source>write it as in: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0</source>
+        <translation>écrivez-le comme dans : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
@@ -14698,8 +14723,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>{0} applications, expected one with its parts</source>
-        <translation>il y a {0} applications, une seule attendue avec ses parties</translation>
+        <source>{0} applications, but exactly one with its parts is needed</source>
+        <translation>{0} applications, mais il en faut exactement une avec ses parties</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
@@ -14872,11 +14897,6 @@
         <translation>{0} n&apos;est pas le nom du fichier, {1} ; renommez-le</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>{0} do not belong together</source>
-        <translation>{0} ne vont pas ensemble</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>{0} do not form one wall; select the faces of the wall, or deposit them in turn</source>
         <translation>{0} ne se joignent pas en une paroi ; nommez les faces de la paroi, ou déposez-les une à une</translation>
@@ -14968,8 +14988,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>{0} files, expected one script</source>
-        <translation>il y a {0} fichiers, un seul script est attendu</translation>
+        <source>{0} files, but exactly one script is needed</source>
+        <translation>{0} fichiers, mais il faut exactement un script</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/issues.py"/>
@@ -14985,6 +15005,16 @@
         <location filename="../../freecad_am/objects/fields/rows.py"/>
         <source>{0} follows the expression {1}, which no longer gives a value; give {2} a value or another expression</source>
         <translation>{0} suit l&apos;expression {1}, qui ne donne plus rien ; donnez à {2} une valeur ou une autre expression</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>{0} follows, but the loaded {1} must run first</source>
+        <translation>{0} suit, mais {1}, qui est chargé, doit d&apos;abord s&apos;exécuter</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>{0} follows, but {1} must be unloaded first</source>
+        <translation>{0} suit, mais {1} doit d&apos;abord être déchargé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
@@ -15033,7 +15063,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>{0} has already run, or is called while depositing</source>
+        <source>{0} has already run, or is called during the deposit</source>
         <translation>{0} a déjà été exécuté, ou est appelé pendant le dépôt</translation>
     </message>
     <message>
@@ -15103,8 +15133,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>{0} has sliding axes; use {1}, or choose another machine</source>
-        <translation>{0} a des axes de translation ; utilisez {1}, ou choisissez une autre machine</translation>
+        <source>{0} has prismatic axes; use {1}, or choose another machine</source>
+        <translation>{0} a des axes prismatiques ; utilisez {1}, ou choisissez une autre machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
@@ -15378,7 +15408,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>{0} is loaded while depositing or is missing, or {1} is not a library</source>
+        <source>{0} is loaded during the deposit or is missing, or {1} is not a library</source>
         <translation>{0} est chargé pendant le dépôt ou manque, ou {1} n&apos;est pas une bibliothèque</translation>
     </message>
     <message>
@@ -15398,7 +15428,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} is missing, has no routine {1}, has already run, or is loaded while depositing</source>
+        <source>{0} is missing, has no routine {1}, has already run, or is loaded during the deposit</source>
         <translation>{0} manque, n&apos;a pas de routine {1}, s&apos;est déjà exécuté, ou est chargé pendant le dépôt</translation>
     </message>
     <message>
@@ -15677,16 +15707,6 @@
         <translation>{0} n&apos;est pas un signe ; utilisez 1 ou -1</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>{0} is not a speed of the module</source>
-        <translation>{0} n&apos;est pas une vitesse du module</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} is not a speed of the module, or the speed is set by an argument other than \T or \V</source>
-        <translation>{0} n&apos;est pas une vitesse du module, ou le mouvement est donné autrement que par \T ou \V</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>{0} is not a supported point format; use {1}</source>
         <translation>{0} n&apos;est pas lu comme des points ; utilisez {1}</translation>
@@ -15710,11 +15730,6 @@
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a text; write one in quotes</source>
         <translation>{0} n&apos;est pas un texte ; écrivez-en un entre guillemets</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/modules.py"/>
-        <source>{0} is not a tool of the module, or {1} no work object</source>
-        <translation>{0} n&apos;est pas un outil du module, ou {1} n&apos;est pas un objet de travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
@@ -15770,11 +15785,6 @@
         <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>{0} is not a word such as M7 or H2=1; give one for on and one for off</source>
         <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez-en un pour la marche et un pour l&apos;arrêt</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>{0} is not a zone of the module</source>
-        <translation>{0} n&apos;est pas une zone du module</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -15878,8 +15888,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
-        <source>{0} is not understood, or declares a name again</source>
-        <translation>{0} n&apos;est pas compris, ou déclare un nom une seconde fois</translation>
+        <source>{0} is not understood, or declares a name twice</source>
+        <translation>{0} n&apos;est pas compris, ou déclare un nom deux fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
@@ -15943,8 +15953,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>{0} is read ahead of the motion, as no wait precedes it</source>
-        <translation>{0} est lu en avance sur le mouvement, car aucune attente ne le précède</translation>
+        <source>{0} is read ahead of the motion because no wait precedes it</source>
+        <translation>{0} est lu en avance sur le mouvement parce qu&apos;aucune attente ne le précède</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/stacking.py"/>
@@ -15978,8 +15988,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>{0} jobs are called by no other job, expected one</source>
-        <translation>{0} jobs ne sont appelés par aucun autre, un seul est attendu</translation>
+        <source>{0} jobs are called by no other job, but exactly one must be the main job</source>
+        <translation>{0} jobs ne sont appelés par aucun autre, mais un seul doit être le job principal</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
@@ -15990,16 +16000,6 @@
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
         <source>{0} leave more than one opening around the axis; choose one face</source>
         <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez une face</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>{0} links that move with their axes, every {1} deg of the whole motion, the nozzle every mm: they touch nothing</source>
-        <translation>{0} corps qui bougent avec leurs axes, tous les {1} deg du mouvement entier, la buse tous les mm : ils ne touchent rien</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>{0} links that move with their axes, every {1} deg of the whole motion, the nozzle every mm: they touch {2} with {3}</source>
-        <translation>{0} corps qui bougent avec leurs axes, tous les {1} deg du mouvement entier, la buse tous les mm : ils touchent {2} avec {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -16023,8 +16023,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>{0} main programs, expected one with its parts</source>
-        <translation>il y a {0} programmes principaux, un seul attendu avec ses parties</translation>
+        <source>{0} main programs, but exactly one with its parts is needed</source>
+        <translation>{0} programmes principaux, mais il en faut exactement un avec ses parties</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
@@ -16168,8 +16168,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} modules have a routine main, expected one</source>
-        <translation>{0} modules ont une routine main, un seul était attendu</translation>
+        <source>{0} modules have a routine main, but exactly one must</source>
+        <translation>{0} modules ont une routine main, mais il en faut exactement un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -16187,6 +16187,16 @@
         <translation>{0} mouvements prennent {1} s en tout et ne peuvent pas durer moins de 1 ms chacun ; prenez une plus grande erreur de corde ou une vitesse plus basse</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>{0} moving links, checked every {1} deg of the whole motion, and the nozzle every mm: they touch nothing</source>
+        <translation>{0} corps mobiles, vérifiés tous les {1} deg du mouvement entier, et la buse tous les mm : ils ne touchent rien</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>{0} moving links, checked every {1} deg of the whole motion, and the nozzle every mm: they touch {2} with {3}</source>
+        <translation>{0} corps mobiles, vérifiés tous les {1} deg du mouvement entier, et la buse tous les mm : ils touchent {2} avec {3}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} must be 1 or -1 each; give one for each joint</source>
         <translation>{0} doivent être 1 ou -1 chacun ; donnez-en un par articulation</translation>
@@ -16200,6 +16210,11 @@
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} must be within +-180; give equivalent angles in that range</source>
         <translation>{0} doit être dans +-180 ; donnez des angles équivalents dans cette plage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>{0} must not be used together</source>
+        <translation>{0} ne doivent pas être employés ensemble</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
@@ -16468,13 +16483,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>{0} programs are called by no other program, expected one</source>
-        <translation>{0} programmes ne sont appelés par aucun autre, un seul attendu</translation>
+        <source>{0} programs are called by no other program, but exactly one must be the main program</source>
+        <translation>{0} programmes ne sont appelés par aucun autre, mais un seul doit être le programme principal</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>{0} programs are not subs, expected one</source>
-        <translation>il y a {0} programmes qui ne sont pas des sous-programmes, un seul attendu</translation>
+        <source>{0} programs are not subs, but exactly one must be the main program</source>
+        <translation>{0} programmes ne sont pas des sous-programmes, mais un seul doit être le programme principal</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/promise.py"/>
@@ -16558,8 +16573,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>{0} switches a second output, after {1}</source>
-        <translation>{0} commute une deuxième sortie, après {1}</translation>
+        <source>{0} switches a second output; the first is {1}</source>
+        <translation>{0} commute une deuxième sortie ; la première est {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
@@ -16595,16 +16610,6 @@
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
         <source>{0} was recomputed for {1}: a linked document changed after this one was saved</source>
         <translation>{0} a été recalculé pour {1} : un document lié a changé après l&apos;enregistrement de celui-ci</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} where {1} was loaded to be run</source>
-        <translation>{0} là où {1} a été chargé pour être exécuté</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} where {1} was to be removed</source>
-        <translation>{0} là où {1} devait être retiré</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
@@ -16643,13 +16648,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>{0} {1} is selected after moves in {2}: only one is known here, and all moves are simulated in it; use a program with a single one</source>
-        <translation>{0} {1} est choisi après des mouvements dans {2} : un seul est connu ici, et tous les mouvements y sont parcourus ; utilisez un programme avec un seul</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>{0} {1} is selected, but the job has {2}: moves are simulated with the cell&apos;s own; compare the two, and correct the program or the job</source>
-        <translation>{0} {1} est choisi, mais le travail a {2} : les mouvements sont parcourus avec celui de la cellule ; comparez les deux, et corrigez le programme ou le travail</translation>
+        <source>{0} {1} is selected after moves in {2}, but only one can be simulated, so all moves use it; use a program with a single one</source>
+        <translation>{0} {1} est choisi après des mouvements dans {2}, mais un seul peut être simulé, donc tous les mouvements l&apos;emploient ; utilisez un programme avec un seul</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
@@ -16793,7 +16793,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/plots/pictures.py"/>
-        <source>{0}: distance to the layer before (asked: {1} mm)</source>
+        <source>{0}: distance to the previous layer (requested: {1} mm)</source>
         <translation>{0} : distance à la couche précédente (demandée : {1} mm)</translation>
     </message>
     <message>
@@ -16828,8 +16828,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
-        <source>{0}: ignored, as they bound no shape: {1}</source>
-        <translation>{0} : omis, car ne bornant aucune forme : {1}</translation>
+        <source>{0}: ignored, because they bound no shape: {1}</source>
+        <translation>{0} : ignorés, car ils ne bornent aucune forme : {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
@@ -16878,8 +16878,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
-        <source>{0}: solids are built up on the hub, which is there before</source>
-        <translation>{0} : les solides sont construits sur le moyeu, qui est là avant</translation>
+        <source>{0}: solids are built on the hub, which must exist already</source>
+        <translation>{0} : les solides sont construits sur le moyeu, qui doit déjà exister</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>

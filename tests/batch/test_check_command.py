@@ -137,7 +137,7 @@ def test_what_was_broken_is_told_with_its_place(workshop, sound, pattern, by, co
     ("pattern", "by", "code", "words"),
     [
         (r" *\d+:  DO\[1\]=OFF ;", "   1:  ;", "DEPOSIT_SWITCH", "already on"),
-        (r"(?s)(.*)DO\[1\]=OFF ;", r"\1 ;", "DEPOSIT_SWITCH", "still on at the end of the program"),
+        (r"(?s)(.*)DO\[1\]=OFF ;", r"\1 ;", "DEPOSIT_SWITCH", "the program ends with the deposit still on"),
         (r"(?s)(FINE {4};.*?)FINE {4};", r"\1FINE TB  29.00sec,DO[1]=OFF    ;", "TRIGGER_LEAD", "less than the lead of 29 s"),
     ],
 )  # fmt: skip

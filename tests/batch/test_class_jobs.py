@@ -104,7 +104,7 @@ def fed(report):
     (line,) = [
         line
         for line in report["preflight"]
-        if line["promise"] == "The wire feeds what the beads take"
+        if line["promise"] == "The wire feed matches the volume of the beads"
     ]
     return line
 
@@ -128,7 +128,7 @@ def _figures(report, rows):
         assert told["beads"] == len(begins)
     assert [row["schedule"] for row in report["classes"]] == [1, 3, 9]
     assert fed(report)["ok"] is None and fed(report)["how"].endswith(
-        "the feed of contour, first_layer"
+        "the wire feed of contour, first_layer"
     )
     count = {row["class"]: row["beads"] for row in report["classes"]}
     assert report["totals"]["wait_s"] == pytest.approx(

@@ -128,8 +128,8 @@ def test_curves_that_lie_on_one_another_are_told(planned):
     assert told["level"] == "warning" and "32 % of the beads of beads" in told["message"]
     promises = {one["promise"]: one for one in report["preflight"]}
     assert (
-        promises["Little is deposited twice"]["ok"] is False
-        and promises["All of the part is deposited"]["ok"] is None
+        promises["Over-deposition is small"]["ok"] is False
+        and promises["The whole part is deposited"]["ok"] is None
     )
 
 

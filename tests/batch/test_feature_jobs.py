@@ -431,7 +431,7 @@ def test_each_feature_has_the_figures_of_a_job_of_its_own(workshop):
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
     for title in (
         "What spacing costs: elbow",
-        "block: distance to the layer before",
-        "elbow: distance to the layer before",
+        "block: distance to the previous layer",
+        "elbow: distance to the previous layer",
     ):
         assert title in page

@@ -94,7 +94,7 @@ def test_the_page_is_one_file_that_parses(workshop):
     for word in (
         "q1",
         "q6 (endless)",
-        "Distance to the layer before",
+        "Distance to the previous layer",
         "Joint speeds",
         "Condition",
         "Comparison",

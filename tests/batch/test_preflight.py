@@ -10,11 +10,11 @@ import pytest
 
 LIMITS, SPEEDS = (
     "Every axis stays within its limits",
-    "No axis is asked for more than its largest speed",
+    "No axis exceeds its maximum speed",
 )
 TEXT, NOZZLE = (
-    "The text takes the tool to the planned points",
-    ("The nozzle stays clear of deposit, part and platform while it deposits"),
+    "The program moves the tool to the planned points",
+    ("The nozzle stays clear of deposit, part and platform while depositing"),
 )
 
 
@@ -41,17 +41,17 @@ def test_the_figures_are_those_of_the_waypoints(workshop, root):
     assert status == 0
     # a ball of solid material is laid as a skin, and nothing else is wrong with it
     broken = [name for name, entry in promises.items() if entry["ok"] is False]
-    assert broken == ["All of the part is deposited"]
+    assert broken == ["The whole part is deposited"]
     assert (
         promises[NOZZLE]["ok"] is True
         and promises[NOZZLE]["worst"] == 0.0
         and "platform" in promises[NOZZLE]["how"]
     )
     whole = 2.0 / 3.0 * np.pi * 4.0**3
-    assert 0.4 * whole < promises["All of the part is deposited"]["worst"] < 0.6 * whole
-    assert promises["The deposit is on the part"]["ok"] is True
+    assert 0.4 * whole < promises["The whole part is deposited"]["worst"] < 0.6 * whole
+    assert promises["The deposit lies on the part"]["ok"] is True
     assert promises["Every bead is supported from below"]["worst"] == 0.0
-    rapids = promises["The nozzle stays clear on the rapids"]
+    rapids = promises["The nozzle stays clear on rapids"]
     assert (
         rapids["ok"] is True
         and (rapids["worst"], rapids["unit"]) == (0.0, "rapids")
@@ -120,12 +120,12 @@ def test_a_job_without_a_cell_promises_nothing_of_joints(workshop):
     [
         pytest.param(
             "joints: {min_condition: 0.9}\n",
-            {"The tool keeps away from singularities while it deposits"},
+            {"The tool stays away from singularities while depositing"},
             marks=pytest.mark.long,
         ),
         (
             "deposition_point: [1900, -900, 653, 0, 0, 0]",
-            {"The joints bring the tool to every point"},
+            {"The joint values reach every planned point"},
         ),
     ],
 )

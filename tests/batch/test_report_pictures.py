@@ -16,7 +16,7 @@ TITLES = (
     "Speed along the path",
     "Deposit rate",
     "Deposited mass",
-    "Distance to the layer before (asked: 4 mm)",
+    "Distance to the previous layer (requested: 4 mm)",
 )
 
 

@@ -67,7 +67,7 @@ def test_a_job_with_a_torch(shop):
     issues = json.loads((shop.folder / "out" / "report.json").read_text())["issues"]
     near = [issue["message"] for issue in issues if issue["code"] == "ARM_CLEARANCE"]
     assert any(
-        message.startswith("the torch comes nearer than 10 mm to ") or " to torch" in message
+        message.startswith("the torch comes closer than 10 mm to ") or " to torch" in message
         for message in near
     )
 

@@ -267,7 +267,7 @@ def test_tables_are_read_and_what_is_no_arm_is_refused_with_the_reason(person, h
             for pose in (table.before, table.after)
         ],
     )
-    assert "neither is the wrist spherical nor do axes 4 and 5 meet" in refused(
+    assert "the wrist is not spherical, and axes 4 and 5 do not meet" in refused(
         person, hand, wizard
     )
     type_row(person, hand, person.field(wizard, "dhTable"), 3, [rows[3, 2]], column=2)
@@ -384,7 +384,7 @@ def test_a_robot_on_its_track_begins_with_the_robot(person, hand, wizard, tmp_pa
     base = person.field(wizard, "baseLink")
     assert base.currentText() == "carriage"  # proposed
     person.choose(wizard, "baseLink", "base_link")
-    assert "its first axis slides and carries the six that turn, as a track does" in refused(
+    assert "its first axis is prismatic and carries the six revolute axes, like a track" in refused(
         person, hand, wizard
     )
     person.choose(wizard, "baseLink", "carriage")

@@ -152,7 +152,7 @@ def test_each_kind_of_bead_is_told(person, joint_path):
         colouring.CLOSING,
     ]
     told = [facts(Rows.of([each], [0], 8.0, lambda: 1.0), 3) for each in beads]
-    assert len(set(told)) == len(kinds) and "in the middle" in told[5]
+    assert len(set(told)) == len(kinds) and "centre bead" in told[5]
 
 
 def test_of_several_beads_the_point_is_told_as_the_dock_counts(person, joint_path):

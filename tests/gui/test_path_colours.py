@@ -65,7 +65,7 @@ def test_what_the_machine_cannot_do_has_colours_of_its_own(person):
     colours, scale = colouring.by_machine(values, colouring.RATIO)
     assert (
         (colours[5] == colouring.ABOVE_COLOUR).all()
-        and scale.above == "faster than it can"
+        and scale.above == "above its maximum"
         and not scale.below
     )
     assert np.array_equal(colours[[2, 3, 4]], ramp(np.array([0.1, 0.6, 1.1]) / 1.1))

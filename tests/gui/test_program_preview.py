@@ -183,9 +183,9 @@ def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(
     assert told(
         person, panel, f"Preflight: {kept} passed, {broken} failed, {unchecked} not checked"
     )
-    text = next(line for line in lines if "The text takes the tool" in line.text())
+    text = next(line for line in lines if "The program moves the tool" in line.text())
     assert text.text().startswith("✓") and "mm" in text.text()
-    speed = next(line for line in lines if "largest speed" in line.text())
+    speed = next(line for line in lines if "maximum speed" in line.text())
     layer = int(re.search(r"layer (\d+)", speed.text()).group(1))
     person.until(lambda: promises.isVisible(), "the preflight")
     hand.reveal(promises)
@@ -200,7 +200,7 @@ def test_the_preflight_says_what_was_not_checked_and_a_click_goes_to_the_place(
     hand.enter(panel, "MaxPoints", "300")
     person.until(
         lambda: any(
-            promises.item(row).text().startswith("? The text takes the tool")
+            promises.item(row).text().startswith("? The program moves the tool")
             for row in range(promises.count())
         ),
         "a text that was not read back",

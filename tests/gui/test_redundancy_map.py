@@ -156,8 +156,8 @@ def test_a_certificate_is_told_of_the_plan(person, hemisphere):
     assert 0.0 <= found["gap"] < 0.01
     told = one.form.verdict.text().splitlines()[-1]
     assert told == (
-        f"Certificate: {found['objective']:.4g} as planned, no rotation goes below {found['bound']:.4g}: a gap of "
-        f"{100 * found['gap']:.1f} %, {100 * found['worst']['gap']:.1f} % in layer {found['worst']['layer']} bead "
+        f"Certificate: {found['objective']:.4g} as planned, lower bound over all rotations {found['bound']:.4g}: a gap of "
+        f"{100 * found['gap']:.1f} %, the largest, {100 * found['worst']['gap']:.1f} %, in layer {found['worst']['layer']} bead "
         f"{found['worst']['bead']}"
     )
 

@@ -84,7 +84,7 @@ BAD = [  # with the value as the message shows it, and the remedy
     (LENGTH, "1,234.5 mm", "'1,234.5 mm'", "give a length such as 1 mm"),
     (LENGTH, "1\N{NARROW NO-BREAK SPACE}234 mm", "'1 234 mm'", "give a length such as 1 mm"),
     (LENGTH, "90 deg", "'90 deg' is an angle", "give a length such as 1 mm"),
-    (LENGTH, "1 kg", "'1 kg' is of another dimension", "give a length such as 1 mm"),
+    (LENGTH, "1 kg", "'1 kg' has another dimension", "give a length such as 1 mm"),
     (LENGTH, "1 parsec", "'1 parsec'", "give a length such as 1 mm"),
     (LENGTH, "20 %", "'20 %' is a percentage", "give a length such as 1 mm"),
     (LENGTH, "1e999 mm", "'1e999 mm' is too large", "give a length such as 1 mm"),

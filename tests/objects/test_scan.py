@@ -83,7 +83,7 @@ def test_a_fitted_wall_is_held_against_its_faces_once_it_is_fitted(doc, tmp_path
         (promise,) = [
             one
             for one in preflight.stage_preflight(made)
-            if one.promise == "The deposit is on the part"
+            if one.promise == "The deposit lies on the part"
         ]
         return api.result(made), promise
 
@@ -92,7 +92,7 @@ def test_a_fitted_wall_is_held_against_its_faces_once_it_is_fitted(doc, tmp_path
     assert lowest == pytest.approx(-1.3, abs=0.06) and "OFF_PART" not in {
         issue.code for issue in sound.issues
     }
-    assert promise.ok and promise.worst < 0.12 and "less the layer shift" in promise.how
+    assert promise.ok and promise.worst < 0.12 and "without the layer shift" in promise.how
     few, promise = toolpath(-4.6)  # 24 mm lead back 4.8 mm, a fifth of them
     assert "SCAN_REMAINS" in {issue.code for issue in few.issues} and promise.ok is False
     moved = fit_layers.move_bead

@@ -143,11 +143,11 @@ def test_travel_speed_is_told_apart_and_where_it_is_not_kept(dome):
     assert np.nanmin(by_name["deposit"]) == np.nanmax(by_name["deposit"]) == 8.0
     assert (
         np.isfinite(by_name["rapid"]) & np.isfinite(by_name["deposit"])
-    ).sum() == 0 and "as the axes can" not in by_name
+    ).sum() == 0 and "limited by the axes" not in by_name
     machine = dataclasses.replace(source.cell.machine, max_speed=np.full(6, np.radians(2.0)))
     slow = dataclasses.replace(source, cell=dataclasses.replace(source.cell, machine=machine))
     (chart,) = pictures.travel(slow, rows(slow))
-    kept = {one.name: one.y for one in chart.curves}["as the axes can"]
+    kept = {one.name: one.y for one in chart.curves}["limited by the axes"]
     assert 0.0 < np.nanmin(kept) < np.nanmax(kept) < 8.0
 
 

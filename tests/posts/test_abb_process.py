@@ -354,7 +354,7 @@ def test_a_trigger_on_a_corner_is_not_read():
     damaged = files["job.mod"].replace(b"g_on1,fine", b"g_on1,z_am1", 1)
     with pytest.raises(InputError) as error:
         abb.read({"job.mod": damaged})
-    assert "a corner has no end" in error.value.message
+    assert "the corner is rounded" in error.value.message
 
 
 def onto(rapid):
@@ -456,8 +456,8 @@ def test_golden_modules_to_the_byte(root, name):
             "welddata",
         ),
         ({"wire": FED}, {"motion": "joint"}, "abb tool-on-robot", "NO_WIRE_OUTPUT", "joint moves"),
-        ({"wire": FED}, {}, "abb part-on-robot", "NO_WIRE_OUTPUT", "part that moves"),
-        ({"wire": FED}, {}, "abb positioner", "NO_WIRE_OUTPUT", "part that moves"),
+        ({"wire": FED}, {}, "abb part-on-robot", "NO_WIRE_OUTPUT", "moving part"),
+        ({"wire": FED}, {}, "abb positioner", "NO_WIRE_OUTPUT", "moving part"),
         (
             {"schedule": 3},
             {"by": "arc", "trigger": TriggerParameters(lead=0.1)},

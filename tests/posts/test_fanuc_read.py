@@ -159,7 +159,7 @@ def test_random_programs_come_back(random_program, seed, motion):
     (r"CNT0 ", "CNT0 RTCP", "HAND.LS line 16", "RTCP"),
     (r"J P\[1\] 250msec", "C P[1]", "HAND.LS line 15", "'C P[1]"),
     (r"J P\[1\] 250msec", "J PR[1] 250msec", "HAND.LS line 15", "PR[1]"),
-    (r"J P\[1\] 250msec", "L P[1] 6mm/sec", "HAND.LS line 15", "another way than it is recorded"),
+    (r"J P\[1\] 250msec", "L P[1] 6mm/sec", "HAND.LS line 15", "the form in which its position is recorded"),
     (r"250msec", "6mm/sec", "HAND.LS line 15", "mm/sec"),
     (r"250msec", "100cm/min", "HAND.LS line 15", "cm/min"),
     (r"J P\[1\] 250", "J P[3] 250", "HAND.LS line 15", "P[3] is not recorded"),
@@ -169,8 +169,8 @@ def test_random_programs_come_back(random_program, seed, motion):
     (r"  12:.*\n", "  12:  JMP LBL[1] ;\n", "HAND.LS line 19", "JMP"),
     (r"  12:.*\n", "  12:  END ;\n", "HAND.LS line 19", "'END'"),
     (r"  12:.*\n", "  12:  CALL ELSEWHERE\n", "HAND.LS line 19", "not an instruction"),
-    (r"UTOOL_NUM=4", "UTOOL_NUM=5", "HAND.LS line 15", "another UTOOL"),
-    (r"UFRAME_NUM=3", "UFRAME_NUM=0", "HAND.LS line 15", "another UFRAME"),
+    (r"UTOOL_NUM=4", "UTOOL_NUM=5", "HAND.LS line 15", "a UTOOL that is not selected"),
+    (r"UFRAME_NUM=3", "UFRAME_NUM=0", "HAND.LS line 15", "a UFRAME that is not selected"),
     (r"J5=    45.000 deg", "J5=    45,000 deg", "HAND.LS line 22", "P[1]"),
     (r"J5=    45.000 deg", "J5=  ******** deg", "HAND.LS line 22", "P[1]"),
     (r",\tJ6=     0.000 deg", "", "HAND.LS line 28", "P[2]"),
@@ -203,7 +203,7 @@ def test_joint_and_cartesian_positions_in_one_program_are_refused():
         "P[7]{\n   GP1:\n\tUF : 3, UT : 4,\t\tCONFIG : 'N U T, 0, 0, 0',\n"
         "\tX = 1.0 mm,\tY = 2.0 mm,\tZ = 3.0 mm,\n\tW = 1.0 deg,\tP = 2.0 deg,\tR = 3.0 deg\n};\n"
     )
-    with pytest.raises(InputError, match="mixed"):
+    with pytest.raises(InputError, match="mixes joint and Cartesian"):
         fanuc.read(
             by_hand(
                 sub=SUB[: SUB.index("P[7]{")].replace("J P[7] 1msec", "L P[7] 5.0mm/sec")

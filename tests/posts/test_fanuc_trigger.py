@@ -75,7 +75,7 @@ def test_it_stands_on_the_moves_that_end_there_as_controllers_write_it():
 
 
 @pytest.mark.parametrize(("old", "new", "why"), [
-    ("CNT100 ", "CNT100 TB    .05sec,DO[5]=OFF ", "no end"),
+    ("CNT100 ", "CNT100 TB    .05sec,DO[5]=OFF ", "corner is rounded"),
     *((".5sec FINE", f".5sec FINE {option}", why) for option, why in (
         ("TB .05sec,DO[6]=ON", "second output"), ("TB .05sec,CALL ON", "'TB .05sec,CALL ON'"), ("TA .05sec,DO[5]=ON", "TA"),
         ("DB 5.0mm,DO[5]=ON", "DB"), ("TB -.05sec,DO[5]=ON", "'TB -.05sec"), ("TB .05sec,DO[5]=PULSE", "PULSE"),

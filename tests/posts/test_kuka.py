@@ -598,7 +598,9 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
         code="NO_JOINT_SPEED",
         where="cell.machine",
     )
-    assert message.endswith("file of a robot does not give them; add `max_speed` to its joints")
+    assert message.endswith(
+        "which the machine file of a robot lacks; add `max_speed` to its joints"
+    )
     for lacking, where in ((0, "cell.machine"), (1, "cell.external")):
         speeds = (*slow, 1.0, 1.0) if lacking == 0 else (*NOMINAL, 1.0, math.inf)
         message = refusal(
@@ -606,7 +608,7 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
             code="NO_JOINT_SPEED",
             where=where,
         )
-        assert f"file of {('a robot', 'a table')[lacking]} does not" in message
+        assert f"file of {('a robot', 'a table')[lacking]} lacks" in message
         message = refusal(
             beside(JOB, max_speed=speeds, of_urdf=(lacking == 0,) * 6 + (lacking == 1,) * 2),
             code="NO_JOINT_SPEED",
@@ -616,7 +618,7 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
     del told["joints"][1]["max_speed"]
     (tmp_path / "mine.json").write_text(json.dumps({**told, "id": "mine"}), encoding="utf-8")
     message = _refused_beside(tmp_path / "mine.json")
-    assert f"the machine file of {told['title']} does not give them; add `max_speed`" in message
+    assert f"the machine file of {told['title']} lacks; add `max_speed`" in message
     (tmp_path / "turn.urdf").write_text(
         '<robot name="turn"><link name="foot"/><link name="arm"/><link name="plate"/>'
         '<joint name="tilt" type="revolute"><parent link="foot"/><child link="arm"/><axis xyz="0 1 0"/>'
@@ -627,7 +629,7 @@ def test_the_file_that_lacks_a_joint_speed_is_named(tmp_path):
     )
     message = _refused_beside(tmp_path / "turn.urdf")
     assert message.endswith(
-        "of turn tilt - turn does not give them; add `velocity` to the `<limit>` of each of its joints"
+        "of turn tilt - turn lacks; add `velocity` to the `<limit>` of each of its joints"
     )
 
 
@@ -718,19 +720,19 @@ def test_a_module_by_hand():
     ("DEF hand()", "DEF other()", "its routine DEF other() and the file have different names"),
     ("DEF hand()", "GLOBAL DEF hand( )  ; by hand", "one routine named like the file, that begins with &ACCESS RVP, &REL 1 and DEF and ends with END: it has GLOBAL DEF hand( );"), ("DEF hand()", "", "END: it has no DEF;"),
     ("\nEND\n", "\nEND\nDEF more()\nEND\n", "END: it has DEF hand(), DEF more();"),
-    ("\nEND\n", "\n", "one routine"), ("BAS(#BASE,3)\n", "", "counts on"),
-    ("$IPO_MODE=#BASE", "$IPO_MODE=#TCP", "not understood"), ("BAS(#VEL_PTP,25)\n", "", "counts on"),
-    ("VEL_PTP,25", "VEL_PTP,125", "1 to 100"), ("$APO.CDIS=0.5\n", "", "counts on"), ("$VEL.CP=0.0305\n", "", "counts on"),
+    ("\nEND\n", "\n", "one routine"), ("BAS(#BASE,3)\n", "", "does not set base, tool, speed and rounding"),
+    ("$IPO_MODE=#BASE", "$IPO_MODE=#TCP", "not understood"), ("BAS(#VEL_PTP,25)\n", "", "does not set base, tool, speed and rounding"),
+    ("VEL_PTP,25", "VEL_PTP,125", "1 to 100"), ("$APO.CDIS=0.5\n", "", "does not set base, tool, speed and rounding"), ("$VEL.CP=0.0305\n", "", "does not set base, tool, speed and rounding"),
     ("WAIT FOR $IN[4]==TRUE\n", "", "ahead of the motion"), ("WAIT SEC 0.5\n", "", "ahead of the motion"),
     ("C 179.5}", "C 179.5} C_DIS", "approximated"), ("$OUT[7]=FALSE", "$OUT[8]=FALSE", "second output"),
     ("gripper_open()", "hand()", "called by no other"), ("gripper_open()", "GOTO x", "not understood"),
     ("WAIT FOR", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[7]=FALSE\nWAIT FOR", "interrupts the lines"),
-    ("LIN {X 10.0", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[7]=FALSE\nLIN {X 10.0", "no end"),
+    ("LIN {X 10.0", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[7]=FALSE\nLIN {X 10.0", "corner is rounded"),
     ("LIN {X 20.5", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[8]=FALSE\nLIN {X 20.5", "second output"),
     ("LIN {X 20.5", "TRIGGER WHEN DISTANCE=1 DELAY=50 DO $OUT[7]=FALSE\nLIN {X 20.5", "ahead of the motion"),
     ("LIN {X 20.5", "TRIGGER WHEN DISTANCE=0 DELAY=-50 DO $OUT[7]=FALSE\nLIN {X 20.5", "ahead of the motion"),
-    ("gripper_open()\n", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[7]=TRUE\n", "before the last move"),
-    (",A6 200.25", "", "not understood"), ("C 10.0}", "C 10.0,E1 5.0}", "are mixed"),
+    ("gripper_open()\n", "TRIGGER WHEN DISTANCE=1 DELAY=-50 DO $OUT[7]=TRUE\n", "before its last move"),
+    (",A6 200.25", "", "not understood"), ("C 10.0}", "C 10.0,E1 5.0}", "use different external axes"),
 ])  # fmt: skip
 def test_what_is_not_understood_is_refused(old, new, why):
     with pytest.raises(InputError) as raised:

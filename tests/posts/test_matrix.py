@@ -41,8 +41,11 @@ ON_TABLES = (
 )  # posts of five-axis machines, which have a file of tests of their own
 # what is refused, by its code and a word of its reason
 NOT_WRITTEN, BOTH = ("UNSUPPORTED_AXES", "not written with a"), "track and positioner"
-RAIL = {"fanuc": "how its rail was set up", "yaskawa": "whether their speed counts its way"}
-COUPLED = {"fanuc": "which user frame", "yaskawa": "SMOVL"}
+RAIL = {
+    "fanuc": "depends on the setup of the rail",
+    "yaskawa": "whether their speed includes its motion",
+}
+COUPLED = {"fanuc": "the user frame of its positions is unconfirmed", "yaskawa": "SMOVL"}
 REFUSED = (
     {
         ("fanuc", "cartesian", "part-on-robot"): (

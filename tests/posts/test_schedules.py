@@ -200,7 +200,7 @@ def test_what_a_controller_cannot_be_told_is_refused_and_its_page_says_so(
         ({"schedule": 300}, {"post": "yaskawa"}, "SCHEDULE", "up to 255, not 300"),
         ({"schedule": 300}, {"post": "yaskawa", "by": "arc"}, "", ""),
         ({"schedule": 300}, {"post": "kuka"}, "SCHEDULE", "up to 255, not 300"),
-        ({}, {"post": "ur", "output": 48}, "SCHEDULE", "needs an output from 1 to 47, not 48"),
+        ({}, {"post": "ur", "output": 48}, "SCHEDULE", "need an output from 1 to 47, not 48"),
         ({}, {"post": "kuka", "output": 1}, "SCHEDULE", "includes the output of the deposit"),
         ({}, {"post": "siemens", "output": 1}, "SCHEDULE", "H1 switches the deposit"),
         (

@@ -237,12 +237,12 @@ def test_random_programs_come_back(random_application, seed, motion, setup):
     ("  endFor", "    doExtrude=false\n  endFor", "hand/layer_0001.pgx line 3", "loop over one move"),
     ("mTravel)\n  waitEndMove()\n  call", "mTravel)\n  call", "hand/start.pgx line 4", "does not wait"),
     ("endFor\n  waitEndMove()", "endFor", "hand/start.pgx line 6", "does not wait"),
-    ("mTravel)\n  waitEndMove()\nend", "mTravel)\nend", "program", "ends before the last move"),
+    ("mTravel)\n  waitEndMove()\nend", "mTravel)\nend", "program", "ends before its last move"),
     ("call layer_0001()", "call layer_0002()", "hand", "layer_0002 is not a program"),
     ("call layer_0001()", "call start()", "hand", "calls itself"),
     ("call gripper:open()", "call other:open()", "hand/start.pgx line 8", "other is not a library"),
     ("call gripper:open()", "call prog:open()", "hand/start.pgx line 8", "called before it is loaded"),
-    ("call gripper:open()", 'if prog:libLoad("./two")!=0', "hand/start.pgx line 8", "without stopping"),
+    ("call gripper:open()", 'if prog:libLoad("./two")!=0', "hand/start.pgx line 8", "the robot cannot stop"),
     ("call gripper:open()", 'if prog:libLoad("./two")!=0\npopUpMsg("")\nreturn\nendIf', "hand/start.pgx line 8",
      "is missing"),
     ("doExtrude=false", "diReady=false", "hand/start.pgx line 6", "not a digital output"),
@@ -254,7 +254,7 @@ def test_random_programs_come_back(random_application, seed, motion, setup):
     ('vel="100" decel="100" tmax="6"', 'vel="50" decel="100" tmax="6"', "hand/layer_0001.pgx line 3", "speed"),
     ('tmax="6" rmax="99999"', 'tmax="6" rmax="60"', "hand/layer_0001.pgx line 3", "speed"),
     ('fatherId="world[0]"', 'fatherId="fOther[0]"', "hand/layer_0001.pgx line 3", "placed in the world"),
-    ('rz="0" fatherId="fPart[0]"', 'rz="0" fatherId="world[0]"', "hand/layer_0001.pgx line 3", "in one frame"),
+    ('rz="0" fatherId="fPart[0]"', 'rz="0" fatherId="world[0]"', "hand/layer_0001.pgx line 3", "in more than one frame"),
     ('fatherId="flange[0]"', 'fatherId="tOther[0]"', "hand/start.pgx line 3", "tool"),
     ('j4="0.1"', 'j4="0,1"', "hand: jPath", "plain number"),
     ('j4="0.1"', 'j4="1e-1"', "hand: jPath", "plain number"),
@@ -307,7 +307,7 @@ def test_loading_a_part_while_depositing_is_refused(random_application):
     text = files[name].decode()
     last = text.rindex("doDeposit=false")
     files[name] = (text[:last] + "doDeposit=true" + text[last + len("doDeposit=false") :]).encode()
-    with pytest.raises(InputError, match="loaded while depositing"):
+    with pytest.raises(InputError, match="loaded during the deposit"):
         staubli.read(files)
 
 

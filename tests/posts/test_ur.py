@@ -450,7 +450,7 @@ def by_hand(pattern="", replacement=""):
     (r"  movep[^\n]*\n", "  a()\n  def a():\n    sleep(0.1)\n  end\n", "TABLE.script line 6", "before it is defined"),
     (r"  movep[^\n]*\n", "  while True:\n    sleep(0.1)\n  end\n", "TABLE.script line 6", "is not understood"),
     (r"  movep[^\n]*\n", "  while get_standard_digital_in(1) == False:\n  end\n", "TABLE.script line 6", "a loop that"),
-    (r"  movep[^\n]*\n", "  set_tcp(p[0.0, 0.0, 0.0, 0.0, 0.0, 0.0])\n", "TABLE.script line 6", "set again"),
+    (r"  movep[^\n]*\n", "  set_tcp(p[0.0, 0.0, 0.0, 0.0, 0.0, 0.0])\n", "TABLE.script line 6", "sets tool or platform a second time"),
     (r"  movep[^\n]*\n", "  set_standard_digital_out(1, True)\n", "TABLE.script line 6", "a second output"),
     (r"  movep", "movep", "TABLE.script line 6", "outside its function"),
     (r"movej\(get_inverse_kin\([^\n]*\), (\[[^\]]*\])\)", r"movej(\1", "TABLE.script line 4", "positions are given"),

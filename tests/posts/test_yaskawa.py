@@ -514,7 +514,7 @@ def test_pulses_are_those_of_a_machine_file(tmp_path):
     ("NOP", "NOP\r\nSPEED V=1.0", "is not understood"), ("DOUT OT#(7) OFF", "DOUT OT#(8) OFF", "a second output"),
     ("//NAME LINEAR", "//NAME OTHER", "its job is called OTHER"), ("CALL JOB:CLEAN", "CALL JOB:LINEAR", "0 jobs are called"),
     ("///NPOS 6", "///NPOS 7", "is not position 6"), ("SC,RW", "SC,RO", "do not begin"), ("/JOB\r", "JOB\r", "not a job"),
-    ("NOP", "NOP\r\n'pulses/deg S 1.0", "how many pulses"), ("'V in mm/s", "'V in m/s", "what unit V has"),
+    ("NOP", "NOP\r\n'pulses/deg S 1.0", "are missing or given twice"), ("'V in mm/s", "'V in m/s", "the unit of V is missing"),
     ("'V in mm/s", "'V in mm/s\r\n'V in cm/min", "two units"), ("S 1435.3", "S 0.0", "or are missing"),
 ])  # fmt: skip
 def test_what_is_not_understood_is_refused(pattern, replacement, why):

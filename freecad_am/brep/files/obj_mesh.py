@@ -85,7 +85,7 @@ class ObjMesh:
         if not self.left_out:
             return ()
         counts = ", ".join(f"{count} x {name}" for name, count in self.left_out.items())
-        text = Text("{}: ignored, as they bound no shape: {}", self.where, counts)
+        text = Text("{}: ignored, because they bound no shape: {}", self.where, counts)
         return (Issue(NOTE, CONTENT, text),)
 
     def _read(self, line: bytes, number: int) -> None:

@@ -95,7 +95,7 @@ def inspect(
         NOT_SETTLED if the fit does not converge.
     """
     refuse_too_few(measured.points, measured.label)
-    report(0.05, "laying the points onto the part")
+    report(0.05, "fitting the points to the part")
     registration, within, distances = _aligned(measured, planned, parameters)
     report(0.6, "sphericity and circularity")
     aligned = measured.points @ registration.motion[:3, :3].T + registration.motion[:3, 3]

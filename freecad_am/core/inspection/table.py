@@ -42,7 +42,7 @@ def rows(inspected: Inspected) -> tuple[Row, ...]:
         Row("Root mean square", spread.rms, "mm", "RMS"),
         Row("Largest deviation outside", spread.most, "mm", "Most"),
         Row("Largest deviation inside", spread.least, "mm", "Least"),
-        Row("95 % of the amounts within", spread.within_95, "mm", "95 % within"),
+        Row("95 % of the absolute deviations within", spread.within_95, "mm", "95 % within"),
         Row("Within tolerance", 100.0 * spread.within, "%", "In tolerance"),
     ]
     if inspected.ball is not None:
@@ -87,7 +87,7 @@ def rows(inspected: Inspected) -> tuple[Row, ...]:
         figures_ += [
             Row("Mean thickness", wall.mean, "mm", "Thickness"),
             Row("Standard deviation of the thickness", wall.deviation, "mm", "… std. dev."),
-            Row("Least thickness", wall.least, "mm", "… least"),
+            Row("Smallest thickness", wall.least, "mm", "… least"),
             Row("Largest thickness", wall.most, "mm", "… most"),
         ]
     return tuple(figures_)

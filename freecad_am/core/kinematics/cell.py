@@ -690,7 +690,7 @@ def _refuse_otherwise(machine: Machine, arrangement: Arrangement, has_external: 
     """InputError WRONG_SETUP for what the machine, or external axes, do not do, NO_CLOSED_FORM for an arm whose inverse is
     not known."""
     if arrangement not in machine.arrangements:
-        kind = "is a robot" if machine.free else "has sliding axes"
+        kind = "is a robot" if machine.free else "has prismatic axes"
         setups = Text.joined(
             " or ", (candidate.setup for candidate in machine.arrangements if candidate.planned)
         )

@@ -24,7 +24,7 @@ FIRST_LAYER, CONTOUR, FILL, CLOSING, LINK, WALL = CLASSES = (
 )
 LARGEST_SCHEDULE = 65535  # 16 bits
 LARGEST_WEAVE = 255  # files of weaving conditions of a Yaskawa
-_FORM = "write such as: contour: travel_speed 8, schedule 3; fill: lead 5"
+_FORM = "write it as in: contour: travel_speed 8, schedule 3; fill: lead 5"
 _INNER = {f.ANGLE: math.radians}
 _TO_OUTER_UNITS = {f.ANGLE: math.degrees}
 START, END = "start", "end"
@@ -34,14 +34,14 @@ START, END = "start", "end"
 class PhaseParameters:
     """The settings that differ at an end of every bead, over a length of the bead."""
 
-    length: float = f.parameter(0.0, f.LENGTH, "Length of the bead that it covers.", low=0.0)
+    length: float = f.parameter(0.0, f.LENGTH, "Length of bead with these settings.", low=0.0)
     travel_speed: float | None = f.parameter(
-        None, f.SPEED, "Travel speed there.", low=0.0, open_low=True, optional=True
+        None, f.SPEED, "Travel speed in this length.", low=0.0, open_low=True, optional=True
     )
     schedule: int | None = f.parameter(
         None,
         f.COUNT,
-        "Schedule to send there, without a stop.",
+        "Schedule for this length, sent without a stop.",
         low=1,
         high=LARGEST_SCHEDULE,
         optional=True,
@@ -49,7 +49,7 @@ class PhaseParameters:
     ramp: float = f.parameter(
         0.0,
         f.LENGTH,
-        "Length next to it over which the speed changes in steps to the speed of the bead.",
+        "Length of the adjacent ramp, in which the speed changes in steps to that of the bead.",
         low=0.0,
         advanced=True,
     )

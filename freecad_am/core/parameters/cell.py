@@ -72,7 +72,7 @@ class CellParameters:
     setup: str = f.parameter(
         "part-on-robot",
         f.CHOICE,
-        "Whether the robot carries the tool or the part, or a machine with rotary axes.",
+        "What the robot carries, tool or part; or a machine with rotary axes.",
         choices=("part-on-robot", "tool-on-robot", "rotary-table", "tool-on-robot+positioner"),
     )
     deposition_point: Pose = f.parameter(
@@ -84,10 +84,10 @@ class CellParameters:
     platform: float | Pose = f.parameter(
         5.0,
         f.LENGTH,
-        "From the flange, or the face of a rotary table, to the mounting plane along its Z, or a pose on it.",
+        "Distance along Z from the flange, or from the face of a rotary table, to the mounting plane; or a pose relative to it.",
     )
     platform_diameter: float = f.parameter(
-        113.0, f.LENGTH, "Diameter of the platform; counts in clearance.", low=0.0, high=10_000.0
+        113.0, f.LENGTH, "Diameter of the platform, used for clearance.", low=0.0, high=10_000.0
     )
     mount: str = f.parameter(
         "auto",

@@ -27,14 +27,14 @@ EXTERNAL_KEY, OBSTACLES_KEY = "cell.external", "cell.obstacles"
 TOUCHED_KEY, SHAPE_KEY = "cell.touched", "cell.nozzle.shape"
 MAX_BOX_SIZE = 1e5  # mm, of a box
 _EXTERNAL_TEXT = re.compile(r"(?P<machine>.+?)\s+at\s+(?P<pose>.+?)\s+carries\s+(?P<carries>\S+)")
-_EXTERNAL_FORM = "write such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part"
+_EXTERNAL_FORM = "write it as in: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part"
 _BOX = re.compile(r"box\s+(?P<box>[-+\d.,eE\s]+)")
 _OBSTACLE_TEXT = re.compile(r"(?:(?P<name>[^=;]+?)\s+=\s+)?(?P<what>.+?)\s+at\s+(?P<pose>[^;]+)")
 _OBSTACLE_FORM = (
-    "write such as: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0"
+    "write it as in: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0"
 )
 _TOUCHED_FORM = (
-    "write such as: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5"
+    "write it as in: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5"
 )
 
 

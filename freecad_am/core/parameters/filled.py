@@ -174,7 +174,7 @@ class FilledParameters(LayerParameters):
     wait: float = f.parameter(
         0.0,
         f.TIME,
-        "Least time between the end of a layer of a solid and the start of its next.",
+        "Minimum time between the end of a layer of a solid and the start of its next layer.",
         low=0.0,
     )
     min_layer_time: float = f.parameter(

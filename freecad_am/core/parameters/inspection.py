@@ -85,7 +85,7 @@ class InspectionParameters:
     band: float = f.parameter(
         0.5,
         f.LENGTH,
-        "Points within this height of such a level count, moved to it along the planned surface.",
+        "Points within this height of an evaluated height are used, moved to it along the planned surface.",
         low=0.0,
         open_low=True,
         high=100.0,

@@ -127,7 +127,7 @@ class JointParameters:
     parameter: str = f.parameter(
         "rotation",
         f.CHOICE,
-        "What the polynomial gives: the true rotation about the tool axis, or RZ of the paper.",
+        "Quantity that the polynomial describes: the true rotation about the tool axis, or RZ of Chalvin 2020.",
         choices=("rotation", "rz"),
         advanced=True,
     )

@@ -122,14 +122,14 @@ class CoolingParameters:
     gain: float = f.parameter(
         1.0,
         f.NUMBER,
-        "Change of the input value in a program per degree.",
+        "Change of the input value, as the program reads it, per degree.",
         low=0.0,
         open_low=True,
         advanced=True,
         unit="1/°C",
     )
     zero: float = f.parameter(
-        0.0, f.NUMBER, "The input's value in a program at 0 degrees Celsius.", advanced=True
+        0.0, f.NUMBER, "Input value, as the program reads it, at 0 degrees Celsius.", advanced=True
     )
 
     def __post_init__(self) -> None:
@@ -204,8 +204,7 @@ class ProcessParameters:
     fill_width: str = f.parameter(
         "auto",
         f.CHOICE,
-        "How wide the beads of solids on hubs count in filling: as the spacing, or as the bead width; "
-        "auto: as the bead width where it is given, held by a bead model, or an overlap counts with it.",
+        "Effective bead width when solids on hubs are filled: the bead spacing, or the bead width; auto: the bead width if it is set, kept by a bead model, or used by an overlap.",
         choices=("auto", "spacing", "bead_width"),
         advanced=True,
     )

@@ -42,7 +42,7 @@ class NcParameters:
     tolerance: float = f.parameter(
         0.05,
         f.LENGTH,
-        "LinuxCNC: how far corners may be rounded (G64 P).",
+        "LinuxCNC: tolerance for rounding corners (G64 P).",
         low=0.0,
         high=10.0,
         open_low=True,
@@ -171,7 +171,7 @@ class ProgramParameters:
         "deg; auto: the frame on the platform.",
         words=("auto",),
     )
-    dry_run: bool = f.parameter(False, f.FLAG, "The same motion without deposit.")
+    dry_run: bool = f.parameter(False, f.FLAG, "Dry run: the same motion without deposit.")
     start_at: StartParameters = f.group(StartParameters, "Where a job resumes.")
     blend: int = f.parameter(
         100,

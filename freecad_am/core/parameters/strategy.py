@@ -42,7 +42,7 @@ MEND = (
     "Largest hole in a mesh that is closed automatically, with a note; larger holes are rejected."
 )
 LAYER_TIME = (
-    "Least time of a layer, from its first bead to the first of the next; the machine "
+    "Minimum time of a layer, from the start of its first bead to the start of the next layer; the machine "
     "waits if needed"
 )
 MOST_LAYERS = (

@@ -216,9 +216,7 @@ def _proven(
     judge, proofs = Judge(job, None), dict[int, Judged]()
     for number in ranked(placed, parameters.best)[: parameters.proven]:
         share = JUDGING + (1.0 - JUDGING) * len(proofs) / parameters.proven
-        progress(
-            share, Text("planning the whole job at one of the best poses, the {}.", len(proofs) + 1)
-        )
+        progress(share, Text("planning the whole job, best pose number {}", len(proofs) + 1))
         proofs[number] = judge.evaluate(replace_pose(settings, placed.moves, placed.pose(number)))
         if proofs[number].feasible:
             break

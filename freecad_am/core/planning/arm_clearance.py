@@ -205,7 +205,7 @@ def clearance_issue(
     Issue
         An error with the remedy.
     """
-    where = " on the rapid way to the bead" if on_way else ""
+    where = " on the rapid to the bead" if on_way else ""
     stands = what in [external_link.name for external_link in cell.shapes.external_links]
     if link == NOZZLE:
         moved = (
@@ -230,7 +230,7 @@ def clearance_issue(
         else Text("link {}", link)
     )
     remedy = (
-        "move one in cell.external or the part"
+        "move the external axes (cell.external) or the part"
         if stands
         else "move the part or cell.deposition_point"
     )
@@ -238,7 +238,7 @@ def clearance_issue(
         ERROR,
         CODE,
         Text(
-            "{} comes nearer than {:g} mm to {}, or touches it{}; {}, try another cell.branch, or lower "
+            "{} comes closer than {:g} mm to {}, or touches it{}; {}, try another cell.branch, or lower "
             "cell.arm_clearance",
             Word(name),
             cell.arm_clearance,

@@ -157,8 +157,7 @@ def _condition_findings(path: BeadPath, bead_fields: dict[str, int]) -> list[Iss
             ERROR,
             "SINGULAR",
             Text(
-                "inverse condition number {:.4f} is below the required {:.4f}: too near a "
-                "singularity",
+                "inverse condition number {:.4f} is below the required {:.4f}, too close to a singularity; move the part in the cell, or lower joints.min_condition",
                 path.condition[point],
                 path.threshold[point],
             ),
@@ -181,7 +180,7 @@ def _range_findings(task: Task, path: BeadPath, bead_fields: dict[str, int]) -> 
             ERROR,
             "ROTATION_RANGE",
             Text(
-                "the tool rotation would be {:.2f} deg, outside the allowed range",
+                "the tool rotation would be {:.2f} deg, outside joints.rotation_range; widen the range, or move the part in the cell",
                 math.degrees(path.phi[point]),
             ),
             point=point,

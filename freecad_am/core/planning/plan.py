@@ -221,7 +221,7 @@ def _in_branches(
         from .certificate import bound  # few jobs need it
 
         optimality, notes = bound.summed(
-            task, paths, lambda share: progress(share, "bounding the objective")
+            task, paths, lambda share: progress(share, "computing the lower bound of the objective")
         )
         issues = [*issues, *notes]
     return JointPath(

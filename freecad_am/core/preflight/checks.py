@@ -30,8 +30,8 @@ from .promise import PERCENT, Place, Promise, issue_place, number, select_issues
 # ---- The text of a program against the plan, and the checks that only its controller can do
 
 TEXT, BETWEEN = (
-    "The text takes the tool to the planned points",
-    "Between its points the text keeps to the planned path",
+    "The program moves the tool to the planned points",
+    "The program follows the planned path between its points",
 )
 
 
@@ -60,10 +60,9 @@ def program_promises(read_back: ReadBack | None, on_controller: Sequence[str]) -
 def _read_back(read_back: ReadBack | None) -> list[Promise]:
     if read_back is None:
         return [
-            Promise(what, "not checked: there is no program that was read back", None)
-            for what in (TEXT, BETWEEN)
+            Promise(what, "not checked: no program was read back", None) for what in (TEXT, BETWEEN)
         ]
-    how = "read back by a reader of its own and driven through the joint-frame chain"
+    how = "read back by an independent reader and converted to poses by the joint-frame chain"
     method = (
         Text("{} and PyKDL", Word(how))
         if read_back.solvers > 1
@@ -78,7 +77,7 @@ def _read_back(read_back: ReadBack | None) -> list[Promise]:
         ),
         Promise(
             BETWEEN,
-            "the path of the text between its points, as the controller interpolates it",
+            "path between the points of the program, as the controller interpolates it",
             _is_within(read_back, read_back.between, read_back.allowed),
             *_figure(read_back.between, read_back.allowed),
         ),
@@ -118,10 +117,10 @@ def layers(
         With the distance farthest from the layer height, mm.
     """
     what = "Layers are one layer height apart"
-    how = "distance in space of each point to the layer below, against what the strategy allows"
+    how = "distance of each point from the layer below, compared with the range that the strategy allows"
     if toolpath.traits.is_filled and not spacing.is_plane(toolpath):
         known_distances = on_part.over_layers(toolpath)
-        how = "height of each point over the nearest place of the layer below, along the build direction there"
+        how = "height of each point above the nearest point of the layer below, along the build direction there"
     distances = [
         values
         for values in (
@@ -141,19 +140,18 @@ def layers(
 
 def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
     """Promise on the distance between the beads and the faces or solids of the part."""
-    what = "The deposit is on the part"
+    what = "The deposit lies on the part"
     if toolpath.checks.on_part is None:
-        return Promise(what, "not checked: the part has no faces to measure from", None)
+        return Promise(what, "not checked: the part has no faces to compare with", None)
     count, worst, allowed = toolpath.checks.on_part
     deviations = select_issues(issues, (on_part.CODE,))
     how = Text(
-        "distance of {:.0f} bead points to the original shape, independent of slicing",
+        "distance of {:.0f} bead points from the original shape, independent of slicing",
         count,
     )
     if toolpath.checks.fitted is not None:
         how = Text(
-            "distance of {:.0f} bead points to the original shape, less the layer shift from a "
-            "scan",
+            "distance of {:.0f} bead points from the original shape, without the layer shift due to a scan",
             count,
         )
     off = worst > allowed or bool(select_issues(issues, (REMAINS_CODE,), WARNING))
@@ -162,15 +160,15 @@ def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
 
 def all_deposited(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     """Promise on the volume of the part that is not deposited."""
-    what = "All of the part is deposited"
+    what = "The whole part is deposited"
     if balance is None or balance.lines:
         return Promise(what, "not checked: the part encloses no volume", None)
     gaps = select_issues(
         [*issues, *deposit_balance.issues(balance)], (deposit_balance.LEFT_OUT,), WARNING
     )
-    how = "volume of the part deeper than half of a bead's width below the wall, or of its solids aside"
+    how = "volume of the part deeper than half a bead width below the wall, or of further solids"
     if balance.filled:
-        how = "volume of the part less what beads cover of each layer, as wide as they count, times the layer height"
+        how = "volume of the part minus the area that beads cover in each layer, at their effective width, times the layer height"
     worst = None if balance.left_out is None else balance.left_out / MM3
     return Promise(what, how, not gaps, worst, "cm3")
 
@@ -183,29 +181,25 @@ def nothing_outside(balance: Balance | None, issues: Sequence[Issue]) -> Promise
     excess = select_issues(
         [*issues, *deposit_balance.issues(balance)], (deposit_balance.OUTSIDE,), WARNING
     )
-    how = "volume of the beads, as wide as they count, that is wider than the part is thick"
+    how = "volume by which the beads, at their effective width, exceed the thickness of the part"
     if balance.filled:
-        how = (
-            "volume of the beads, at their printed width, outside their layers, and of layers "
-            "outside the part"
-        )
+        how = "volume of the beads, at their printed width, outside their layers, plus that of layers outside the part"
     return Promise(what, how, not excess, balance.outside / MM3, "cm3")
 
 
 def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     """Promise on the volume of beads that overlap in a layer."""
-    what = "Little is deposited twice"
+    what = "Over-deposition is small"
     if balance is None or balance.twice is None:
-        return Promise(what, "not checked: planned by an earlier version", None)
+        return Promise(
+            what, "not checked: an earlier version planned the toolpath; plan it again", None
+        )
     overlaps = select_issues(
         [*issues, *deposit_balance.issues(balance)], (deposit_balance.TWICE,), WARNING
     )
     how = "bead volume beyond the bead spacing of the layer, compared with 10 % of the beads"
     if balance.filled:
-        how = (
-            "volume of the beads, as wide as their spacing, less the covered volume, compared "
-            "with 10 % of the part"
-        )
+        how = "volume of the beads at the width of their spacing, minus the volume they cover, compared with 10 % of the part"
     reference_volume = (
         (balance.part_volume or 0.0) - balance.hub if balance.filled else balance.beads or 0.0
     )
@@ -223,12 +217,9 @@ def beads_supported(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
     """Return the promise that every bead is supported."""
     what = "Every bead is supported from below"
     if toolpath.checks.unsupported is None:
-        return Promise(what, "not checked: it is not known how wide the beads count", None)
+        return Promise(what, "not checked: the effective bead width is unknown", None)
     overhangs = select_issues(issues, (support.CODE,), WARNING)
-    how = (
-        "each short piece of a bead, against its build direction, above earlier deposit with "
-        "its actual width and existing parts"
-    )
+    how = "earlier deposit, at its actual width, or an existing part below each short piece of a bead, against the build direction"
     is_supported = not overhangs and toolpath.checks.unsupported <= 0.0
     return Promise(
         what, how, is_supported, toolpath.checks.unsupported, "mm", 0.0, issue_place(overhangs)
@@ -245,8 +236,7 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
     from ..process.shape import compare  # few jobs have one
 
     how = Text(
-        "distance by which the predicted deposit, in cubes of {:.3g} mm filled bead by bead from "
-        "the wire feed, extends beyond {} points on the part faces, along their normals",
+        "distance by which the predicted deposit (cubes of {:.3g} mm, filled bead by bead from the wire feed) extends beyond the part at {} points of its faces, along their normals",
         prediction.edge,
         prediction.places,
     )
@@ -267,18 +257,16 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
     return (
         inside,
         Promise(
-            "Layers come out as high as they are planned",
-            "surface of each layer of the predicted deposit, in the mean, "
-            "against where the next one should begin",
+            "The predicted layers have the planned height",
+            "mean surface height of each predicted layer, compared with the planned start of the next layer",
             not drifts,
             largest_drift,
             "mm",
             place=issue_place(drifts),
         ),
         Promise(
-            "The predicted deposit holds what the wire feeds",
-            "cubes of the deposit against wire section x feed x time, or "
-            "what beads count where no wire is known",
+            "The predicted deposit has the volume of the wire fed",
+            "volume of the cubes against wire section x feed x time, or against the nominal volume of the beads if no wire is set",
             off <= MAX_VOLUME_ERROR,
             PERCENT * off,
             "%",
@@ -289,17 +277,17 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
 
 def wire_feed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
     """Promise on the wire against the section of the beads, at the speeds at which they are run."""
-    what = "The wire feeds what the beads take"
+    what = "The wire feed matches the volume of the beads"
     features = toolpath.parts
     if process.bead_model != "none" or any(
         feature_toolpath.wire_feed is None or feature_toolpath.bead_width is None
         for feature_toolpath, _ in features
     ):
         return Promise(
-            what, "not checked: a bead model, or nothing, says how wide the beads are", None
+            what, "not checked: the bead width is not set, or a bead model varies it", None
         )
     if not any(feature_toolpath.wire_feed for feature_toolpath, _ in features):
-        return Promise(what, "not checked: there is no wire, process.wire.feed is 0", None)
+        return Promise(what, "not checked: process.wire.feed is 0, so there is no wire", None)
     mismatches = [
         (off, Place(int(numbers[layer]), bead, None))
         for feature_toolpath, numbers in features
@@ -316,11 +304,11 @@ def wire_feed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
     off, where = max(mismatches, key=lambda mismatch: mismatch[0], default=(0.0, None))
     if schedule_classes and off <= wire.TOLERANCE:
         how: str = Text(
-            "not checked: the welder schedules, unknown here, set the feed of {}",
+            "not checked: schedules of the welder, unknown here, set the wire feed of {}",
             ", ".join(schedule_classes),
         )
         return Promise(what, how, None)
-    how = "section of the wire times its feed, against width x height x speed of beads of each class, their starts and ends"
+    how = "wire section x feed, compared with width x height x speed of the beads of each class, and of their starts and ends"
     return Promise(
         what, how, off <= wire.TOLERANCE, PERCENT * off, "%", PERCENT * wire.TOLERANCE, where
     )
@@ -328,7 +316,7 @@ def wire_feed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
 
 # ---- Payload check of the machine that carries the part
 
-WHAT = "What carries the part carries its weight"
+WHAT = "Robot or positioner can carry the part"
 
 
 def payload_promises(
@@ -372,7 +360,11 @@ def payload_promises(
         return [
             Promise(
                 WHAT,
-                Text("not checked: the file of {} states no payload; {}", untold[0], Word(weighed)),
+                Text(
+                    "not checked: the machine file of {} has no payload; {}",
+                    untold[0],
+                    Word(weighed),
+                ),
                 None,
                 mass,
                 "kg",
@@ -381,7 +373,7 @@ def payload_promises(
     how = Text("{}, compared with the payload of {}", Word(weighed), weakest.title)
     if not math.isinf(weakest.payload.from_axis):
         how = Text(
-            "{}, compared with the payload of {}, and its moment about the last axis, as it grows",
+            "{}, compared with the payload of {}, and its moment about the last axis as the deposit grows",
             Word(weighed),
             weakest.title,
         )
@@ -390,9 +382,9 @@ def payload_promises(
 
 OF_MOTION = (
     "Every axis stays within its limits",
-    "The joints bring the tool to every point",
-    "No axis is asked for more than its largest speed",
-    "The tool keeps away from singularities while it deposits",
+    "The joint values reach every planned point",
+    "No axis exceeds its maximum speed",
+    "The tool stays away from singularities while depositing",
     clearance.ON_RAPIDS,
     "The arm stays clear of part, deposit, platform, nozzle and itself",
 )

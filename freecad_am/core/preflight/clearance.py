@@ -56,7 +56,7 @@ def promises(
 
 def _limits(motion: Motion, cell: Cell) -> Promise:
     what = "Every axis stays within its limits"
-    how = "every point of the motion, rapids included, against the machine file"
+    how = "every point of the motion, rapids included, compared with the machine file"
     margins = shown_margins(cell, motion.joints)
     if not np.isfinite(margins).any():
         return Promise(what, "no axis has limits, or no point is reached", None)
@@ -77,7 +77,7 @@ def _limits(motion: Motion, cell: Cell) -> Promise:
 
 
 def _reach(motion: Motion, cell: Cell) -> Promise:
-    what = "The joints bring the tool to every point"
+    what = "The joint values reach every planned point"
     unreachable = np.flatnonzero(~motion.reachable)
     if len(unreachable):
         location = row_place(motion, int(unreachable[0]))
@@ -96,7 +96,7 @@ def _reach(motion: Motion, cell: Cell) -> Promise:
         cell.tip_at(motion.joints[deposited]) - motion.position[deposited], axis=1
     )
     row = int(deposited[int(distances.argmax())])
-    how = "planned joints of the deposit driven through the joint-frame chain, which planning does not use"
+    how = "planned joint values of the deposit, converted to poses by the joint-frame chain, which planning does not use"
     worst = float(distances.max())
     return Promise(
         what, how, worst <= COMPUTED_MM, worst, "mm", COMPUTED_MM, row_place(motion, row), row=row
@@ -104,15 +104,15 @@ def _reach(motion: Motion, cell: Cell) -> Promise:
 
 
 def _speeds(motion: Motion, cell: Cell, max_percent: float) -> Promise:
-    what = "No axis is asked for more than its largest speed"
+    what = "No axis exceeds its maximum speed"
     if not np.isfinite(cell.machine.max_speed).any():
-        return Promise(what, "the machine file gives no largest speeds", None)
+        return Promise(what, "the machine file has no maximum speeds", None)
     ratios = speed_ratios(motion.joints, motion.duration, cell.machine.max_speed).max(axis=1)
     if not np.isfinite(ratios).any():
         return Promise(what, "no point is reached", None)
     row = int(np.nanargmax(ratios))
     worst = PERCENT * float(ratios[row])
-    how = "mean speed of each axis on each move, rapids included, against the machine file"
+    how = "mean speed of each axis on each move, rapids included, compared with the machine file"
     return Promise(
         what,
         how,
@@ -126,13 +126,13 @@ def _speeds(motion: Motion, cell: Cell, max_percent: float) -> Promise:
 
 
 def _singularities(motion: Motion, condition: Array, threshold: Array) -> Promise:
-    what = "The tool keeps away from singularities while it deposits"
+    what = "The tool stays away from singularities while depositing"
     is_known = np.isfinite(condition) & np.isfinite(threshold)
     if not is_known.any():
-        return Promise(what, "not known of this machine", None)
+        return Promise(what, "not checked: machines of this kind have no condition number", None)
     spare = np.where(is_known, condition - threshold, np.inf)
     row = int(spare.argmin())
-    how = "inverse condition number of the Jacobian at the points of the deposit, against the least one allowed"
+    how = "inverse condition number of the Jacobian at the deposit points, compared with the required minimum"
     return Promise(
         what,
         how,
@@ -147,13 +147,13 @@ def _singularities(motion: Motion, condition: Array, threshold: Array) -> Promis
 
 
 DEPOSITING = ("CLEARANCE", "OVER_PLATFORM")
-ON_RAPIDS = "The nozzle stays clear on the rapids"
+ON_RAPIDS = "The nozzle stays clear on rapids"
 RAPIDS = ("RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR")
 
 
 def nozzle(issues: Sequence[Issue], nozzle_check: Looked | None) -> Promise:
     """Whether the nozzle keeps clear while depositing; not checked if the job asks for no clearance."""
-    what = "The nozzle stays clear of deposit, part and platform while it deposits"
+    what = "The nozzle stays clear of deposit, part and platform while depositing"
     if nozzle_check is None:
         return Promise(what, "not checked: build_direction.clearance is none", None)
     collisions = select_issues(issues, DEPOSITING)
@@ -230,7 +230,7 @@ def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: boo
         met = Text("{} with {}", obstacle, touches.links[link])
     step = number(math.degrees(touches.step))
     contact_verb = (
-        Text("come nearer than {:g} mm to", cell.arm_clearance) if cell.arm_clearance else "touch"
+        Text("come closer than {:g} mm to", cell.arm_clearance) if cell.arm_clearance else "touch"
     )
     if not true_shapes:
         how = Text(
@@ -312,16 +312,15 @@ def external_links(
     is_complete = true_shapes and not lacking
     step = number(math.degrees(touches.step))
     how = Text(
-        "{} links that move with their axes, every {} deg of the whole motion, the nozzle every mm: they touch {}",
+        "{} moving links, checked every {} deg of the whole motion, and the nozzle every mm: they touch {}",
         len(names),
         step,
         Word(met),
     )
     if not is_complete:
-        lacks = missing or "links of the robot are drawn from the kinematics"
+        lacks = missing or "the links of the robot are drawn from the kinematics only"
         how = Text(
-            "not checked in full, for {}: {} links that move with their axes, every {} deg of the whole motion, the "
-            "nozzle every mm; they touch {}",
+            "not checked in full, because {}: {} moving links, checked every {} deg of the whole motion, and the nozzle every mm; they touch {}",
             lacks,
             len(names),
             step,

@@ -71,7 +71,7 @@ def scale_of(value: Inspected) -> Scale:
         for band in reversed(bands(float(f"{factor * value.tolerance:.3g}")))
     )
     if not value.counted.all():
-        classes += ((marked("past the edges"), PAST_EDGES),)
+        classes += ((marked("beyond the edges"), PAST_EDGES),)
     return Scale(
         marked("deviation"),
         unit,

@@ -234,7 +234,7 @@ def _figures(judgement: Judgement) -> list[str]:
     """Return the extremes as text. Machines with rotary axes have no condition, unreachable points no figures."""
     figures = (
         (tr("Smallest joint margin: {:.1f} %, of {} in layer {}"), judgement.worst_margin, 100.0),
-        (tr("Least condition: {0:.3f}, in layer {2}"), judgement.worst_condition, 1.0),
+        (tr("Smallest condition: {0:.3f}, in layer {2}"), judgement.worst_condition, 1.0),
         (
             tr("Largest joint speed: {:.0f} % of the maximum of {}, in layer {}"),
             judgement.worst_ratio,

@@ -28,12 +28,12 @@ JOINT_KINDS = (MARGIN, RATIO, CONDITION, *KINDS)
 UNREACHABLE = (0.90, 0.10, 0.20)
 BELOW_COLOUR, ABOVE_COLOUR, NONE = (0.89, 0.10, 0.16), (0.90, 0.24, 0.84), (0.55, 0.55, 0.57)
 CLOSED_BEAD, OPEN_BEAD = (
-    (marked("contour, or closed"), (0.13, 0.40, 0.80)),
-    (marked("fill, or open"), (0.93, 0.55, 0.10)),
+    (marked("contour or closed bead"), (0.13, 0.40, 0.80)),
+    (marked("fill or open bead"), (0.93, 0.55, 0.10)),
 )
 CENTRE, CLOSING = (
-    (marked("in the middle"), (0.20, 0.62, 0.35)),
-    (marked("closes a gap"), (0.80, 0.20, 0.55)),
+    (marked("centre bead"), (0.20, 0.62, 0.35)),
+    (marked("closing bead"), (0.80, 0.20, 0.55)),
 )
 _CLASSES = {
     "contour": CLOSED_BEAD,
@@ -222,7 +222,7 @@ def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
     within = finite & ~below & ~above
     beyond, faster = (
         marked("beyond a limit") if below.any() else "",
-        marked("faster than it can") if above.any() else "",
+        marked("above its maximum") if above.any() else "",
     )
     if within.any():
         scale = automatic(scaled[within], kind, unit)

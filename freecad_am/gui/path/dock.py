@@ -224,14 +224,14 @@ def facts(rows: Rows, row: int) -> str:
 
 def _kind(bead: Bead) -> str:
     if bead.role.closing:
-        return tr("closes a gap")
+        return tr("closing bead")
     names = {
         "contour": tr("contour"),
         "line": tr("line"),
         "zigzag": tr("zigzag"),
         "spiral": tr("spiral"),
-        "centre": tr("in the middle"),
-        "closing": tr("closes a gap"),
+        "centre": tr("centre bead"),
+        "closing": tr("closing bead"),
     }
     return names.get(bead.role.kind, tr("closed") if bead.closed else tr("open"))
 

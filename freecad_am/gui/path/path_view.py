@@ -136,7 +136,7 @@ OPTIONS: dict[str, tuple[str, Any, str]] = {
     "Look": (
         "App::PropertyEnumeration",
         (LINES, TUBES),
-        "Draw beads as lines, or as tubes as wide and high as they are.",
+        "Draw beads as lines, or as tubes of their width and height.",
     ),
     "ShowLegend": (
         "App::PropertyBool",
@@ -147,7 +147,7 @@ OPTIONS: dict[str, tuple[str, Any, str]] = {
     "DirectionStep": (
         "App::PropertyInteger",
         8,
-        "Show the build direction of every how many-th point.",
+        "Show the build direction at every n-th point.",
     ),
     "DirectionLength": (
         "App::PropertyLength",

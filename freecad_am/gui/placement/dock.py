@@ -250,7 +250,7 @@ class Form(QtGui.QWidget):
         self.reach = _reach()
         self.colour = QtGui.QComboBox()
         self.colour.setObjectName("colour")
-        self.colour.setToolTip(tr("Quantity shown by the colours of the places"))
+        self.colour.setToolTip(tr("Quantity shown by the colours of the poses"))
         for name in figures.NAMES:
             self.colour.addItem(figures.heading(name), name)
         self.key, self.summary = QtGui.QLabel(), QtGui.QLabel()
@@ -459,7 +459,7 @@ class PlacementDock:
         if reach is not None:
             self.form.tell(
                 in_user_units(
-                    tr("The robot can be at {} places of a grid of {:.0f} mm.").format(
+                    tr("The robot reaches {} points of a grid of {:.0f} mm.").format(
                         len(reach.places), reach.step
                     )
                 )
@@ -587,7 +587,7 @@ def show(obj: Any) -> PlacementDock | None:
     active = document.activeView()
     view = active if hasattr(active, "getSceneGraph") else views[0] if views else None
     if view is None:
-        App.Console.PrintWarning(tr("There is no 3D view to show places in; open one.") + "\n")
+        App.Console.PrintWarning(tr("There is no 3D view to show the poses in; open one.") + "\n")
         return None
     while _open:
         _open[0].close()

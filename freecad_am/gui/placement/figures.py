@@ -17,8 +17,8 @@ from ..in_language import marked, tr, translated
 
 SHARE, MARGIN, TIME, CLEARANCE = "share", "margin", "time", "clearance"
 NAMES = {
-    MARGIN: marked("Least margin, %"),
-    SHARE: marked("Points served, %"),
+    MARGIN: marked("Smallest margin, %"),
+    SHARE: marked("Feasible points, %"),
     TIME: marked("Time, s"),
     CLEARANCE: marked("Arm clearance"),
 }
@@ -143,5 +143,5 @@ def summed(placed: Placed) -> str:
         )
         return f"{text} {reason}"
     if placed.best is None:
-        return f"{text} {tr('None of the best is with all points.')}"
-    return f"{text} {tr('The best one was planned with all points.')}"
+        return f"{text} {tr('None of the best poses is feasible with all points.')}"
+    return f"{text} {tr('The best pose was planned with all points.')}"

@@ -460,7 +460,7 @@ def certified(optimality: Mapping[str, Any] | None) -> str:
     if optimality is None:
         return ""
     text = tr(
-        "Certificate: {:.4g} as planned, no rotation goes below {:.4g}: a gap of {:.1f} %, {:.1f} % in layer {} bead {}"
+        "Certificate: {:.4g} as planned, lower bound over all rotations {:.4g}: a gap of {:.1f} %, the largest, {:.1f} %, in layer {} bead {}"
     )
     worst = optimality["worst"]
     return text.format(
@@ -571,8 +571,7 @@ class Consequences:
             )
         elif edited and sums.ratio > 1.0:
             warning = tr(
-                "A joint would need {:.0f} % of its speed: the planner will slow it down, or "
-                "reject the curve"
+                "A joint would need {:.0f} % of its maximum speed: the planner will slow the bead down, or reject the curve"
             )
             text, wrong = warning.format(100.0 * sums.ratio), True
         else:

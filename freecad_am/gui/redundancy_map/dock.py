@@ -376,7 +376,7 @@ class RedundancyMapDock:
         planned = self.consequences.planned_sums()
         for method in self.compared:
             help = "; ".join(translated(issue.message) for issue in method.issues[:3]) or tr(
-                "nothing forbids it"
+                "no issues"
             )
             self.figures.set(
                 method.name,

@@ -209,8 +209,8 @@ class Fields(QtGui.QWidget):
             ("layer_back", tr("Back to the start of the layer")),
             ("point_back", tr("One point back")),
             ("play", tr("Play or pause")),
-            ("point_on", tr("One point on")),
-            ("layer_on", tr("On to the next layer")),
+            ("point_on", tr("One point forward")),
+            ("layer_on", tr("Forward to the next layer")),
         )
         self.buttons = {}
         for name, help in marks:

@@ -41,7 +41,9 @@ def finding(finding: Finding, unit: str = "deg") -> str:
         watch.UNREACHABLE: tr("Out of reach"),
         watch.LIMIT: tr("{label} is {value:.2f}{unit} past its limit"),
         watch.NEAR_LIMIT: tr("{label} comes within {value:.2f}{unit} of its limit"),
-        watch.SINGULAR: tr("Near a singularity: condition {value:.3f}, allowed are {than:.3f}"),
+        watch.SINGULAR: tr(
+            "Near a singularity: condition {value:.3f}, required at least {than:.3f}"
+        ),
         watch.SLOWED: tr("{label} cannot keep the speed: {than} becomes {value}"),
         watch.ISSUE: "{label}",
     }

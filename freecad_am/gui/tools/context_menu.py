@@ -36,7 +36,7 @@ def add_stage_entries(menu: Any, obj: Any) -> None:
         _add(
             menu,
             "ReadProgram",
-            tr("Read the text…"),
+            tr("Read the program…"),
             lambda: program_window.show(obj),
             bool(obj.Key),
         )

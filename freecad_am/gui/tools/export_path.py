@@ -212,7 +212,7 @@ class ExportPanel:
             else:
                 self.say(translated_error(error))
         except Cancelled:
-            self.say(tr("Cancelled: nothing was made."))
+            self.say(tr("Cancelled: nothing was exported."))
         except ReferenceError:
             self.say(tr(CLOSED))
         else:

@@ -165,7 +165,7 @@ class Help:
         """Texts, in the language that the window has when the workbench is opened."""
         return {
             "MenuText": tr("Help on Robotic AM"),
-            "ToolTip": tr("Opens the pages of the tools"),
+            "ToolTip": tr("Opens the help pages of the tools"),
             "WhatsThis": url(INDEX),
         }
 

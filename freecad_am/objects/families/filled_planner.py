@@ -21,7 +21,7 @@ from .solid_distances import distances_from_solids
 class FilledPlanner(FeaturePlanner):
     """Plans solids that are filled."""
 
-    allowance_remedy = "Give strategy.margin {} mm more than it has, or wider beads"
+    allowance_remedy = "Increase strategy.margin by {} mm, or use wider beads"
 
     def plan_layers(self, inputs: Given) -> Toolpath:
         from ...core.strategies.solids import plan

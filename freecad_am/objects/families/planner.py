@@ -48,7 +48,7 @@ class FeaturePlanner:
 
     proxy: ClassVar[tuple[str, str]]
     allowance_remedy: ClassVar[str] = (
-        "Use beads {} mm wider on either side, by process.bead_width, or a smaller allowance"
+        "Make beads {} mm wider on either side (process.bead_width), or use a smaller allowance"
     )
     has_faces: ClassVar[bool] = True
 

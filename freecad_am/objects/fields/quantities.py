@@ -61,7 +61,7 @@ DIMENSION_NAMES = {
     ANGLE: "is an angle",
     (1, -1, 0): "is a speed",
     (-1, 0, 1): "is a turn per length",
-    NONE: "is without unit",
+    NONE: "has no unit",
 }
 _OTHER_DIMENSION = (-99, 0, 0)  # any dimension with a mass, a current and so on
 _UNIT = "[^\\s\\d/*^+().,%-]+"
@@ -134,7 +134,7 @@ def read(
         raise InputError("BAD_VALUE", where, "{} is not a number; give {}", quote(value), example)
     if dimension is not None and dimension != expected:
         code = unreadable if expected == NONE else "BAD_UNIT"
-        actual = DIMENSION_NAMES.get(dimension, "is of another dimension")
+        actual = DIMENSION_NAMES.get(dimension, "has another dimension")
         raise InputError(code, where, "{} {}; give {}", quote(value), actual, example)
     return number * f.TO_INNER.get(kind, 1.0)
 

@@ -106,10 +106,10 @@ _ABBREVIATED = {"rz": "RZ", "nc": "NC machines"}
 _LABELS = {  # of parameters whose keys do not say it in words
     "given": "Given polynomials",
     "degree": "Degree of the polynomials",
-    "parameter": "Polynomials give",
-    "min_condition": "Least condition",
+    "parameter": "Quantity of polynomials",
+    "min_condition": "Min condition",
     "lock": "Locked axis",
-    "lock_at": "Locked at",
+    "lock_at": "Locked position",
     "max_residual": "Largest direction error",
     "own_branch": "Branch of the path",
     "compare": "Compare with",

@@ -137,7 +137,7 @@ def planned_in_sequence(
         if entry.inputs.build.clearance != "none":
             with progress.one_of(number, len(members), STRATEGY, CHECKED):
                 toolpath = kept_clear(toolpath, entry.inputs, (*around, *plates), number)
-    progress.report(CHECKED, "looking for beads over nothing")
+    progress.report(CHECKED, "looking for unsupported beads")
     for number, entry in enumerate(members):
         toolpath = _judge_feature(toolpath, number, entry, plates, stands)
     feature_parts = [feature.values for feature in toolpath.features]

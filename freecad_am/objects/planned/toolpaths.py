@@ -53,7 +53,7 @@ def planned(
             toolpath, inputs, (*inputs.wall.surroundings, *platforms(inputs.cell, toolpath))
         )
     toolpath = measure_infill(add_wire_speed(toolpath, inputs), inputs)
-    progress.report(CHECKED, "looking for beads over nothing")
+    progress.report(CHECKED, "looking for unsupported beads")
     plates = platforms(inputs.cell, toolpath)
     if toolpath.traits.has_axis:
         stands = (

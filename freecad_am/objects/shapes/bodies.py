@@ -44,7 +44,7 @@ from .places import (
 FIXTURES = Link(
     "Fixtures",
     "",
-    "Clamps and other bodies around the part, which the nozzle is kept clear of.",
+    "Clamps and other bodies around the part that the nozzle must clear.",
     required=False,
     type_name="App::PropertyLinkList",
 )

@@ -141,7 +141,7 @@ class Run:
             UNREADABLE_PROGRAM for a second output.
         """
         if self.output not in ("", output if word != ARC else ARC):
-            raise unreadable(where, "a second output is switched")
+            raise unreadable(where, "it switches a second output")
         self.output, self.on, self.fed = ARC if word == ARC else output, on, False
         self.happens("on" if on else "off", float(output), word, digits=digits, before=before)
 
@@ -164,12 +164,13 @@ class Run:
         """
         if move.linear and not self.nearest:
             raise unreadable(
-                where, "the configurations that its positions name are supervised, and are none"
+                where,
+                "configuration supervision (ConfL) is on, but its positions name no configurations",
             )
         if move.zone != "fine" and move.zone not in module.zones:
-            raise unreadable(where, Text("{} is not a zone of the module", move.zone))
+            raise unreadable(where, Text("the module does not define the zone {}", move.zone))
         if self.feeding and np.isnan(move.wire):
-            raise unreadable(where, "the wire goes on after its bead")
+            raise unreadable(where, "the wire feed continues after the bead")
         self._framed(move.frames, where)
         self._external_axes(move.axes.split(","), move.frames, where)
         for column, value in zip(
@@ -195,7 +196,9 @@ class Run:
         if not self.time_or_speed or self.moving or move.zone != "fine":
             return False
         if self.external and self.external[-1] != self._used_of(move.axes.split(",")):
-            raise unreadable(where, "external axes would move although it is fixed")
+            raise unreadable(
+                where, "external axes would move although the instruction does not move the robot"
+            )
         if self.placed[-1]:
             return (self.positions[-1], self.turns[-1]) == move.values
         self._framed(move.frames, where)
@@ -208,7 +211,7 @@ class Run:
         if self.frames is None:
             self.frames = frames
         elif frames is not self.frames and not frames.same(self.frames):
-            raise unreadable(where, "moves of more than one tool or work object are mixed")
+            raise unreadable(where, "moves use more than one tool or work object")
 
     def _used_of(self, texts: list[str]) -> str:
         return ",".join(text for text in texts if text != "9E9")
@@ -224,20 +227,23 @@ class Run:
             used,
         ):
             raise unreadable(
-                where, "other external axes have values than in moves before, or not all in a row"
+                where,
+                "other external axes have values than in earlier moves, or there are gaps between them",
             )
         if len(self.slides) > 1 or not {*self.slides} <= {*used}:
-            raise unreadable(where, "more than one axis is called the track, or it has no value")
+            raise unreadable(
+                where, "more than one axis is marked as the track, or the track has no value"
+            )
         turned_ones = set(used) - set(self.slides)
         if bool(turned_ones) != bool(frames.unit) or (
             self.active != frames.unit and (turned_ones or not used)
         ):
             raise unreadable(
                 where,
-                "external axes have no value, or their unit is not active, or not the object's",
+                "external axes have no value, or their mechanical unit is not active or does not carry the work object",
             )
         if self.used is not None and self.unit != self.active:
-            raise unreadable(where, "another unit is active than in moves before")
+            raise unreadable(where, "another mechanical unit is active than in earlier moves")
         self.used, self.unit = used, self.active
         self.external += [self._used_of(texts)] if used else []
 
@@ -291,9 +297,7 @@ def _add_positions(read_moves: ReadMoves, run: Run) -> ReadMoves:
     turns = _numbers(run.turns, 4)
     length = np.linalg.norm(turns, axis=1)
     if (np.abs(length - 1.0) > 1e-5).any():
-        raise unreadable(
-            "program", "the four numbers of an orientation are not those of a unit quaternion"
-        )
+        raise unreadable("program", "an orientation is not a unit quaternion")
     positions, rotation = np.full((len(placed), 3), np.nan), np.full((len(placed), 3, 3), np.nan)
     positions[placed], rotation[placed] = (
         _numbers(run.positions, 3),

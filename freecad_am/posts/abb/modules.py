@@ -97,14 +97,21 @@ class Module:
             if tool not in self.tools or work_object not in self.objects:
                 raise unreadable(
                     where,
-                    Text("{} is not a tool of the module, or {} no work object", tool, work_object),
+                    Text(
+                        "the module does not define the tool {} or the work object {}",
+                        tool,
+                        work_object,
+                    ),
                 )
             (on_robot, tool_pose), (object_held, object_pose) = (
                 self.tools[tool],
                 self.objects[work_object],
             )
             if on_robot == object_held:
-                raise unreadable(where, "the robot has to carry either the tool or the work object")
+                raise unreadable(
+                    where,
+                    "the robot must carry either the tool or the work object, not both or neither",
+                )
             self._paired[tool, work_object] = Frames(
                 tool_pose, object_pose, object_held, self.units[work_object]
             )
@@ -120,8 +127,7 @@ def modules(files: dict[str, bytes]) -> dict[str, Module]:
             raise unreadable(
                 file,
                 Text(
-                    "its module is called {}, but the file has another name, or another file has "
-                    "the same one",
+                    "its module is called {}, but the file has another name, or another module has the same name",
                     module.name,
                 ),
             )
@@ -164,7 +170,7 @@ def _declare(module: Module, line: str, where: str) -> None:
         module.triggers.add(trigger[1])
         return
     if declared is None or declared[3] in names:
-        raise unreadable(where, Text("{!r} is not understood, or declares a name again", line))
+        raise unreadable(where, Text("{!r} is not understood, or declares a name twice", line))
     try:
         value = json.loads(declared[4].replace("TRUE", "true").replace("FALSE", "false"))
         _keep(module, declared[1] or declared[2], declared[3], value)
@@ -331,8 +337,7 @@ class ProcessData:
             if taken_weld[1] not in module.welds or taken_weld[1] in self.welds:
                 raise unreadable(
                     where,
-                    "the data taken from the controller is not weld data of the module, or is "
-                    "taken twice",
+                    "the weld data copied from the controller is not declared in the module, or is copied twice",
                 )
             self.welds[taken_weld[1]] = Weld(int(taken_weld[2]))
         elif speed := _SPEED.match(line):
@@ -362,7 +367,7 @@ class ProcessData:
         ):
             raise unreadable(
                 where,
-                "weld data is not taken of the controller yet, has two speeds or another than declared",
+                "weld data is not copied from the controller yet, or its speed is set twice or differs from its declaration",
             )
         if speed[2]:
             weld.original = value
@@ -371,5 +376,5 @@ class ProcessData:
 
     def _keep_trigger(self, name: str, trigger: Switch | Feed, module: Module, where: str) -> None:
         if name not in module.triggers or name in self.triggers:
-            raise unreadable(where, "a trigger is not of the module, or set twice")
+            raise unreadable(where, "a trigger is not declared in the module, or is set twice")
         self.triggers[name] = trigger

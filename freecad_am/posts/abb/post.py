@@ -70,10 +70,10 @@ LAST_GROUP, LAST_SCHEDULE = 9999, 65535  # group outputs
 # an ArcLEnd at the plain speed is at the end of the move before it
 MOVE_LINE = re.compile(rb" *(?:Move(?:AbsJ|L|J)|Trigg(?:AbsJ|L)|ArcL|ArcLEnd(?! [^v]*v_am,)) ")
 ON_CONTROLLER = controller_checks(
-    "The controller's world is the robot's base",
-    "Signals do1, di1 and so on have these names",
+    "The world frame of the controller is the robot base",
+    "The signals are called do1, di1 and so on",
     "The load of t_am is set, and the speed override is 100 %",
-    "Configuration supervision may be off (ConfL), and joint values mean what the machine file says",
+    "Configuration supervision (ConfL) may be off, and joint values have the meaning in the machine file",
     "A stop of the program switches the deposit off",
 )
 AXES = 6

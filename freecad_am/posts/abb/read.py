@@ -41,16 +41,17 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     main_modules = [module for module in by_name.values() if module.routine.lower() == _ROUTINE]
     if len(main_modules) != 1:
         raise unreadable(
-            "program", Text("{} modules have a routine main, expected one", len(main_modules))
+            "program",
+            Text("{} modules have a routine main, but exactly one must", len(main_modules)),
         )
     run = Run(by_name, slides=main_modules[0].slides)
     _follow(main_modules[0], run)
     if not run.time_or_speed:
-        raise unreadable("program", "there are no moves")
+        raise unreadable("program", "it has no moves")
     if len(run.followed) != len(by_name):
-        raise unreadable("program", "there are modules that are never run, or run twice")
+        raise unreadable("program", "some modules never run, or run twice")
     if run.moving:
-        raise unreadable("program", "it ends before the last move does")
+        raise unreadable("program", "it ends before its last move")
     return all_moves(run)
 
 
@@ -99,12 +100,14 @@ def _load(
         place_of_line = f"{module.file} line {number}"
         raise unreadable(
             place_of_line,
-            Text("{!r} where {} was loaded to be run", called, part_name),
+            Text("{!r} follows, but the loaded {} must run first", called, part_name),
         )
     number, gone = next(lines, (0, ""))
     if gone != f'UnLoad "HOME:/{part_name}.mod";':
         place_of_line = f"{module.file} line {number}"
-        raise unreadable(place_of_line, Text("{!r} where {} was to be removed", gone, part_name))
+        raise unreadable(
+            place_of_line, Text("{!r} follows, but {} must be unloaded first", gone, part_name)
+        )
     if (
         loaded is None
         or loaded.routine.lower() != name[1].lower()
@@ -114,7 +117,7 @@ def _load(
         raise unreadable(
             where,
             Text(
-                "{} is missing, has no routine {}, has already run, or is loaded while depositing",
+                "{} is missing, has no routine {}, has already run, or is loaded during the deposit",
                 part_name,
                 name[1],
             ),
@@ -155,13 +158,14 @@ def _move(module: Module, move: re.Match[str], run: Run, where: str) -> None:
         raise unreadable(
             where,
             Text(
-                "{} is not a speed of the module, or the speed is set by an argument other than "
-                "\\T or \\V",
+                "the module does not define the speed {}, or the speed is set by an argument other than \\T or \\V",
                 speed,
             ),
         )
     if run.on and run.output == ARC:
-        raise unreadable(where, "the arc burns on a move of another kind")
+        raise unreadable(
+            where, "the arc is on during a move that is not an arc welding instruction"
+        )
     frames = module.tool_and_object(tool, work_object, where)
     half = 0.5 * 10.0 ** -len(decimals)
     run.keep_move(

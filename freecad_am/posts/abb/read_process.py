@@ -126,7 +126,7 @@ def process_move(line: str, module: Module, run: Run, where: str) -> bool:
 
 def _speed_of(module: Module, name: str, where: str) -> float:
     if name not in module.speeds:
-        raise unreadable(where, Text("{} is not a speed of the module", name))
+        raise unreadable(where, Text("the module does not define the speed {}", name))
     return module.speeds[name]
 
 
@@ -134,7 +134,7 @@ def _trigger_names(first_trigger: str, further: str, where: str) -> list[str]:
     """The triggers of a move, which count from \\T2 on without a gap."""
     numbered = _EXTRA_TRIGGER.findall(further)
     if [int(number) for number, _ in numbered] != list(range(2, 2 + len(numbered))):
-        raise unreadable(where, "its triggers are not numbered in a row")
+        raise unreadable(where, "its triggers are not numbered consecutively")
     return [first_trigger, *(name for _, name in numbered)]
 
 
@@ -142,12 +142,12 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
     triggers = [run.process_data.triggers.get(name) for name in names]
     feeds = [trigger for trigger in triggers if isinstance(trigger, Feed)]
     if None in triggers or len({*names}) != len(names) or (run.on and run.output == ARC):
-        raise unreadable(where, "a trigger is not set, or named twice, or the arc burns on")
+        raise unreadable(where, "a trigger is not set or is named twice, or the arc is still on")
     for feed in feeds:
         if run.analogue not in (None, feed.output) or not move.linear or not run.on:
             raise unreadable(
                 where,
-                "a second analogue output follows the speed, or a joint move, or without a deposit",
+                "a second analogue output follows the speed, or one does so on a joint move or without deposit",
             )
         run.analogue = feed.output
     starts = [feed for feed in feeds if feed.scale]
@@ -155,7 +155,7 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
     if len(starts) > 1 or len(ends) > 1 or (ends and not starts) or (starts and run.fed):
         raise unreadable(
             where,
-            "the wire is fed by two scales at once, or ends where it was not fed, or within a bead",
+            "two analogue scales set the wire feed at once, or the wire feed ends before it begins or within a bead",
         )
     for feed in starts:
         digits = feed.scale * move.half + feed.digits * (move.amount + move.half)
@@ -176,7 +176,8 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
         if isinstance(trigger, Switch):
             if run.moving:
                 raise unreadable(
-                    where, "a corner has no end from which the time of a trigger counts"
+                    where,
+                    "a trigger needs a move that ends at its point, but the corner is rounded",
                 )
             run.keep_switch(
                 trigger.output, trigger.on, "do", where, trigger.digits, trigger.distance
@@ -197,21 +198,21 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
         or weld.original != weld.speed
         or weld.schedule != int(seam)
     ):
-        raise unreadable(where, "its weld data has no speed, or is of another seam")
+        raise unreadable(where, "its weld data has no speed, or belongs to another seam")
     frames = module.tool_and_object(tool, work_object, where)
     dry = _speed_of(module, speed, where)
     move = Move(True, (position, turn), axes, weld.speed, weld.half, zone, frames)
     if kind == "Start":
         if run.on or not run.nearest or not run.stands_at(move, where):
-            raise unreadable(where, "the arc is already on, or is struck while the robot moves")
+            raise unreadable(where, "the arc is already on, or is started while the robot moves")
         run.keep_switch(seam, True, ARC, where)
         run.seam, run.weave, run.struck, run.last_weld = int(seam), 0, woven, (weld_name, woven)
         return
     if not run.on or run.output != ARC or run.seam != int(seam):
-        raise unreadable(where, "the arc does not burn, or by another seam")
+        raise unreadable(where, "the arc is off, or was started with another seam")
     if kind == "End" and run.struck is None and run.stands_at(move, where):
         if run.last_weld != (weld_name, woven):
-            raise unreadable(where, "the arc ends with other data than it burnt by")
+            raise unreadable(where, "the arc ends with other weld data than it was started with")
         _ends(run, where)
         return
     _burns(move, weld, weld_name, dry, woven, run, where)
@@ -219,7 +220,7 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
     run.last_weld = weld_name, woven
     if kind == "End":
         if not np.isnan(run.rounding[-1]):
-            raise unreadable(where, "the arc ends where the robot does not stop")
+            raise unreadable(where, "the arc ends at a point where the robot does not stop")
         _ends(run, where)
 
 
@@ -228,15 +229,15 @@ def _burns(move: Move, weld: Weld, name: str, dry: float, woven: int, run: Run, 
     with the weld data `name`; with the arc blocked the speed is the same.
     """
     if dry != weld.speed:
-        raise unreadable(where, "with the arc blocked the move has another speed")
+        raise unreadable(where, "the move has another speed when the arc is blocked")
     if run.struck is not None:
         if run.last_weld != (name, woven):
-            raise unreadable(where, "the arc is struck with other weld data, or another weave")
+            raise unreadable(where, "the arc was started with other weld data or another weave")
         run.struck, run.weave = None, woven
         if woven:
             run.happens("weave", float(woven))
     elif run.weave != woven:
-        raise unreadable(where, "the weave is another one within a bead")
+        raise unreadable(where, "the weave changes within a bead")
 
 
 def straight(run: Run) -> None:

@@ -96,7 +96,7 @@ LAST_ANALOGUE = 25  # analogue inputs
 # why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(point_bytes=205, external=True, positioner="2")
 PENDANT = Pendant("FANUC", ("W", "P", "R"), FIXED_XYZ)
-NO_WIRE = "AO[] between two moves of a FANUC is set when its line is read, ahead of the motion"
+NO_WIRE = "FANUC sets AO[] between two moves when it reads the line, ahead of the motion"
 NO_WEAVE = ""  # linear moves can be woven
 NO_TRIGGER = ""  # the deposit can be switched on the move itself
 refuse_process = refuse_no_process
@@ -105,8 +105,8 @@ NO_SCHEDULE: dict[str, str] = {}  # schedules are supported in every way
 LAST_GROUP, LAST_SCHEDULE = 400, 32767  # group outputs
 MOVE_LINE = re.compile(rb" *\d+:[JL] P\[")
 ON_CONTROLLER = controller_checks(
-    "UFRAME and UTOOL of the numbers in the program are those of the cell",
-    "Joint values mean what the machine file says, J3 above all",
+    "UFRAME and UTOOL with the numbers in the program match the cell",
+    "Joint values, above all J3, have the meaning in the machine file",
     "An axis without limits has the Continuous Turn option",
     "Payload is set and the override is 100 %",
     "The deposit output switches the process",
@@ -215,19 +215,19 @@ def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
         return
     why = (
         (
-            "linear moves over a part on a positioner are coordinated motion (COORD), and which user frame their positions"
-            " are then seen from was not confirmed"
+            "linear moves over a part on a positioner need coordinated motion (COORD), and the user frame of its "
+            "positions is unconfirmed"
         )
         if ROTARY in external
         else (
-            "whether the speed of linear moves counts the way that a track carries the robot depends on how its rail was set up,"
-            " and was not confirmed"
+            "it is unconfirmed whether the speed of linear moves includes the motion of the track, which depends on the "
+            "setup of the rail"
         )
     )
     raise InputError(
         "COORDINATED_MOTION",
         "program.motion",
-        "{}; use `motion: joint`, whose times hold the speed",
+        "{}; use `motion: joint`, which keeps the speed by times",
         Word(why),
     )
 
@@ -243,7 +243,7 @@ def _refuse(program: Program) -> None:
     )
     if program.external_kinds:
         _refuse_coordinated(program.motion, program.external_kinds)
-    refuse_named_track(program, "E1 of the robot's own motion group")
+    refuse_named_track(program, "E1 of the motion group of the robot")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, LAST_ANALOGUE)
     refuse_leads(as_written(program))

@@ -229,7 +229,7 @@ class Run:
         groups = listing.records.moved
         if groups and self.moved not in (None, groups):
             raise unreadable(
-                listing.file, "its header names other motion groups than programs before"
+                listing.file, "its header names other motion groups than the programs before it"
             )
         self.moved = groups or self.moved
 
@@ -243,7 +243,7 @@ class Run:
             ):
                 raise unreadable(
                     f"{listing.file} line {listing.moves.line[0]}",
-                    "it moves other groups than the programs before",
+                    "it moves other motion groups than the programs before it",
                 )
             self.group, self.track = records.group, (self.track[0], records.track)
             self.values.append(records.values[rows])
@@ -305,7 +305,7 @@ def _joints(run: Run, values: Array) -> Array:
     if track != bool(number) or number > values.shape[1] - _ROBOT_AXES:
         raise unreadable(
             "program",
-            "positions have a track and no remark says which axis it is, or the other way round",
+            "positions have a value for a track but no remark names its axis, or the reverse",
         )
     if not track:
         return np.asarray(np.radians(values))
@@ -359,12 +359,16 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     main = [name for name in named if name not in called]
     if len(main) != 1:
         raise unreadable(
-            "program", Text("{} programs are called by no other program, expected one", len(main))
+            "program",
+            Text(
+                "{} programs are called by no other program, but exactly one must be the main program",
+                len(main),
+            ),
         )
     run = Run()
     _follow(main[0], {name: (file, files[file]) for name, file in named.items()}, run, ())
     if not run.duration:
-        raise unreadable("program", "there are no moves")
+        raise unreadable("program", "it has no moves")
     return read_moves(run)
 
 
@@ -422,7 +426,7 @@ def _switch(
 ) -> None:
     """Read an instruction that switches the deposit."""
     if run.output not in ("", output[1]):
-        raise unreadable(where, "a second output is switched")
+        raise unreadable(where, "it switches a second output")
     run.output, run.on = output[1], output[2] == "ON"
     run.happens("on" if run.on else "off", float(output[1]), "DO", digits=digits, ahead=ahead)
 
@@ -434,7 +438,9 @@ def _trigger(option: str, where: str, run: Run) -> None:
     if not trigger or not output:
         raise unreadable(where, Text("the instruction {!r} is not understood", option))
     if not np.isnan(run.blend[-1]):
-        raise unreadable(where, "a corner has no end from which the time of a trigger counts")
+        raise unreadable(
+            where, "a trigger needs a move that ends at its point, but the corner is rounded"
+        )
     _switch(output, where, run, 0.5 * 10.0 ** -len(trigger[2]), float(trigger[1]))
 
 
@@ -448,7 +454,9 @@ def _frame(frame: re.Match[str], where: str, run: Run) -> None:
 def _arc(arc: re.Match[str], where: str, run: Run) -> None:
     """The arc is struck, or ends, by a schedule."""
     if run.output not in ("", ARC) or run.on == (arc[1] == "Start"):
-        raise unreadable(where, "an output is switched too, or the arc burns already, or not yet")
+        raise unreadable(
+            where, "an output switches the deposit too, the arc is already on, or it is not on yet"
+        )
     run.output, run.on = ARC, arc[1] == "Start"
     run.happens("on" if run.on else "off", float(arc[2]), ARC)
 
@@ -504,9 +512,12 @@ def _refuse(listing: Listing, move: int, run: Run) -> None:
     if moves.point[move] not in records.point:
         raise unreadable(where, Text("P[{}] is not recorded", moves.point[move]))
     if run.cartesian != records.cartesian and run.duration:
-        raise unreadable(where, "joint and Cartesian positions are mixed")
+        raise unreadable(where, "it mixes joint and Cartesian positions")
     if moves.straight[move] and not records.cartesian:
-        raise unreadable(where, "a position is moved to in another way than it is recorded")
+        raise unreadable(
+            where,
+            "a move does not fit the form in which its position is recorded (joint or Cartesian)",
+        )
     raise unreadable(
         where,
         Text(
@@ -527,7 +538,7 @@ def _select(listing: Listing, row: int, run: Run, number: int) -> None:
             raise unreadable(
                 _line_name(listing, number),
                 Text(
-                    "P[{}] is recorded in another U{} than the selected one",
+                    "P[{}] is recorded in a U{} that is not selected",
                     listing.records.point[row],
                     word,
                 ),

@@ -55,16 +55,16 @@ CONTROLLER = Controller(
     point_bytes=75, memory_mb=4.0, external=True, positioner="2", arc_moves=True
 )
 PENDANT = Pendant("KUKA", ("A", "B", "C"), MOVING_ZYX)
-NO_WIRE = "an analogue output that KRL sets between approximated moves is set ahead of the motion"
-NO_WEAVE = "the weave of ArcTech is a part of its weld data, which the pendant makes, and has no number of its own"
+NO_WIRE = "KRL sets an analogue output between approximated moves ahead of the motion"
+NO_WEAVE = "ArcTech keeps the weave in its weld data, which is made on the pendant, so a weave has no number"
 NO_TRIGGER = ""  # the deposit can be switched on the move itself
 refuse_process = refuse_no_process
 NO_SCHEDULE: dict[str, str] = {}  # schedules are supported in every way
 LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
 MOVE_LINE = re.compile(rb"(?:PTP|LIN) \{")
 ON_CONTROLLER = controller_checks(
-    "BASE_DATA and TOOL_DATA of the numbers in the program are those of the cell, with their load",
-    "Joint speeds of the machine file are those the controller calls 100 %",
+    "BASE_DATA and TOOL_DATA with the numbers in the program match the cell, and the load is set",
+    "Joint speeds in the machine file equal 100 % on the controller",
     "The deposit output switches the process, and a stop of the program switches it off",
     "The override is 100 %",
 )
@@ -233,9 +233,7 @@ def refuse_setup(
         raise InputError(
             "REMOTE_TCP",
             "cell.setup",
-            "with the part on the robot linear moves of KRL use a fixed tool ($IPO_MODE #TCP), "
-            "and the reference of the points, nozzle or part, was not confirmed; use `setup: "
-            "tool-on-robot`",
+            "with the part on the robot KRL needs a fixed tool ($IPO_MODE #TCP) for linear moves, and it is unconfirmed whether their points refer to nozzle or part; use `setup: tool-on-robot`",
         )
     if motion == "joint":
         raise InputError(
@@ -253,7 +251,7 @@ def _refuse(program: Program) -> None:
     refuse_external(
         program, LAST_EXTERNAL, "[2-9]|1[0-6]", "the number of its MACHINE_DEF, 2 to 16"
     )
-    refuse_named_track(program, "what the robot's own base is on, which no MACHINE_DEF gives")
+    refuse_named_track(program, "the carrier of the robot base, which has no MACHINE_DEF")
     refuse_wire(program, NO_WIRE)
     refuse_cooling(program, 0, NO_ANALOGUE)
     _refuse_schedules(program)

@@ -258,14 +258,18 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     main = [name for name in by_name if name not in called]
     if len(main) != 1:
         raise not_read(
-            "program", Text("{} programs are called by no other program, expected one", len(main))
+            "program",
+            Text(
+                "{} programs are called by no other program, but exactly one must be the main program",
+                len(main),
+            ),
         )
     run = Run(by_name)
     _go(main[0], run)
     if not run.speed:
-        raise not_read("program", "there are no moves")
+        raise not_read("program", "it has no moves")
     if len(run.followed) != len(by_name):
-        raise not_read("program", "there are modules that are never run, or run twice")
+        raise not_read("program", "some modules never run, or run twice")
     return read_moves(run)
 
 
@@ -323,7 +327,7 @@ def _go(name: str, run: Run) -> None:
         elif not line.startswith(";"):
             _follow_instruction(line, run, where)
     if not run.standing or run.arc.is_open or run.trigger:
-        raise not_read(file, "it ends before the last move does")
+        raise not_read(file, "it ends before its last move")
 
 
 def _setting(line: str, run: Run) -> bool:
@@ -356,7 +360,8 @@ def _couple(coupled: re.Match[str], run: Run, where: str) -> None:
     """The base is carried by a mechanism."""
     if coupled[1] != coupled[2] or run.state.get("BASE") != float(coupled[3]):
         raise not_read(
-            where, "root and type are of two mechanisms, or the base is not the one selected"
+            where,
+            "root and type belong to different mechanisms, or the base is not the selected one",
         )
     run.state["EK"] = float(coupled[1])
 
@@ -364,7 +369,7 @@ def _couple(coupled: re.Match[str], run: Run, where: str) -> None:
 def _declare(declared: re.Match[str], earlier_lines: list[str], run: Run, where: str) -> None:
     """Name a group of outputs in a module, which comes before its instructions."""
     if any(not line.startswith(";") for line in earlier_lines):
-        raise not_read(where, "it is declared behind an instruction")
+        raise not_read(where, "it is declared after an instruction; declarations come first")
     run.signals[declared[1]] = int(declared[2]), int(declared[3])
 
 
@@ -372,7 +377,7 @@ def _set(outputs: tuple[int, int], number: int, run: Run, where: str) -> None:
     """A group of outputs, the first and the last, is set to a number."""
     if not run.standing or number >= 2 ** (outputs[1] - outputs[0] + 1):
         raise not_read(
-            where, "it is set ahead of the motion, or its outputs cannot carry such a number"
+            where, "it is set ahead of the motion, or its outputs are too few for the number"
         )
     if run.output and outputs[0] <= int(run.output) <= outputs[1]:
         raise not_read(where, "one of its outputs switches the deposit")
@@ -387,14 +392,14 @@ def _arc(line: str, run: Run, where: str) -> None:
     if switched is None:
         raise not_read(
             where,
-            "it is none of the lines that ArcTech has here, or names other data than the ones before it",
+            "ArcTech has no such line here, or it names other data than the lines before it",
         )
     for name in ("speed", "rounding", "percent", *(f"E{number}" for number in range(1, 7))):
         run.state.pop(name, None)
     if switched:
         if run.output or run.on == (switched == "on"):
             raise not_read(
-                where, "an output switches the deposit too, or the arc is lit or ended twice"
+                where, "an output switches the deposit too, or the arc is started or ended twice"
             )
         run.on = switched == "on"
         run.happens(switched, float(run.arc.number), ARC)
@@ -411,7 +416,7 @@ def _trigger(trigger: re.Match[str], run: Run, where: str) -> None:
 def _one_output(number: str, run: Run, where: str) -> None:
     """The deposit is switched by one output, not by others or by ArcTech too."""
     if run.output not in ("", number) or any(ARC in event.value for event in run.events):
-        raise not_read(where, "a second output is switched")
+        raise not_read(where, "it switches a second output")
     run.output = number
 
 
@@ -442,7 +447,7 @@ def _follow_instruction(line: str, run: Run, where: str) -> None:
         run.happens("input", float(awaited[1]))
     elif not run.standing:
         raise not_read(
-            where, Text("{!r} is read ahead of the motion, as no wait precedes it", line)
+            where, Text("{!r} is read ahead of the motion because no wait precedes it", line)
         )
     elif switched := _SWITCHED.match(line):
         _one_output(switched[1], run, where)
@@ -453,7 +458,7 @@ def _follow_instruction(line: str, run: Run, where: str) -> None:
             run.happens("call", call[1].upper())
         elif call[1].lower() in run.followed or run.on:
             raise not_read(
-                where, Text("{} has already run, or is called while depositing", call[1])
+                where, Text("{} has already run, or is called during the deposit", call[1])
             )
         else:
             _go(call[1].lower(), run)
@@ -462,7 +467,7 @@ def _follow_instruction(line: str, run: Run, where: str) -> None:
 def _stopped(run: Run, where: str) -> bool:
     """True: a wait holds the program until the robot stops. The corner before it is not rounded."""
     if run.speed and not np.isnan(run.rounding[-1]):
-        raise not_read(where, "the move before it is to be approximated, and it stops there")
+        raise not_read(where, "the move before it is approximated, but this line stops the robot")
     return True
 
 
@@ -471,7 +476,7 @@ def _follow_move(line: str, run: Run, where: str) -> None:
     if not run.arc.accept_move(straight is not None, bool(straight and straight[8])):
         raise not_read(
             where,
-            "a move of ArcTech is a linear one that stops, behind all the lines that belong to it",
+            "a move of ArcTech must be linear and stop, and follow all lines that belong to it",
         )
     needed = {_INITIAL, _ON_FLANGE, _TURNING, "BASE", "TOOL"} | (
         {"speed"} if straight else {"percent"}
@@ -479,7 +484,9 @@ def _follow_move(line: str, run: Run, where: str) -> None:
     if straight and straight[8]:
         needed |= {"rounding"}
     if not needed <= set(state):
-        raise not_read(where, "the module does not set all that the move counts on")
+        raise not_read(
+            where, "the module does not set base, tool, speed and rounding before the move"
+        )
     if not straight and not 1.0 <= state["percent"] <= 100.0:
         raise not_read(
             where, Text("{:.0f} % of the joint speeds is not in 1 to 100", state["percent"])
@@ -519,7 +526,9 @@ def _follow_move(line: str, run: Run, where: str) -> None:
 def _triggered(ahead: float, output: str, on: bool, run: Run, where: str) -> None:
     """The move has switched an output `ahead` s before its end."""
     if not np.isnan(run.rounding[-1]):
-        raise not_read(where, "a corner has no end from which the time of a trigger counts")
+        raise not_read(
+            where, "a trigger needs a move that ends at its point, but the corner is rounded"
+        )
     run.on, run.trigger = on, None
     run.happens("on" if on else "off", float(output), "$OUT", digits=0.0005, ahead=ahead)
 
@@ -531,7 +540,7 @@ def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str)
     """
     unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
     if run.unit is not None and (run.unit, run.numbers) != (unit, numbers):
-        raise not_read(where, "moves with other external axes are mixed")
+        raise not_read(where, "its moves use different external axes")
     moved = set(numbers) - set(run.slides)
     in_order = numbers == tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ())
     if (
@@ -542,8 +551,8 @@ def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str)
     ):
         raise not_read(
             where,
-            "the external axes are out of order, or BASE is not coupled to the part they move",
+            "the external axes are out of order, or BASE is not coupled to the part that they move",
         )
     if any(run.state.get(f"E{number}") != share for number in numbers):
-        raise not_read(where, Text("external axes do not run at {:.0f} % of their speeds", share))
+        raise not_read(where, Text("external axes are not set to {:.0f} % of their speeds", share))
     run.unit, run.numbers = unit, numbers

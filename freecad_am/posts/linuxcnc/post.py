@@ -52,14 +52,16 @@ CONTROLLER = Controller(point_bytes=67)
 PENDANT = None  # no robot's
 NO_WIRE = ""  # the speed of the wire can follow the torch speed
 NO_WEAVE = "programs of five-axis machines have no weave"
-NO_TRIGGER = "programs of five-axis machines switch the deposit between blocks, not at times before"
+NO_TRIGGER = (
+    "programs of five-axis machines switch the deposit between blocks only, not ahead of time"
+)
 refuse_process = refuse_no_process
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
 MOVE_LINE = re.compile(rb"G[01] ")
 ON_CONTROLLER = controller_checks(
     "The tool table has the torch's length, and the kinematics has the machine file's offsets",
-    "M428 and M429 switch the kinematics, and the work offset is that of the remarks",
+    "M428 and M429 switch the kinematics, and the work offset matches the remarks in the program",
     "The digital and analogue pins are connected to the process",
     "The feed override is 100 %",
 )

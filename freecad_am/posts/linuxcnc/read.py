@@ -101,7 +101,10 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         if not _is_sub(name, lines[:-1]):
             main.append(name)
     if len(main) != 1:
-        raise unreadable("program", Text("{} programs are not subs, expected one", len(main)))
+        raise unreadable(
+            "program",
+            Text("{} programs are not subs, but exactly one must be the main program", len(main)),
+        )
     state = _State(programs)
     _follow(main[0], programs[main[0]], state, ())
     if state.track.on or state.loop[0]:
@@ -129,7 +132,7 @@ def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
         if len(line) > 250 or (not layer and "(" in text) or ";" in text:
             raise unreadable(
                 f"{file} line {number}",
-                "a comment that may be carried out, or a line that is too long",
+                "its comment may be executed, or its line is too long",
             )
         if text:
             located_lines.append((f"{file} line {number}", text))
@@ -216,14 +219,12 @@ def _cooled(where: str, text: str, state: _State) -> bool:
     loop = _LOOP.match(text)
     if sample := _SAMPLE.match(text):
         if state.loop[1] not in ("", sample[1]):
-            raise unreadable(
-                where, "another analogue input is read than the one that is waited for"
-            )
+            raise unreadable(where, "it reads another analogue input than the one it waits for")
         state.sampled = sample[1]
     elif loop and loop[2] and sampled and not state.loop[0]:
         state.loop = loop[1], sampled
         if state.track.on:
-            raise unreadable(where, "it is waited for an analogue input within a bead")
+            raise unreadable(where, "it waits for an analogue input within a bead")
         state.track.happens("below", float(sampled) + 1.0, float(loop[2]), digits=1e-6)
     elif loop and not loop[2] and sampled and state.loop[0] == loop[1]:
         state.loop = "", ""
@@ -238,7 +239,7 @@ def _cooled(where: str, text: str, state: _State) -> bool:
 
 def _call(where: str, name: str, state: _State, callers: tuple[str, ...]) -> None:
     if state.track.on or state.kinematics == _TIP_ON:
-        raise unreadable(where, "another program is called within a bead")
+        raise unreadable(where, "it calls another program within a bead")
     if name in state.files:
         _follow(name, state.files[name][1:-1], state, callers)
     else:
@@ -286,10 +287,12 @@ def _line(where: str, text: str, state: _State) -> None:
 
 def _move(where: str, words: dict[str, str], state: _State) -> None:
     if not state.linear or state.units != _UNITS or not state.offset:
-        raise unreadable(where, "a move before G1, G21, G90 and a work offset are said")
+        raise unreadable(where, "it moves before G1, G21, G90 and a work offset are set")
     if state.kinematics == _TIP_ON:
         if state.feed != "G94" or state.offset == "G59.3":
-            raise unreadable(where, "a position on the part needs G94 and a work offset of its own")
+            raise unreadable(
+                where, "a position on the part needs G94 and a work offset for the part"
+            )
         if {*words} != {*state.track.axes, *"XYZF"}:
             raise unreadable(where, "a position on the part needs X Y Z and all rotary axes")
         state.track.add(TIP, words, where)
@@ -319,7 +322,7 @@ def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None
         raise unreadable(where, Text("{!r} is not understood", text))
     if state.output not in ("", name):
         raise unreadable(
-            where, Text("{!r} switches a second output, after {}", text, state.switched)
+            where, Text("{!r} switches a second output; the first is {}", text, state.switched)
         )
     state.switched = where
     state.output, state.track.on = name, on

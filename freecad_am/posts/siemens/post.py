@@ -53,15 +53,17 @@ CONTROLLER = Controller(point_bytes=80)
 PENDANT = None  # no robot's
 NO_WIRE = ""  # the speed of the wire can follow the torch speed
 NO_WEAVE = "programs of five-axis machines have no weave"
-NO_TRIGGER = "programs of five-axis machines switch the deposit between blocks, not at times before"
+NO_TRIGGER = (
+    "programs of five-axis machines switch the deposit between blocks only, not ahead of time"
+)
 refuse_process = refuse_no_process
 NO_SCHEDULE = {"arc": "it has no arc instructions"}
 LAST_SCHEDULE = 65535
 MOVE_LINE = re.compile(rb"N\d+ (?:G9 )?G[01] ")
 ON_CONTROLLER = controller_checks(
     "The tool offset has the torch's length, and G500 is the machine's zero",
-    "TRAORI and the work offset are those of the machine file and of the remarks",
-    "The words that switch the deposit and the inputs are taken up in the PLC",
+    "TRAORI matches the machine file, and the work offset matches the remarks in the program",
+    "The PLC handles the words that switch the deposit, and the inputs",
     "The feed override is 100 %",
 )
 # deg; a continuous axis takes the shorter way

@@ -77,7 +77,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     main = [name for name in files if name.upper().endswith(".MPF")]
     if len(main) != 1 or any(not name.upper().endswith((".MPF", ".SPF")) for name in files):
         raise unreadable(
-            "program", Text("{} main programs, expected one with its parts", len(main))
+            "program", Text("{} main programs, but exactly one with its parts is needed", len(main))
         )
     programs = {
         name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()
@@ -102,7 +102,7 @@ def _blocks(file: str, content: bytes) -> list[tuple[str, str]]:
         where = f"{file} line {number}"
         if numbered := _NUMBERED.match(text):
             if int(numbered[1]) <= last_number:
-                raise unreadable(where, "block numbers do not rise")
+                raise unreadable(where, "block numbers do not increase")
             last_number, text = int(numbered[1]), text[numbered.end() :]
         if text:
             tidy = text.isprintable() and "  " not in text
@@ -132,7 +132,7 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
             state.track.happens("input", float(wait[1]))
         elif cool := _COOL.match(text):
             if state.track.on:
-                raise unreadable(where, "it is waited for an analogue input within a bead")
+                raise unreadable(where, "it waits for an analogue input within a bead")
             state.waiting = True
             state.track.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
         elif dwell := _DWELL.match(text):
@@ -149,7 +149,7 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
     if wire := _WIRE.match(text):
         if state.compress or (not wire[1] and state.track.on):
             raise unreadable(
-                where, "the analogue output stops the machine within a bead, or its compressor"
+                where, "the analogue output stops the machine or its compressor within a bead"
             )
         state.track.set_wire(int(wire[2]), wire[3], where)
         return
@@ -212,11 +212,13 @@ def _mode(token: str, state: _State) -> bool:
 
 def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None:
     if not state.linear or state.units != _UNITS:
-        raise unreadable(where, "a move before G1, G90 and G710 are said")
+        raise unreadable(where, "it moves before G1, G90 and G710 are set")
     if state.corners and not any(
         state.corners == {word, *paired} for word, paired in _PAIRED.items()
     ):
-        raise unreadable(where, Text("{} do not belong together", " ".join(sorted(state.corners))))
+        raise unreadable(
+            where, Text("{} must not be used together", " ".join(sorted(state.corners)))
+        )
     if state.tip:
         is_set = state.workpiece and state.group and state.offset
         if state.feed != "G94" or not is_set or words.keys() != _TIP_WORDS:
@@ -230,13 +232,13 @@ def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None
         raise unreadable(where, "axes move in a frame other than the machine frame")
     if state.feed == "G94":
         if not state.group:
-            raise unreadable(where, "it is not said which axes the feed is the speed of")
+            raise unreadable(where, "it does not set the axes to which the feed applies (FGROUP)")
         state.track.add(SLIDES, words, where, stops)
         return
     if state.compress:
         raise unreadable(
             where,
-            "blocks with a time are compressed into one, which would take the time of the last",
+            "the compressor would merge blocks that each state a time, and only the last time would count",
         )
     state.track.add(TIME, words, where, stops)
 
@@ -245,7 +247,7 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
     output = _OUTPUT.match(token)
     if output and output[3] and token.partition("=")[0] not in state.switching:
         if state.compress or state.track.on:
-            raise unreadable(where, "a schedule is sent within a bead")
+            raise unreadable(where, "it sends a schedule within a bead")
         state.track.happens("schedule", float(output[3]), float(output[4]))
     elif output:
         if output[5] in _TAKEN:
@@ -253,7 +255,7 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
         _switch(where, token, output, state)
     elif token in state.files:
         if state.track.on or state.tip:
-            raise unreadable(where, "another program is called within a bead")
+            raise unreadable(where, "it calls another program within a bead")
         _follow(token, state, callers)
     elif (
         token in INSTRUCTIONS
@@ -290,7 +292,7 @@ def _switch(where: str, token: str, output: re.Match[str], state: _State) -> Non
     number = float(output[1] or output[3] or 0)
     if wrong or state.output not in ("", name):
         raise unreadable(
-            where, Text("{!r} switches a second output, after {}", token, state.switched)
+            where, Text("{!r} switches a second output; the first is {}", token, state.switched)
         )
     state.switched = where
     state.output, state.track.on = name, on

@@ -196,23 +196,25 @@ def _delay(seconds: float) -> list[str]:
 __all__ = ["read", "write"]
 
 
-NO_ANALOGUE = "the links of analogue inputs differ from controller to controller, and the post staubli knows none"
+NO_ANALOGUE = (
+    "links of analogue inputs differ between controllers, and the post staubli cannot know them"
+)
 # why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(point_bytes=250, whole_beads=True)
 PENDANT = Pendant("Stäubli", ("Rx", "Ry", "Rz"), MOVING_XYZ)
-NO_WIRE = "VAL 3 sets outputs while the moves before are still in the queue"
+NO_WIRE = "VAL 3 sets outputs while earlier moves are still in the queue"
 NO_WEAVE = "VAL 3 has no documented weave"
-NO_TRIGGER = "VAL 3 has no documented output at a time before a place"
+NO_TRIGGER = "VAL 3 has no documented way to switch an output ahead of a point"
 refuse_process = refuse_no_process
 NO_SCHEDULE = {
-    "output": "that VAL 3 sets several outputs to one number was not found documented",
+    "output": "VAL 3 has no documented way to set several outputs to one number",
     "arc": "VAL 3 has no arc instructions",
 }
 MOVE_LINE = re.compile(rb" *move[jl]\(")
 ON_CONTROLLER = controller_checks(
-    "The controller's world is the robot's base, and joint speeds are its nominal ones",
+    "The world frame of the controller is the robot base, and joint speeds are the nominal ones",
     "The outputs and inputs are linked to the process",
-    "Loaded parts and tools that stand on other tools have been tried with a dry run",
+    "A dry run has tried loading parts, and tools that are attached to other tools",
     "Payload is set and the monitor speed is 100 %",
 )
 AXES = 6

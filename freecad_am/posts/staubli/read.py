@@ -56,7 +56,7 @@ def applications(files: dict[str, bytes]) -> dict[str, Application]:
     by_folder = {_folder(file): _application(file, files) for file in projects}
     listed = sum(1 + len(by_folder[folder].programs) for folder in by_folder) + len(projects)
     if len(by_folder) < len(projects) or listed != len(files):
-        raise unreadable("program", "there are files that belong to no project, or to two")
+        raise unreadable("program", "some files belong to no project, or to two")
     return by_folder
 
 
@@ -93,7 +93,7 @@ def _parsed(file: str, files: dict[str, bytes]) -> ElementTree.Element:
     if b"\0" in files[file]:  # UTF-16, in which the next would not be seen
         raise unreadable(file, "it is not text in UTF-8")
     if b"<!DOCTYPE" in files[file]:
-        raise unreadable(file, "it declares a document type, which no controller writes")
+        raise unreadable(file, "it declares a document type, which controllers never write")
     try:
         return ElementTree.fromstring(files[file])
     except ElementTree.ParseError as error:
@@ -130,7 +130,7 @@ def _data(file: str, files: dict[str, bytes]) -> dict[str, Data]:
             or element.get("size") != str(len(values))
         ):
             raise unreadable(
-                file, Text("the values of {} do not run from 0 to its size, each once", name)
+                file, Text("the values of {} must be numbered from 0 to its size, each once", name)
             )
         data[name] = Data(str(element.get("type")), tuple(values))
     return data
@@ -289,7 +289,7 @@ class _Values:
             "frame",
             "world[0]",
             where,
-            Text("the points of {} are not all in one frame", name),
+            Text("the points of {} are in more than one frame", name),
         )
 
     def carrier(self, app: Application, name: str, where: str) -> Array:
@@ -297,7 +297,12 @@ class _Values:
         if self.father(app, name) == _FLANGE:
             return np.eye(4)
         return self._one(
-            app, name, "tool", _FLANGE, where, Text("the tools of {} are not all on one tool", name)
+            app,
+            name,
+            "tool",
+            _FLANGE,
+            where,
+            Text("the tools of {} are attached to more than one tool", name),
         )
 
     def _one(
@@ -330,9 +335,7 @@ def _corners(values: _Values, app: Application, descriptor: str, step: Step) -> 
     full = values(app, descriptor, _ACCELERATION)[step.speed]
     kinds = ("off", "Cartesian") if step.linear else ("off", "joint", "Cartesian")
     if not np.isin(words, kinds).all() or (leave != reach).any() or (full != 100.0).any():
-        raise unreadable(
-            step.where, "it rounds corners or accelerates in a way that is not understood"
-        )
+        raise unreadable(step.where, "its rounding of corners or acceleration is not understood")
     rounded: Array = np.where(words == "off", 0.0, np.maximum(leave, 1e-9))
     return rounded
 
@@ -369,7 +372,7 @@ def moves_of(steps: list[Step]) -> ReadMoves:
         if step.linear:
             own_frame = values.frame(app, target, step.where)
             if frame is not None and not np.array_equal(own_frame, frame):
-                raise unreadable(step.where, "positions of more than one frame are mixed")
+                raise unreadable(step.where, "it mixes positions in more than one frame")
             frame = own_frame
             point[rows] = values.six(app, target)[step.point]
             tool_values = values.six(app, tool)[step.tool]
@@ -389,7 +392,7 @@ def moves_of(steps: list[Step]) -> ReadMoves:
         if not is_supported.all() or (not step.linear and values.father(app, tool) != _FLANGE):
             raise unreadable(
                 step.where,
-                "its speed is limited, or its tool fixed, in a way that is not understood",
+                "its speed limit or the fixture of its tool is not understood",
             )
     linear = bool(np.isfinite(speed).any())
     return ReadMoves(
@@ -461,14 +464,14 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     ]
     if len(outer) != 1:
         raise unreadable(
-            "program", Text("{} applications, expected one with its parts", len(outer))
+            "program", Text("{} applications, but exactly one with its parts is needed", len(outer))
         )
     run = _Run(by_folder)
     _follow(by_folder[outer[0]], "start", run, ())
     if not run.steps:
-        raise unreadable("program", "there are no moves")
+        raise unreadable("program", "it has no moves")
     if run.moving:
-        raise unreadable("program", "it ends before the last move does")
+        raise unreadable("program", "it ends before its last move")
     lines = Lines()
     for step in run.steps:
         lines.add(step.where, len(step.point))
@@ -549,12 +552,12 @@ def _load(
     """Loading a part stops the program where it fails; the robot must not deposit meanwhile."""
     next_statements = [next(statements, (0, ""))[1] for _ in range(3)]
     if not next_statements[0].startswith("popUpMsg(") or next_statements[1:] != ["return", "endIf"]:
-        raise unreadable(where, "a part is loaded without stopping where it cannot be")
+        raise unreadable(where, "it loads a part where the robot cannot stop")
     if run.on or f"{app.folder}/{part_name}" not in run.applications or alias not in app.libraries:
         raise unreadable(
             where,
             Text(
-                "{} is loaded while depositing or is missing, or {} is not a library",
+                "{} is loaded during the deposit or is missing, or {} is not a library",
                 part_name,
                 alias,
             ),
@@ -577,7 +580,7 @@ def _other(app: Application, line: str, run: _Run, where: str) -> None:
     if output := _OUTPUT.match(line):
         link = _link(app, output[1], "Q", where)
         if run.output not in ("", link):
-            raise unreadable(where, "a second output is switched")
+            raise unreadable(where, "it switches a second output")
         run.output, run.on = link, output[2] == "true"
         run.happens("on" if run.on else "off", _number(link, where), output[1])
     elif delay := _DELAY.match(line):

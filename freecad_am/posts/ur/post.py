@@ -193,16 +193,18 @@ CONTROLLER = Controller(
     point_bytes=140, configurations=False, flange=True, least_step=2.0001e-3, least_blend=2.6e-3
 )
 PENDANT = Pendant("Universal Robots", ("RX", "RY", "RZ"), ROTATION_VECTOR, 6)
-NO_WIRE = "URScript sets an output when the robot enters the blend before it, not where the bead asks for it"
-NO_WEAVE = "URScript has no documented weave of its own"
-NO_TRIGGER = "URScript has no documented output at a time before a place"
+NO_WIRE = (
+    "URScript sets an output when the robot enters the blend before the point, not at the point"
+)
+NO_WEAVE = "URScript has no documented weave"
+NO_TRIGGER = "URScript has no documented way to switch an output ahead of a point"
 refuse_process = refuse_no_process
 NO_SCHEDULE = {"arc": "URScript has no arc instructions"}
 LAST_REGISTER, LAST_SCHEDULE = 47, 65535
 MOVE_LINE = re.compile(rb" *move[jlp]\(")
 ON_CONTROLLER = controller_checks(
-    "Joint programs rely on the nominal arm; the calibrated one stands up to millimetres off it",
-    "The robot keeps the time of every move through the blends",
+    "Joint programs assume the nominal arm; the calibrated arm deviates by up to a few millimetres",
+    "The robot keeps the time of every move through its blends",
     "Payload is set, safety limits allow the speeds, and the speed slider is at 100 %",
     "The deposit output switches the process",
 )

@@ -123,7 +123,7 @@ def unreadable(where: str, why: str) -> InputError:
 def read(files: dict[str, bytes]) -> ReadMoves:
     """All moves of the script in the order of execution. Raises InputError UNREADABLE_PROGRAM, naming file and line."""
     if len(files) != 1:
-        raise unreadable("program", Text("{} files, expected one script", len(files)))
+        raise unreadable("program", Text("{} files, but exactly one script is needed", len(files)))
     ((file, content),) = files.items()
     name, main = _parsed(file, content)
     if not re.fullmatch(rf"(?:.*/)?{name}\.script", file):
@@ -131,7 +131,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     run = _Run(file)
     _follow(name, main, {}, run, ())
     if not run.deposit:
-        raise unreadable("program", "there are no moves")
+        raise unreadable("program", "it has no moves")
     return _moves(run)
 
 
@@ -140,7 +140,7 @@ def _parsed(file: str, content: bytes) -> tuple[str, _Function]:
     try:
         lines = content.decode("ascii").split("\n")
     except UnicodeDecodeError:
-        raise unreadable(file, "it has other characters than ASCII") from None
+        raise unreadable(file, "it contains characters other than ASCII") from None
     title = _DEF.match(lines[0])
     if title is None or len(lines) < 2 or lines[-2:] != ["end", ""]:
         raise unreadable(file, "it is not one function from its first line to its last")
@@ -163,7 +163,7 @@ def _parsed(file: str, content: bytes) -> tuple[str, _Function]:
         current_function = main.inside[inner[1]] = _Function(number)
         depth = 2
     if depth == 2:
-        raise unreadable(file, "a part does not end")
+        raise unreadable(file, "a part of the program has no end")
     return title[1], main
 
 
@@ -184,7 +184,7 @@ def _follow(
         if output := _OUTPUT.match(text):
             number = _FIRST_PIN[output[1]] + float(output[2])
             if run.output not in (None, number):
-                raise unreadable(where, "a second output is switched")
+                raise unreadable(where, "it switches a second output")
             run.output, run.on = number, output[3] == "True"
             run.happens("on" if run.on else "off", number, f"{output[1]}_digital_out")
         elif register := _REGISTER.match(text):
@@ -235,7 +235,7 @@ def _move(text: str, run: _Run, where: str) -> bool:
         if frame is None:
             return False
         if run.deposit or (run.tcp if text.startswith("set_tcp") else run.platform):
-            raise unreadable(where, "tool or platform is set again")
+            raise unreadable(where, "it sets tool or platform a second time")
         if text.startswith("set_tcp"):
             run.tcp = frame.groups()
         else:
@@ -244,11 +244,11 @@ def _move(text: str, run: _Run, where: str) -> bool:
     if not run.tcp or (columns_read[0] == "nan") is bool(run.platform):
         raise unreadable(
             where,
-            "it moves without a tool, without the platform, or in joints where positions are given",
+            "it moves without a tool or platform, or in joint values where positions are given",
         )
     values = [float(number) for number in columns_read]
     if values[12] <= 0.0 or values[13] <= 0.0 or values[14] < 0.0:
-        raise unreadable(where, "its time, speed or blend is none that is kept")
+        raise unreadable(where, "the robot cannot keep its time, speed or blend")
     run.numbers.extend(values)
     run.deposit.append(run.on)
     run.lines.add(where)

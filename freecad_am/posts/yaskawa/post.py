@@ -144,13 +144,13 @@ def job(program: Program, name: str, head: Sequence[str], entries: Sequence[Piec
 
 __all__ = ["read", "write"]
 
-NO_ANALOGUE = "how a job waits for an analogue input differs with the controller's options, and the post yaskawa knows none"
+NO_ANALOGUE = "the instruction that waits for an analogue input depends on options of the controller, which the post yaskawa cannot know"
 # why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(point_bytes=75, external=True, positioner="ST1", pulses=True)
 PENDANT = Pendant("Yaskawa", ("Rx", "Ry", "Rz"), FIXED_XYZ)
-NO_WIRE = "AOUT between two moves of an INFORM job is set when its line is reached, which rounded corners move"
+NO_WIRE = "INFORM sets AOUT between two moves when it reaches the line, and rounded corners shift that moment"
 NO_WEAVE = ""  # linear moves can be woven
-NO_TRIGGER = "how an INFORM job switches an output ahead of a place was not confirmed"
+NO_TRIGGER = "it is unconfirmed how an INFORM job switches an output ahead of a point"
 refuse_process = refuse_no_process
 LAST_WEAVE = 255  # files of weaving conditions
 NO_SCHEDULE: dict[str, str] = {}  # schedules are supported in every way
@@ -161,9 +161,9 @@ LAST_GROUP, LAST_SCHEDULE, LAST_FILE = (
 )  # groups of eight outputs; files of arc conditions
 MOVE_LINE = re.compile(rb"MOV[JL] ")
 ON_CONTROLLER = controller_checks(
-    "Pulses per degree of the machine file are the controller's, and zero pulses the zero of its angles",
-    "VJ is a share of the largest speeds of the machine file, those of the axis that takes longest",
-    "The tool file of the number in the job is the nozzle's tip, and speeds have the unit of the remarks",
+    "Pulses per degree in the machine file match the controller, and zero pulses are zero degrees",
+    "VJ is a share of the maximum speed, in the machine file, of the slowest axis of a move",
+    "The tool file with the number in the job holds the nozzle tip, and speeds have the unit in the remarks",
     "The deposit output switches the process",
 )
 MOST_EXTERNAL = 6
@@ -264,16 +264,18 @@ def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
     if motion != "cartesian":
         return
     why = (
-        "of a robot on a track have the base axis go along, and whether their speed counts its way"
+        "of a robot on a track also move the base axis, and it is unconfirmed whether their speed "
+        "includes its motion"
     )
     if ROTARY in external:
         why = (
-            "over a part on a positioner are coordinated motion (SMOVL), and what their speed is of"
+            "over a part on a positioner need coordinated motion (SMOVL), and it is unconfirmed "
+            "what its speed refers to"
         )
     raise InputError(
         "COORDINATED_MOTION",
         "program.motion",
-        "linear moves {} was not confirmed; use `motion: joint`, whose shares of the joint speeds hold it",
+        "linear moves {}; use `motion: joint`, which keeps the speed by shares of the joint speeds",
         Word(why),
     )
 
@@ -292,8 +294,7 @@ def _refuse(program: Program) -> None:
             raise InputError(
                 "UNSUPPORTED_AXES",
                 "program.axes.first",
-                "a position of a station or of base axes has one value per axis, from the first "
-                "axis on; use 1, not {}",
+                "positions of a station or of base axes begin with the first axis; use 1, not {}",
                 program.first_external,
             )
     refuse_wire(program, NO_WIRE)

@@ -118,14 +118,18 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     main = [name for name in jobs if name not in called]
     if len(main) != 1:
         raise unreadable(
-            "program", Text("{} jobs are called by no other job, expected one", len(main))
+            "program",
+            Text(
+                "{} jobs are called by no other job, but exactly one must be the main job",
+                len(main),
+            ),
         )
     run = _Run()
     _follow(main[0], jobs, run, ())
     if not run.deposit:
-        raise unreadable("program", "there are no moves")
+        raise unreadable("program", "it has no moves")
     if run.weaves:
-        raise unreadable(run.weaves, "the weave that begins here does not end")
+        raise unreadable(run.weaves, "the weave that begins here has no end")
     return _moves(run)
 
 
@@ -168,7 +172,7 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
     try:
         lines = content.decode("ascii").split("\r\n")
     except UnicodeDecodeError:
-        raise unreadable(file, "it has other characters than ASCII") from None
+        raise unreadable(file, "it contains characters other than ASCII") from None
     name, count = (
         (_NAME.match(lines[1]), _COUNT.match(lines[3])) if len(lines) > 3 else (None, None)
     )
@@ -200,7 +204,7 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
         if external not in (0, points):
             raise unreadable(
                 f"{file} line 4",
-                "some positions lack the external axes, or have only these",
+                "some positions lack the external axes, or have no other axes",
             )
         values = (
             np.hstack(
@@ -221,7 +225,7 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
         ):
             raise unreadable(
                 f"{file} line {line_index + number + 1}",
-                "the instructions do not begin as those of a robot's job do",
+                "the instructions do not begin like those of a robot job",
             )
     first_index = line_index + len(_INST)
     group = _GROUP.match(lines[first_index - 2])
@@ -269,19 +273,19 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
     ):
         raise unreadable(
             job.file,
-            "it does not say how many pulses there are to a degree of each axis, a mm of a track",
+            "the pulses per degree of each axis, or per mm of a track, are missing or given twice",
         )
     if any(_MOVL.match(line) for line in job.lines) and not any(
         _UNIT.match(line) for line in job.lines
     ):
-        raise unreadable(job.file, "it does not say what unit V has")
+        raise unreadable(job.file, "the unit of V is missing or unknown")
     for number, text in enumerate(job.lines, job.first_line):
         where = f"{job.file} line {number}"
         if text.startswith("MOV"):
             _move(job, text, run, where)
         elif output := _OUTPUT.match(text):
             if run.output not in ("", output[1]):
-                raise unreadable(where, "a second output is switched")
+                raise unreadable(where, "it switches a second output")
             run.output, run.on = output[1], output[2] == "ON"
             run.happens("on" if run.on else "off", float(output[1]), "OT")
         elif group := _OUTPUTS.match(text):
@@ -308,7 +312,9 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
 def _arc(arc: re.Match[str], run: _Run, where: str) -> None:
     """The arc is struck, or ends, by a file of conditions."""
     if run.output not in ("", ARC) or run.on == arc[1].startswith("ON"):
-        raise unreadable(where, "an output is switched too, or the arc burns already, or not yet")
+        raise unreadable(
+            where, "an output switches the deposit too, the arc is already on, or it is not on yet"
+        )
     run.output, run.on = ARC, arc[1].startswith("ON")
     run.happens("on" if run.on else "off", float(arc[2]), ARC)
 
@@ -316,7 +322,7 @@ def _arc(arc: re.Match[str], run: _Run, where: str) -> None:
 def _weave(weave: re.Match[str], run: _Run, where: str) -> None:
     """The torch begins to weave, or ends."""
     if bool(weave[1]) == bool(run.weaves):
-        raise unreadable(where, "the torch weaves already, or not yet")
+        raise unreadable(where, "weaving is already on, or not on yet")
     run.weaves = where if weave[1] else ""
     run.happens("weave", float(weave[1] or 0))
 
@@ -337,7 +343,7 @@ def _remark(text: str, run: _Run, where: str) -> None:
         run.slides |= {axis} if unit_name == "mm" else set()
     elif unit := _UNIT.match(text):
         if run.unit not in ("", unit[1]):
-            raise unreadable(where, "V has two units")
+            raise unreadable(where, "V is used with two units")
         run.unit = unit[1]
 
 
@@ -362,7 +368,7 @@ def _move(job: _Job, text: str, run: _Run, where: str) -> None:
         raise unreadable(where, Text("the speed {} is not valid", move[4]))
     external = job.track, job.station
     if run.external not in (None, external) or run.axes not in (0, job.points.shape[1]):
-        raise unreadable(where, "moves with another track or station than before are mixed")
+        raise unreadable(where, "its moves use more than one track or station")
     run.external, run.axes = external, job.points.shape[1]
     kind = 0 if joint else 1
     run.decimals[kind] = min(run.decimals[kind], len(move[5] or ""))

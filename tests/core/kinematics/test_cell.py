@@ -193,4 +193,4 @@ def test_a_machine_file_of_a_robot_with_its_track_is_refused_whatever_the_setup(
         assert "is a robot; use part-on-robot or tool-on-robot" in info.value.message
     else:
         assert (info.value.code, info.value.where) == ("NO_CLOSED_FORM", "cell.machine")
-        assert "as a track does" in info.value.message and "`cell.external`" in info.value.message
+        assert "like a track" in info.value.message and "`cell.external`" in info.value.message

@@ -201,7 +201,7 @@ def test_words_change_at_singularities_alone(arm):
     ("joint", "shift", "reason"),
     [
         (3, (0, 12, 0), "axis 4 passes 12 mm off axis 1"),
-        (4, (0, 0, 5), "neither is the wrist spherical nor do axes 4 and 5 meet"),
+        (4, (0, 0, 5), "the wrist is not spherical, and axes 4 and 5 do not meet"),
     ],
 )
 def test_what_does_not_hold_is_told(joint, shift, reason):

@@ -145,7 +145,7 @@ def test_a_sliding_axis_before_six_that_turn_is_a_track_and_five_axis_machines_a
     rail = Chain(of.origins[again], of.directions[again], of.flange, np.arange(7) == 0)
     with pytest.raises(
         InputError,
-        match=r"slides and carries the six that turn, as a track does; .*`cell\.external`",
+        match=r"is prismatic and carries the six revolute axes, like a track; .*`cell\.external`",
     ):
         recognition.arm_of(rail)
     last = Chain(of.origins[again], of.directions[again], of.flange, np.arange(7) == 6)

@@ -305,7 +305,7 @@ def test_links_that_cannot_keep_apart_are_named_with_their_place(dome):
         errors[0].layer,
         errors[0].bead,
     ) == (0, 0)
-    assert errors[0].message.startswith("link q3 comes nearer than 10 mm to base, or touches it;")
+    assert errors[0].message.startswith("link q3 comes closer than 10 mm to base, or touches it;")
 
 
 def test_beads_that_no_rotation_serves_are_found_by_few_points_as_by_all(dome, monkeypatch):

@@ -148,7 +148,7 @@ def test_what_is_not_known_of_the_shapes_is_said_on_the_preflight(hemisphere):
         ] == [ok]
     (drawn,) = clearance.external_links(motion, far, touches, False, ())
     assert drawn.ok is None and drawn.how.startswith(
-        "not checked in full, for links of the robot are drawn"
+        "not checked in full, because the links of the robot are drawn from the kinematics only"
     )
     blank = dataclasses.replace(far, shapes=CellShapes())
     touches = arm_touches(motion, ArmContact(blank, [[] for _ in range(7)]))

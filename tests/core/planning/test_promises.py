@@ -93,7 +93,7 @@ def test_a_sound_job_keeps_all_promises_and_says_what_was_not_checked(sound):
     assert not broken(sound[2])
     # the file of the robot gives no payload
     unchecked = {entry.promise for entry in entries if entry.ok is None}
-    assert unchecked == {"UFRAME 1", "What carries the part carries its weight"}
+    assert unchecked == {"UFRAME 1", "Robot or positioner can carry the part"}
     assert all(entry.worst is not None for entry in entries if entry.ok)
 
 
@@ -117,10 +117,10 @@ def test_joints_that_lead_elsewhere(sound):
     row = int(np.flatnonzero(motion.deposit)[ROW])
     joints = motion.joints[row] + np.radians([0.0, 0.0, 0.01, 0.0, 0.0, 0.0])
     found = broken(dataclasses.replace(evidence, motion=changed(motion, row, joints=joints)))
-    entry = found["The joints bring the tool to every point"]
+    entry = found["The joint values reach every planned point"]
     assert tuple(entry.place) == place_of(motion, row) and 0.01 < entry.worst < 0.5
     lost = broken(dataclasses.replace(evidence, motion=changed(motion, row, joints=np.nan)))
-    assert tuple(lost["The joints bring the tool to every point"].place) == place_of(motion, row)
+    assert tuple(lost["The joint values reach every planned point"].place) == place_of(motion, row)
 
 
 @pytest.mark.parametrize("rapid", [False, True])
@@ -132,7 +132,7 @@ def test_an_axis_asked_for_too_much(sound, rapid):
     row = int(rows[turned[rows] > 1e-4][2])
     share = (np.abs(motion.joints[row] - motion.joints[row - 1]) / cell.machine.max_speed).max()
     found = broken(dataclasses.replace(evidence, motion=changed(motion, row, duration=share / 1.1)))
-    assert set(found) == {"No axis is asked for more than its largest speed"}
+    assert set(found) == {"No axis exceeds its maximum speed"}
     (entry,) = found.values()
     assert tuple(entry.place) == place_of(motion, row) and entry.worst == pytest.approx(110.0)
 
@@ -144,7 +144,7 @@ def test_a_nozzle_that_meets_deposit_on_rapids_though_planning_found_nothing(sou
         and evidence.rapids.step <= 2.0
     )
     found = broken(dataclasses.replace(evidence, rapids=driven(cell, path, evidence.motion, 25.0)))
-    assert set(found) == {"The nozzle stays clear on the rapids"}
+    assert set(found) == {"The nozzle stays clear on rapids"}
     (entry,) = found.values()
     assert entry.worst >= 5.0 and entry.place is not None
 
@@ -187,25 +187,25 @@ def test_layers_that_are_not_one_layer_height_apart(sound):
 @pytest.mark.parametrize(
     ("promise", "change"),
     [
-        ("The deposit is on the part", lambda e: {"toolpath": e.toolpath.add_checks(
+        ("The deposit lies on the part", lambda e: {"toolpath": e.toolpath.add_checks(
             on_part=(500.0, 0.21, 0.2))}),
-        ("All of the part is deposited", lambda e: {"balance": Balance("Part", 1e5, 3e3, 1e5, 0.0)}),
+        ("The whole part is deposited", lambda e: {"balance": Balance("Part", 1e5, 3e3, 1e5, 0.0)}),
         ("Nothing is deposited outside the part", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 3e4)}),
-        ("Little is deposited twice", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 0.0, filled=True, twice=1.1e4)}),
-        ("Little is deposited twice", lambda e: {"balance": Balance("Part", None, None, 1e5, twice=1.1e4)}),
+        ("Over-deposition is small", lambda e: {"balance": Balance("Part", 1e5, 0.0, 1e5, 0.0, filled=True, twice=1.1e4)}),
+        ("Over-deposition is small", lambda e: {"balance": Balance("Part", None, None, 1e5, twice=1.1e4)}),
         ("Every bead is supported from below", lambda e: {"toolpath": e.toolpath.add_checks(
             unsupported=2.0)}),
-        ("The wire feeds what the beads take", lambda e: {"toolpath": dataclasses.replace(
+        ("The wire feed matches the volume of the beads", lambda e: {"toolpath": dataclasses.replace(
             e.toolpath, wire_feed=1.1 * e.toolpath.wire_feed)}),
-        ("The nozzle stays clear of deposit, part and platform while it deposits", lambda e: {
+        ("The nozzle stays clear of deposit, part and platform while depositing", lambda e: {
             "looked": nozzle_check.Looked(100, 1, (2, 0, 7))}),
-        ("The tool keeps away from singularities while it deposits", lambda e: {"condition": np.where(
+        ("The tool stays away from singularities while depositing", lambda e: {"condition": np.where(
             np.arange(len(e.condition)) == 40, 0.05, e.condition)}),
         ("The arm stays clear of part, deposit, platform, nozzle and itself", lambda e: {"arm": ArmTouches(
             np.where(np.arange(len(e.motion)) == 40, 3, -1), np.where(np.arange(len(e.motion)) == 40, 0, -1),
             ("platform",), 0.02, LINKS)}),
-        ("The text takes the tool to the planned points", lambda e: {"read": dataclasses.replace(e.read, at_points=3e-3)}),
-        ("Between its points the text keeps to the planned path", lambda e: {"read": dataclasses.replace(
+        ("The program moves the tool to the planned points", lambda e: {"read": dataclasses.replace(e.read, at_points=3e-3)}),
+        ("The program follows the planned path between its points", lambda e: {"read": dataclasses.replace(
             e.read, between=0.06)}),
     ],
 )  # fmt: skip
@@ -219,8 +219,8 @@ def test_a_text_that_was_read_back_with_errors_breaks_both_promises_of_it(sound)
     evidence = sound[2]
     found = broken(dataclasses.replace(evidence, read=dataclasses.replace(evidence.read, ok=False)))
     assert set(found) == {
-        "The text takes the tool to the planned points",
-        "Between its points the text keeps to the planned path",
+        "The program moves the tool to the planned points",
+        "The program follows the planned path between its points",
     }
 
 
@@ -228,18 +228,18 @@ def test_a_text_that_was_read_back_with_errors_breaks_both_promises_of_it(sound)
     ("promise", "level", "codes"),
     [
         (
-            "The nozzle stays clear on the rapids",
+            "The nozzle stays clear on rapids",
             "error",
             ("RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR"),
         ),
         (
-            "The nozzle stays clear of deposit, part and platform while it deposits",
+            "The nozzle stays clear of deposit, part and platform while depositing",
             "error",
             ("CLEARANCE", "OVER_PLATFORM"),
         ),
-        ("All of the part is deposited", "warning", ("NOT_DEPOSITED",)),
+        ("The whole part is deposited", "warning", ("NOT_DEPOSITED",)),
         ("Nothing is deposited outside the part", "warning", ("DEPOSITED_BESIDE",)),
-        ("Little is deposited twice", "warning", ("DEPOSITED_TWICE",)),
+        ("Over-deposition is small", "warning", ("DEPOSITED_TWICE",)),
         ("Every bead is supported from below", "warning", ("UNSUPPORTED",)),
     ],
 )
@@ -264,30 +264,39 @@ def without(evidence, **parts):
 @pytest.mark.parametrize(
     ("promise", "change"),
     [
-        ("The deposit is on the part", lambda e: {"toolpath": e.toolpath.add_checks(on_part=None)}),
-        ("All of the part is deposited", lambda e: {"balance": None}),
+        (
+            "The deposit lies on the part",
+            lambda e: {"toolpath": e.toolpath.add_checks(on_part=None)},
+        ),
+        ("The whole part is deposited", lambda e: {"balance": None}),
         ("Nothing is deposited outside the part", lambda e: {"balance": None}),
         ("Nothing is deposited outside the part", lambda e: without(e, balance={"outside": None})),
         (
-            "All of the part is deposited",
+            "The whole part is deposited",
             lambda e: {"balance": Balance("Part", None, None, 1e5, twice=0.0, lines=True)},
         ),
-        ("Little is deposited twice", lambda e: without(e, balance={"twice": None})),
+        ("Over-deposition is small", lambda e: without(e, balance={"twice": None})),
         (
             "Every bead is supported from below",
             lambda e: {"toolpath": e.toolpath.add_checks(unsupported=None)},
         ),
-        ("The wire feeds what the beads take", lambda e: without(e, toolpath={"wire_feed": None})),
-        ("The wire feeds what the beads take", lambda e: without(e, process={"bead_model": "csw"})),
         (
-            "The nozzle stays clear of deposit, part and platform while it deposits",
+            "The wire feed matches the volume of the beads",
+            lambda e: without(e, toolpath={"wire_feed": None}),
+        ),
+        (
+            "The wire feed matches the volume of the beads",
+            lambda e: without(e, process={"bead_model": "csw"}),
+        ),
+        (
+            "The nozzle stays clear of deposit, part and platform while depositing",
             lambda e: {"looked": None},
         ),
         ("Every axis stays within its limits", lambda e: {"cell": None}),
-        ("The joints bring the tool to every point", lambda e: {"motion": None}),
-        ("No axis is asked for more than its largest speed", lambda e: {"motion": None}),
-        ("The tool keeps away from singularities while it deposits", lambda e: {"condition": None}),
-        ("The nozzle stays clear on the rapids", lambda e: {"rapids": None}),
+        ("The joint values reach every planned point", lambda e: {"motion": None}),
+        ("No axis exceeds its maximum speed", lambda e: {"motion": None}),
+        ("The tool stays away from singularities while depositing", lambda e: {"condition": None}),
+        ("The nozzle stays clear on rapids", lambda e: {"rapids": None}),
         (
             "The arm stays clear of part, deposit, platform, nozzle and itself",
             lambda e: {"arm": None},
@@ -296,8 +305,8 @@ def without(evidence, **parts):
             "The arm stays clear of part, deposit, platform, nozzle and itself",
             lambda e: {"true_shapes": False},
         ),
-        ("The text takes the tool to the planned points", lambda e: {"read": None}),
-        ("Between its points the text keeps to the planned path", lambda e: {"read": None}),
+        ("The program moves the tool to the planned points", lambda e: {"read": None}),
+        ("The program follows the planned path between its points", lambda e: {"read": None}),
     ],
 )
 def test_what_nobody_has_looked_at_is_neither_kept_nor_broken_and_says_so(sound, promise, change):
@@ -331,7 +340,7 @@ def test_what_a_machine_file_does_not_tell_is_not_kept(sound):
     entries = {entry.promise: entry.ok for entry in promises(changed_)}
     for name in (
         "Every axis stays within its limits",
-        "No axis is asked for more than its largest speed",
-        "The tool keeps away from singularities while it deposits",
+        "No axis exceeds its maximum speed",
+        "The tool stays away from singularities while depositing",
     ):
         assert entries[name] is None, name

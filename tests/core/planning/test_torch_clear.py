@@ -85,5 +85,5 @@ def test_what_the_torch_cannot_get_past_is_named(dome, beside):
     _, issues = planned(dome, kept)
     told = [issue for issue in issues if issue.code == "ARM_CLEARANCE"]
     assert any(
-        re.match(r"the torch comes nearer than 10 mm to post \d+", issue.message) for issue in told
+        re.match(r"the torch comes closer than 10 mm to post \d+", issue.message) for issue in told
     )

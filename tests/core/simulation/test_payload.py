@@ -259,7 +259,7 @@ def test_the_preflight_tells_what_it_weighs_and_what_carries_it(toolpath, positi
         assert (row.place is None) is kept and "Skew positioner" in row.how
     (untold,) = promised(toolpath, cell_with(positioner(from_axis=5e3), toolpath), process)
     assert untold.ok is None and untold.how.startswith(
-        "not checked: the file of Skew positioner states no payload"
+        "not checked: the machine file of Skew positioner has no payload"
     )
     parameters = CellParameters(machine="kuka-kr10-r1100-2", limits="maker", branch="auto")
     held = cells.resolve(parameters, toolpath.frame)

@@ -85,4 +85,4 @@ def test_what_gives_room_at_the_points_and_not_to_the_bead_is_not_named(monkeypa
     )
     assert asked and "the nozzle is clear" not in told
     tried = "`cell.nozzle.half_angle: 5 deg`, left, right out of the way"
-    assert f"; it still does with {tried} (all tested); {OTHER}" in told
+    assert f"; the nozzle still touches with {tried} (all tested); {OTHER}" in told

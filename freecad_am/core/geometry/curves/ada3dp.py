@@ -158,7 +158,7 @@ def read(data: bytes, where: str, roles: str = roles_of.PART) -> ReadCurves:
             raise InputError(
                 CODE,
                 where,
-                "a position is not a number up to {:g} mm; export it again",
+                "a coordinate is not a number, or is larger than {:g} mm; export it again",
                 MAX_MM,
             )
     runs, issues = roles_of.choose_runs(runs, roles, where, CODE)

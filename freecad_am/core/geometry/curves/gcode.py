@@ -73,27 +73,27 @@ OWN_MOTION = frozenset(
     {"G12", "G27", "G28", "G29", "G29.1", "G29.2", "G30", "G32", "G33", "G34", "G35", "G392"}
 )
 REFUSED = {
-    "G5": "splines are not known; let the slicer write lines and arcs",
-    "G6": "direct moves of steppers are not known; let the slicer write G1",
-    "G26": "it prints a pattern of the machine's own; leave it out",
-    "G41": "tool radius compensation is not known; leave it out",
-    "G42": "tool radius compensation and moves to points of a mesh are not known; leave it out",
-    "G43": "tool lengths are not known; let the slicer leave them out",
-    "G51": "scaled coordinates are not known; let the slicer leave them out",
-    "G61": "it returns to a stored position; write the move out",
-    "G68": "turned coordinates are not known; let the slicer leave them out",
-    "G90.1": "absolute centres of arcs are not known; give I and J from the start of the arc",
-    "M28": "the lines after it are stored on the machine, not run; leave it out, with its M29",
-    "M808": "it repeats lines of the program; write the moves out",
-    "M97": "it calls a subprogram; write its moves out",
-    "M99": "it returns from a subprogram, or repeats the program; leave it out",
-    "M206": "it shifts the origin; leave it out, or use G92",
-    "M428": "it shifts the origin; leave it out, or use G92",
-    "M579": "it scales axes; leave it out",
-    "SET_GCODE_OFFSET": "it shifts the origin; leave it out, or use G92",
-    "SET_KINEMATIC_POSITION": "it shifts the origin; leave it out, or use G92",
+    "G5": "splines are not supported; set the slicer to write lines and arcs",
+    "G6": "direct stepper moves are not supported; set the slicer to write G1",
+    "G26": "it prints a built-in pattern of the machine; remove it",
+    "G41": "tool radius compensation is not supported; remove it",
+    "G42": "tool radius compensation and moves to points of a mesh are not supported; remove it",
+    "G43": "tool length offsets are not supported; switch them off in the slicer",
+    "G51": "scaled coordinates are not supported; switch them off in the slicer",
+    "G61": "it returns to a stored position; write out the move",
+    "G68": "rotated coordinates are not supported; switch them off in the slicer",
+    "G90.1": "absolute arc centres are not supported; give I and J from the start of the arc",
+    "M28": "the machine stores the lines after it and does not run them; remove it and its M29",
+    "M808": "it repeats lines of the program; write out the moves",
+    "M97": "it calls a subprogram; write out its moves",
+    "M99": "it returns from a subprogram, or repeats the program; remove it",
+    "M206": "it shifts the origin; remove it, or use G92",
+    "M428": "it shifts the origin; remove it, or use G92",
+    "M579": "it scales axes; remove it",
+    "SET_GCODE_OFFSET": "it shifts the origin; remove it, or use G92",
+    "SET_KINEMATIC_POSITION": "it shifts the origin; remove it, or use G92",
     "FORCE_MOVE": "it moves a single motor; remove it",
-    "EXCLUDE_OBJECT": "it drops an object while the program runs; let the slicer leave the object out",
+    "EXCLUDE_OBJECT": "it cancels an object while the program runs; remove the object in the slicer",
 }
 # codes to which printer manufacturers give their own meanings: probing, levelling, machine states
 VENDOR = re.compile(r"G39(?:\.\d+)?|G\d{3,}(?:\.\d+)?")
@@ -552,9 +552,9 @@ class _Reader:
         if name == "M486" and CANCELLED.fullmatch(command.arguments):
             reason = REFUSED["EXCLUDE_OBJECT"]
         if name == "M605" and values.get("S", 0.0) not in (0.0, 1.0):
-            reason = "it prints copies side by side; print one"
+            reason = "it prints copies side by side; export a single copy"
         if WORK_OFFSETS.fullmatch(name):
-            reason = "where the coordinates of another work offset begin is not known; leave it out"
+            reason = "the origin of another work offset is unknown; remove it"
         if name.startswith("G43.4") and self.rotary != NO_ROTARY:
             return True
         if reason is not None:
@@ -738,7 +738,7 @@ class _Reader:
     def _target(self, words: dict[str, float], machine_frame: bool) -> None:
         state = self.state
         if machine_frame and not state.absolute:
-            raise self._error("G53 in relative moves (G91) is not known; write G90 before it")
+            raise self._error("G53 with relative moves (G91) is not supported; write G90 before it")
         for k, axis in enumerate("XYZ"):
             if axis in words:
                 self.known.add(axis)
@@ -815,11 +815,12 @@ class _Reader:
     ) -> list[Array]:
         """Return the points (3,) of an arc without its first."""
         if extrudes and words.get("P", 0.0) > 1.0:
-            raise self._error("P asks for several turns, which are not known; write each turn out")
+            raise self._error(
+                "P asks for several turns, which are not supported; write out each turn"
+            )
         if self.plane == "G18":
             raise self._error(
-                "arcs are in the plane of X and Z (G18), which Klipper and other controllers turn in opposite ways; let "
-                "the slicer write arcs in another plane, or lines only"
+                "arcs are in the plane of X and Z (G18), which Klipper and other controllers turn in opposite ways; set the slicer to write arcs in another plane, or lines only"
             )
         axes, letters = PLANES[self.plane]
         start, end = start[list(axes)], end[list(axes)]

@@ -71,8 +71,7 @@ class SolidMesh:
                 (edges.count == 1) & of_shape,
                 "OPEN_MESH",
                 "faces of the solid do not meet along their edges",
-                "check it "
-                "where it was drawn (Part, Check geometry), and draw those faces again or sew them",
+                "check it in the CAD system or by Part, Check geometry, and redraw or sew those faces",
             ),
             (
                 edges.count == 1,
@@ -83,8 +82,8 @@ class SolidMesh:
             (
                 several & of_shape,
                 "NON_MANIFOLD",
-                "the solid touches itself along an edge, so that its inside is not known",
-                "draw it apart there, or let it overlap there and fuse it (Part, Boolean)",
+                "the solid touches itself along an edge, so its inside is undefined",
+                "separate it there, or make it overlap there and fuse it (Part, Boolean)",
             ),
             (
                 several,

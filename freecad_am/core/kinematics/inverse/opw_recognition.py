@@ -82,9 +82,8 @@ def recognise(chain: Chain) -> OpwArm:
         slides = int(chain.sliding.sum())
         if track_of(chain):
             raise refused(
-                "its first axis slides and carries the six that turn, as a track does",
-                "let the machine begin with the robot, and name the track in `cell.external` with `carries: "
-                "robot`",
+                "its first axis is prismatic and carries the six revolute axes, like a track",
+                "start the machine at the base of the robot, and name the track in `cell.external` with `carries: robot`",
             )
         raise refused(
             Text("it has {} axes, {} prismatic", chain.axes, slides),
@@ -149,7 +148,7 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
         raise refused("axis 1 is not the Z of the base frame")
     if all(float(np.linalg.norm(np.cross(z[1], z[axis]))) < PARALLEL_TOLERANCE for axis in (2, 3)):
         raise refused(
-            "the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as of the arms of Universal Robots"
+            "the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as in arms of Universal Robots"
         )
     for first_axis, second_axis in ((0, 1), (2, 3), (3, 4), (4, 5)):
         off = math.asin(min(1.0, abs(float(z[first_axis] @ z[second_axis]))))
@@ -195,7 +194,7 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
     ahead, above = float(to_elbow @ x), float(to_elbow @ up)
     upper = math.hypot(ahead, above)
     if upper < NEAR_MM:
-        raise refused("axes 2 and 3 are the same line")
+        raise refused("axes 2 and 3 coincide")
     turn2 = math.atan2(ahead, above)
     to_wrist = centre - p[2]
     length = float(to_wrist @ z[3])

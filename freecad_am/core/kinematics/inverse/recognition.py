@@ -393,7 +393,7 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
         raise opw_recognition.refused("axes 2 and 3 are not parallel")
     point = None if _parallel(z[3], z[4]) else _meeting(p[3], z[3], p[4], z[4])
     if point is None:
-        raise opw_recognition.refused("neither is the wrist spherical nor do axes 4 and 5 meet")
+        raise opw_recognition.refused("the wrist is not spherical, and axes 4 and 5 do not meet")
     normal = _normal(z[1], point)
     ahead = np.cross(normal, (0.0, 0.0, 1.0))
     plane = np.stack([ahead, (0.0, 0.0, 1.0)])
@@ -405,7 +405,7 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     upper, fore = elbow - shoulder, centre - elbow
     wrist_offset = point - p[5] - z[5] * float(z[5] @ (point - p[5]))
     if min(np.hypot(*upper), np.hypot(*fore), np.linalg.norm(wrist_offset)) < NEAR_MM:
-        raise opw_recognition.refused("axes that follow each other are the same line")
+        raise opw_recognition.refused("two consecutive axes coincide")
     turn3 = math.atan2(*fore)
     arm = OffsetWristArm(
         chain=chain,
@@ -422,7 +422,7 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     arm = replace(arm, flips=_flips(arm))
     if not _agrees(arm, chain):
         raise opw_recognition.refused(
-            "its solutions do not give back its poses", "give the geometry with more digits"
+            "its inverse solutions do not reproduce its poses", "give the geometry with more digits"
         )
     return arm
 

@@ -73,8 +73,7 @@ def refined_to_chord_error(
         Issue(
             ERROR,
             "NOT_STRAIGHT",
-            "joint motion deviates from the bead between two points, no matter how many are "
-            "added: it is near a singularity",
+            "the joint motion deviates from the bead between two points, near a singularity, no matter how many points are added; move the part in the cell, or choose another cell.branch",
             path.layer,
             path.index,
             worst,

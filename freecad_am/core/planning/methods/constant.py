@@ -58,7 +58,7 @@ def plan(
     issues: list[Issue] = []
     if isinstance(requested, str):
         coarse = gather(beads, task.cell, global_search.POINTS_PER_BEAD)
-        progress(0.1, "searching one RZ for all")
+        progress(0.1, "searching one RZ for the whole job")
         clear = None if task.kept is None else _keeps_clear(task, beads, bead_ids)
         rz, margin, served = best_rz(task, coarse, task.thresholds(coarse), clear)
         if not served:
@@ -79,8 +79,7 @@ def plan(
                     NOTE,
                     "RZ_CONSTANT",
                     Text(
-                        "none of {} values of RZ works for the whole job; the best one is {:.1f} "
-                        "deg",
+                        "none of {} values of RZ is feasible for the whole job, and the best one is {:.1f} deg; joints.method: layer-by-layer uses one polynomial per bead",
                         RZ_CANDIDATES,
                         np.degrees(rz),
                     ),

@@ -83,7 +83,7 @@ def plan(
             joints[index - 1],
         )
         if number % 20 == 0:
-            progress(0.1 + 0.8 * number / counts.max(), "going from point to point")
+            progress(0.1 + 0.8 * number / counts.max(), "planning point by point")
     joints = task.in_range(unwrapped(joints, points), points)
     return bead_paths(task, beads, bead_ids, points, threshold, phi, joints, "point by point"), []
 

@@ -201,7 +201,7 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
         why = (
             Text("the wall is planned as one bead, {:.4g} mm wide", balance.width)
             if balance.width
-            else ("solids are built up on the hub, which is there before")
+            else ("solids are built on the hub, which must exist already")
         )
         issues_.append(
             Issue(WARNING, LEFT_OUT, Text("{}: {}", _left_out(balance, share), Word(why)))

@@ -334,7 +334,11 @@ def issues(
     else:
         text = Text("{:.3g} mm are left to machine", shape.least)
     # if layers come out low, more is needed everywhere
-    remedy = "Lay layers as high as they come out first" if low else Text(remedy, f"{lacks:.3g}")
+    remedy = (
+        "First set strategy.layer_height to the predicted height"
+        if low
+        else Text(remedy, f"{lacks:.3g}")
+    )
     return (
         *drifts,
         Issue(

@@ -521,7 +521,7 @@ def what_helps(touching: Touching, now: Change, clears: Callable[[Change], bool]
         for change in _useful_changes(touching, changes):
             if touching.toolpath.point_count > MAX_TRIAL_POINTS:
                 return Text(
-                    "these points would be clear with {}, which was not tested for the others",
+                    "the nozzle would be clear at these points with {}; the other points were not tested",
                     change.words,
                 )
             trials_left -= 1
@@ -531,7 +531,7 @@ def what_helps(touching: Touching, now: Change, clears: Callable[[Change], bool]
     fallback = Text("use other layers or another direction, or exclude the region of these points")
     return (
         Text(
-            "it still does with {} (all tested); {}",
+            "the nozzle still touches with {} (all tested); {}",
             Text.joined(", ", trials),
             fallback,
         )

@@ -196,8 +196,7 @@ class Pictures:
                     NOTE,
                     "PATTERN_ROUND_HUB",
                     Text(
-                        "a layer all around the hub is filled with {}; strategy.fill = {} needs "
-                        "regions with an end",
+                        "this layer closes around the hub and is filled with {}; strategy.fill = {} needs regions that do not",
                         replacement,
                         strategy.fill,
                     ),

@@ -24,7 +24,7 @@ from .flattened_bead import LEAST_DEPARTURE
 from .torch_tilt import Turned
 
 SLIGHTLY = 0.01  # of the travel speed; smaller differences are not reported
-WIDTH_TEXT = "as wide as the room that they have, {:.3g} to {:.3g} mm"
+WIDTH_TEXT = "as wide as the available space, {:.3g} to {:.3g} mm"
 HIGH = "as high as their layer is there, {:.3g} to {:.3g} mm"
 
 

@@ -349,7 +349,7 @@ def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[
         return [Issue(NOTE, "SPACING", text)]
     worst = int(np.argmax([np.abs(layer - height).max() for layer in distances])) + 1
     advice = (
-        "a larger strategy.tolerance says that this will do"
+        "set a larger strategy.tolerance to accept this"
         if exact
         else "spacing: constant-distance is even"
     )
