@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The posts there are, by the name a job uses."""
+"""The available posts, by the names in jobs."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def controller_checks(*promises: str) -> tuple[str, ...]:
     return promises
 
 
-# names that files cannot have on the computers programs pass through
+# names that files cannot have on the computers that handle programs
 DEVICES = frozenset(
     ("CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10)))
 )
@@ -37,9 +37,10 @@ DEVICES = frozenset(
 class Naming:
     """The rules of a controller.
 
-    written: how it writes a name. start, starts: a pattern of how one begins, and in words.
-    longest: characters; spare of them are left free in proposals, for the digits of parts.
-    reserved: words, upper case, that are not names; DEVICES never are. prefix: begins proposals if
+    written: converts a name to its form on the controller. start, starts: pattern of its beginning,
+    and the same in words. longest: maximum characters; proposals leave `spare` of them for the
+    digits of parts.
+    reserved: upper-case words that cannot be names; DEVICES never can. prefix: begins proposals if
     the name itself is not valid.
     """
 
@@ -53,7 +54,9 @@ class Naming:
     what: str = "a program's name"
 
     def checked(self, name: str, where: str) -> str:
-        """The name as the controller has it. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+        """The name as the controller has it. Raises InputError PROGRAM_NAME with the reason and a
+        valid proposal.
+        """
         as_written = self.written(name) if name.isascii() else name
         if not name:
             raise self.refused(name, where, "it is empty")
@@ -70,7 +73,7 @@ class Naming:
         return as_written
 
     def fits(self, name: str) -> bool:
-        """Whether the controller takes a name, with the digits of parts behind it."""
+        """Whether a name is valid with the digits of parts appended."""
         try:
             return len(self.checked(name, "name")) <= self.longest - self.spare
         except InputError:
@@ -104,14 +107,14 @@ class Naming:
         )
 
     def proposed(self, name: str) -> str:
-        """One like it that the controller takes, with the digits of parts behind it."""
+        """A similar name that is valid with the digits of parts appended."""
         proposal = self.written(re.sub(r"[^A-Za-z0-9]+", "_", plain(name)).strip("_"))
         if not re.match(self.start, proposal) or self._is_reserved(proposal):
             proposal = f"{self.prefix}{proposal}".rstrip("_")
         return proposal[: self.longest - self.spare].rstrip("_")
 
     def parts(self, name: str, count: int) -> list[str]:
-        """Names of `count` parts. Raises InputError PROGRAM_NAME without room for their digits."""
+        """Names of `count` parts. Raises InputError PROGRAM_NAME if their digits do not fit."""
         digits = max(2, len(str(count)))
         names = [f"{name}{number:0{digits}d}" for number in range(1, count + 1)]
         if len(names[0]) > self.longest:
@@ -131,7 +134,7 @@ class Naming:
 
 
 def plain(text: str) -> str:
-    """The text in ASCII characters that can be printed."""
+    """The text in printable ASCII characters."""
     ascii_text = (
         unicodedata.normalize("NFKD", text.replace("ß", "ss"))
         .encode("ascii", "ignore")
@@ -197,10 +200,14 @@ class Post(Protocol):
     ON_CONTROLLER: tuple[str, ...]
 
     def program_name(self, name: str, where: str) -> str:
-        """The program's name on the controller; raises InputError PROGRAM_NAME, at `where`, for one it refuses."""
+        """The program's name on the controller. Raises InputError PROGRAM_NAME, at `where`, for an
+        invalid one.
+        """
 
     def write(self, program: Program) -> dict[str, bytes]:
-        """The controller's files, name -> content; raises InputError for what the controller would refuse."""
+        """The controller's files, name -> content. Raises InputError for what the controller would
+        reject.
+        """
 
     def refuse_setup(
         self,
@@ -338,8 +345,8 @@ class Lines:
         return self.files[self.file[row]], int(self.line[row])
 
     def move_at(self, name: str, line: int) -> int | None:
-        """The move in a line of a file, the first one in a loop; between two moves the next one,
-        after the last the last one. None for a file without moves.
+        """The move in a line of a file: the first one of a loop, the next one between two moves,
+        the last one after all moves. None for a file without moves.
         """
         moves_of_file = (
             np.flatnonzero(self.file == self.files.index(name))
@@ -371,7 +378,7 @@ def lines_of(post: str, files: dict[str, bytes]) -> Lines:
 
 
 def _moves(pattern: re.Pattern[bytes], content: bytes) -> list[int]:
-    """The line of each move of a file, as often as it is run."""
+    """The line of each move of a file, repeated as often as it runs."""
     move_lines: list[int] = []
     times = 1
     for number, line in enumerate(content.split(b"\n")):

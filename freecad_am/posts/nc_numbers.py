@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What programs of five-axis machines say in numbers, whatever the controller: axis words, direction vectors, feeds."""
+"""Numbers in programs of five-axis machines for all controllers: axis words, direction vectors,
+feeds.
+"""
 
 from __future__ import annotations
 
@@ -19,12 +21,14 @@ from .refusals import refuse_incomplete
 
 
 def wrapped(text: str) -> list[str]:
-    """A remark on as many lines as it needs, in plain characters."""
+    """A remark in plain characters, on as many lines as it needs."""
     return textwrap.wrap(plain(text), 80)
 
 
 def refuse_table(program: Program, post: str) -> None:
-    """Raises InputError UNSUPPORTED_AXES, NOTHING_TO_WRITE, UNREACHABLE, NO_POSITIONS: what no such program can say."""
+    """Raises InputError UNSUPPORTED_AXES, NOTHING_TO_WRITE, UNREACHABLE or NO_POSITIONS for
+    programs that no five-axis post supports.
+    """
     refuse_incomplete(program, post, len(program.axis_names))
     linear = [
         name
@@ -60,8 +64,8 @@ def refuse_table(program: Program, post: str) -> None:
 
 
 def refuse_words(program: Program, reserved: frozenset[str]) -> None:
-    """Raises InputError DEPOSIT_WORD for words that cannot switch the deposit: other than M or H
-    words, the same one twice, or words with another meaning (`reserved`; H for every such word).
+    """Raises InputError DEPOSIT_WORD for words that cannot switch the deposit: words other than M
+    or H, the same word twice, or words with another meaning (`reserved`; H for all H words).
     """
     words = {
         "program.nc.deposit_on": program.nc.deposit_on,
@@ -93,8 +97,8 @@ def refuse_words(program: Program, reserved: frozenset[str]) -> None:
 
 
 def refuse_wire_output(program: Program, highest: int) -> None:
-    """Raises InputError WIRE_OUTPUT where the program sets the speed of the wire by an analogue
-    output beyond `highest`.
+    """Raises InputError WIRE_OUTPUT if the program sets the wire feed by an analogue output above
+    `highest`.
     """
     if any(run.wire is not None for run in program.moves) and program.nc.wire_output > highest:
         raise InputError(
@@ -140,7 +144,7 @@ def dwell(address: str, seconds: float) -> list[str]:
     return [f"G4 {address}{max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
 
 
-# of mm and deg; Siemens' manual on 5-axis machining requires 5 decimals for positions and 6 for
+# decimals of mm and deg; Siemens' manual on 5-axis machining requires 5 for positions and 6 for
 # direction vectors
 DECIMALS, VECTOR_DECIMALS = 5, 6
 # significant digits of a feed, within the range of every controller; digits of the wire speed
@@ -192,12 +196,12 @@ def rows(template: str, values: Array) -> list[str]:
 
 
 def template(names: Sequence[str]) -> str:
-    """Plain words with these addresses: X%.5f Y%.5f."""
+    """A template of words with these addresses: X%.5f Y%.5f."""
     return " ".join(f"{name}%.{DECIMALS}f" for name in names)
 
 
 def feed(value: float) -> str:
-    """A feed with its significant digits, never in exponents."""
+    """A feed with its significant digits, without exponent."""
     return f"F{_significant(value, FEED_DIGITS)}"
 
 
@@ -206,13 +210,13 @@ def _significant(value: float, digits: int) -> str:
 
 
 def level(value: float) -> str:
-    """A value of an analogue input, never in exponents."""
+    """A value of an analogue input, without exponent."""
     text = f"{value:.6f}".rstrip("0")
     return f"{text}0" if text.endswith(".") else text
 
 
 def wire(program: Program, speeds: Sequence[float]) -> list[str]:
-    """Values of the analogue output at speeds of the wire, mm/s."""
+    """Values of the analogue output for wire feeds, mm/s."""
     values = [program.nc.wire_gain * 0.06 * speed for speed in speeds]
     return [_significant(value, WIRE_DIGITS) if value > 1e-9 else "0" for value in values]
 
@@ -262,11 +266,11 @@ def insert_wire_statements(
 class Feeds:
     """Feed words of the moves of a program, built run by run in the order of motion.
 
-    Moves of axes last as long as planned: F is one over that time in minutes (G93). With
-    `program.nc.path_feed` it is the speed of the linear axes in mm/min (G94) wherever these move.
-    Beads in positions run at the speed of the tip. slowest: mm/min or deg/min, a controller's lower
-    limit for any programmed time; slower moves get this speed for the linear axes, or for the
-    rotary ones if only these move.
+    Moves in axis values take the planned time: F is one over that time in minutes (G93), or with
+    `program.nc.path_feed` the speed of the linear axes in mm/min (G94) wherever these move. Beads
+    in positions run at the tip speed. slowest: mm/min or deg/min, the controller's lower limit for
+    any programmed time; slower moves get this speed for the linear axes, or for the rotary axes if
+    only these move.
     """
 
     def __init__(self, program: Program, slowest: float = 0.0) -> None:
@@ -277,7 +281,7 @@ class Feeds:
         self.after_tip = False
 
     def __call__(self, moves: Moves) -> list[str]:
-        """One text per move: the sort of feed and its value, such as 'G93 F120.0000' or 'G94 F300.0000'.
+        """One text per move: kind of feed and value, such as 'G93 F120.0000' or 'G94 F300.0000'.
 
         Raises InputError MOVE_SPEED or MOVE_TIME, naming the bead.
         """
@@ -296,9 +300,7 @@ class Feeds:
         by_speed = (speeds > 0.0) & (speeds < self.slowest)
         if self.path_feed and moves.kind != RAPID:
             by_speed |= (slide_lengths >= SHORTEST_WAY) & (speeds >= SLOWEST) & (speeds <= FASTEST)
-        by_speed[
-            0
-        ] &= not self.after_tip  # a text that ended in a position does not give the path length
+        by_speed[0] &= not self.after_tip  # after a position the path length is unknown
         self.after_tip = False
         return [
             f"{PATH} {feed(speed)}" if is_slow else f"{TIME} {feed(by_time)}"
@@ -309,8 +311,8 @@ class Feeds:
 
 
 def blocks(words: Sequence[str], feeds: Sequence[str]) -> list[str]:
-    """G1 blocks with words and feeds; the first block, and blocks that change it, have the sort of
-    feed in front.
+    """G1 blocks with words and feeds; the first block, and blocks that change it, begin with the
+    kind of feed.
     """
     lines, sort = [], ""
     for word, (sort_of_feed, value) in zip(words, (feed.split() for feed in feeds), strict=True):
@@ -329,7 +331,7 @@ def _inverse_times(moves: Moves) -> Array:
     """(n,) 1/min of the moves."""
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse: Array = 60.0 / moves.duration
-    if moves.kind == RAPID:  # one that hardly moves may take no time at all
+    if moves.kind == RAPID:  # a move of almost no length may take no time
         inverse = np.clip(np.nan_to_num(inverse, nan=FASTEST, posinf=FASTEST), SLOWEST, FASTEST)
     wrong = ~((inverse >= SLOWEST) & (inverse <= FASTEST))
     if wrong.any():

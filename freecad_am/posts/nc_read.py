@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What readers of programs of five-axis machines have in common: words become moves. Shares nothing with a writer."""
+"""Common code of the readers for five-axis machines: converts words to moves. Shares no code with a
+writer.
+"""
 
 from __future__ import annotations
 
@@ -24,10 +26,11 @@ _LINEAR, _VECTOR = "XYZ", ("A3", "B3", "C3")
 
 
 class Shape:
-    """The shape of a block with a move without its numbers: equal blocks, most of a program, are
-    read at once.
+    """The shape of a block with a move, without its numbers: blocks of equal shape, most of a
+    program, are read together.
 
-    block: its words, one that was understood word by word: G1, with `ahead` or nothing before it, and words with numbers.
+    block: its words, already read one by one: G1, with `ahead` or nothing before it, and words with
+    numbers.
     """
 
     def __init__(self, block: Sequence[str], ahead: str = "") -> None:
@@ -61,11 +64,10 @@ class Shape:
 class Track:
     """The moves found so far, the events between them, and the settings.
 
-    axes: names of the words of a move in axes, in their order; shorter: axes that were sent the
-    shorter way. on: whether the deposit is on. output, wire: the analogue output, from 1, and its
-    current value. exact: whether moves stop at their ends; rounding: mm they may round corners by
-    elsewhere. frame, tool: numbers of the work offset of positions and of the tool, NaN where none
-    was said.
+    axes: names of the words of a move in axis values, in order; shorter: axes that took the shorter
+    way. on: whether the deposit is on. output, wire: the analogue output, from 1, and its current
+    value. exact: whether moves stop at their ends; rounding: corner tolerance otherwise, mm. frame,
+    tool: numbers of the work offset and of the tool, NaN if not set.
     """
 
     rows: list[tuple[str, dict[str, str]]] = field(default_factory=list)
@@ -88,15 +90,15 @@ class Track:
     lines: Lines = field(default_factory=Lines)
 
     def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
-        """Something happens before the next move."""
+        """Record an event before the next move."""
         self.events.append(Event(len(self.rows), kind, value, digits))
 
     def waits(self, seconds: str) -> None:
-        """A dwell before the next move."""
+        """Record a dwell before the next move."""
         self.happens("wait", float(seconds), digits=float(_half_digits([seconds])[0]))
 
     def rests(self) -> None:
-        """The next line waits for the end of the last move."""
+        """Let the next line wait for the end of the last move."""
         self.stops[-1:] = [True] * len(self.stops[-1:])
 
     def set_wire(self, output: int, value: str, where: str) -> None:
@@ -278,8 +280,9 @@ def _first(mask: Mask) -> int:
 def _durations(
     sorts: NDArray[np.str_], axes: Array, linear: Mask, feeds: Array, digits: Array
 ) -> tuple[Array, Array]:
-    """(n,) s of the moves of axes (n, axes) in mm and deg, NaN where the feed is the speed of the tip, and by how much
-    their digits may be off."""
+    """Durations (n,), s, of moves of the axes (n, axes), mm and deg, NaN if the feed is the tip
+    speed; and their errors due to rounding.
+    """
     steps = np.diff(axes, axis=0, prepend=axes[:1])
     path_length, turn = (np.linalg.norm(steps[:, side], axis=1) for side in (linear, ~linear))
     path_length = np.where((sorts == AXES) & (path_length == 0.0), turn, path_length)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Finds our own programs in a folder by their content, so no other file is mistaken for one.
+"""Finds our programs in a folder by their content, so that no other file is taken for one.
 
 A main program begins with remarks common to our programs, has the name of its file, and names its
 parts. Links are not followed.
@@ -30,14 +30,14 @@ APPLICATION = (
     "{}.dtx",
     "start.pgx",
     "stop.pgx",
-)  # files of a folder, an application or a part of one
-# pattern of a program's own name, by kind: a renamed copy is not ours
+)  # files in the folder of an application, or of a part of one
+# pattern of the name inside a program, by kind: a renamed copy is not ours
 _TITLES = {
     ".ls": r"/PROG\s+{}\s",
     ".mod": r"MODULE\s+{}\s",
     ".src": r"&ACCESS RVP\s+&REL 1\s+DEF {}\(\)",
 }
-_HEAD_LENGTH = 4096  # characters of a program that hold the remarks it begins with
+_HEAD_LENGTH = 4096  # characters at the start of a program that contain its first remarks
 _MAX_LENGTH = 1 << 20  # characters of a main program that are searched for its parts
 
 
@@ -103,7 +103,7 @@ def _parts(text: str, stem: str, ending: str, files: list[str]) -> set[str]:
 
 
 def _entries(folder: str) -> tuple[list[str], list[str]]:
-    """Names of files and of folders in a folder, links left out."""
+    """Names of the files and of the folders in a folder, without links."""
     files, folders = [], []
     try:
         with os.scandir(folder) as entries:
@@ -126,8 +126,8 @@ def _text(path: str) -> str:
 
 
 def write(folder: str, files: Mapping[str, bytes]) -> list[str]:
-    """Write the files (name with slashes -> content) into a folder, which is made, and remove the parts that an earlier
-    program of the same name has left there; the paths.
+    """Write files (name with slashes -> content) into a folder, creating it, and return their
+    paths. Parts of an earlier program with the same name are removed.
 
     Each file appears whole or not at all, and none is written or removed through a link below the folder. OSError.
     """
@@ -170,7 +170,7 @@ def _refuse_links(path: str, folder: str) -> None:
 
 
 def _remove(path: str, folder: str) -> None:
-    """Remove a file, and the folder of a part that is empty without it."""
+    """Remove a file, and the folder of a part if it is then empty."""
     os.remove(path)
     parent = os.path.dirname(path)
     if len(parent) > len(folder) and not os.listdir(parent):

@@ -23,8 +23,8 @@ from ..core.program import (
 
 @dataclass(frozen=True)
 class Run:
-    """The moves start .. stop of a block with the words of each about its speed; every word is
-    written unchanged.
+    """The moves start .. stop of a block, with one word for the speed of each; words are written
+    unchanged.
     """
 
     moves: Moves
@@ -123,7 +123,7 @@ def packed(
     files: list[list[Piece]] = []
     remaining = (0, 0)
     cuts = {}
-    # the largest first: an error then names the largest bead, and one correction is enough
+    # the largest first: the error names the largest bead, so one correction is enough
     for number in sorted(range(len(groups)), key=lambda number: size(groups[number]), reverse=True):
         points, lines = size(groups[number])
         if points > most_points or lines > most_lines:
@@ -141,8 +141,8 @@ def packed(
 
 
 def move_retracts(files: list[list[Piece]]) -> list[list[Piece]]:
-    """The parts with the first move of a retract in the part of the bead it leads away from: the
-    next part is then loaded away from the deposit.
+    """The parts, with the first move of a retract in the part of its bead, so that the next part is
+    loaded away from the deposit.
     """
     for previous, file_pieces in zip(files, files[1:]):
         first_run = file_pieces[0]
@@ -179,8 +179,8 @@ def size(entries: Sequence[Piece]) -> tuple[int, int]:
 def continued(
     remark: Callable[[str], list[str]], woven: Collection[tuple[int, int]] = ()
 ) -> Callable[[list[Piece], int, int], Iterator[list[Piece]]]:
-    """How a bead too long for a file is cut inside its moves, with remarks at both sides of the cut
-    that say so. A bead among `woven` (layer, bead) is not cut: InputError BEAD_TOO_LONG.
+    """Cut a bead that is too long for a file between its moves, with remarks on both sides of the
+    cut. Raises InputError BEAD_TOO_LONG for a bead in `woven` (layer, bead).
     """
     going_on, resumed = remark("bead goes on in the next part"), remark("bead goes on here")
 
@@ -301,5 +301,5 @@ def lines_of(entries: Sequence[Piece], motion: Callable[[Run], list[str]]) -> li
 
 
 def place(moves: Moves) -> str:
-    """Where a run of moves is, for messages."""
+    """The place of a run of moves, for messages."""
     return Text("layer {} bead {}", moves.layer, moves.bead)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What no post can write, whatever the controller."""
+"""Rejections that all posts share."""
 
 from __future__ import annotations
 
@@ -235,7 +235,7 @@ def refuse_triggers(program: Program, no_trigger: str) -> None:
 
 
 def switched_ahead(program: Program) -> list[Ahead]:
-    """All that is switched ahead of the end of a move."""
+    """All switches of the deposit ahead of the end of a move."""
     pairs = [] if program.dry_run else switching(program)
     return [
         Ahead(moves, block.ahead, float(moves.duration[-1]))
@@ -245,8 +245,8 @@ def switched_ahead(program: Program) -> list[Ahead]:
 
 
 def refuse_leads(ahead: Sequence[Ahead]) -> None:
-    """Raises InputError TRIGGER_LEAD where the shortest move has too long a lead; one correction is
-    then enough.
+    """Raises InputError TRIGGER_LEAD if a lead is too long, for the shortest such move, so that one
+    correction is enough.
     """
     shortest = min(
         ahead, key=lambda ahead_switch: ahead_switch.seconds + ahead_switch.slack, default=None
@@ -360,7 +360,9 @@ def refuse_external(program: Program, last_axis: int, unit: str, form: str) -> N
 
 
 def refuse_named_track(program: Program, what: str) -> None:
-    """Raises InputError UNSUPPORTED_AXES where a track that has no name is given one: it is `what`."""
+    """Raises InputError UNSUPPORTED_AXES if the job names a track on a controller without names for
+    tracks; `what` describes the track there.
+    """
     if program.unit and program.on_track and not program.on_positioner:
         raise InputError(
             "UNSUPPORTED_AXES",
@@ -371,8 +373,8 @@ def refuse_named_track(program: Program, what: str) -> None:
 
 
 def refuse_continuous(program: Program) -> None:
-    """Raises InputError ENDLESS_AXIS where an axis has no limits, for controllers that count every
-    turn of every axis.
+    """Raises InputError ENDLESS_AXIS if an axis has no limits, for controllers that count the turns
+    of every axis.
     """
     if any(program.continuous):
         axis = program.continuous.index(True) + 1
@@ -386,7 +388,7 @@ def refuse_continuous(program: Program) -> None:
 
 
 def refuse_without_speeds(program: Program, axes: int) -> None:
-    """Raises InputError NO_JOINT_SPEED where a machine file, of the robot or external axes, lacks
+    """Raises InputError NO_JOINT_SPEED if the machine file of the robot or of external axes lacks
     the joint speeds to which percents refer.
     """
     is_known = np.isfinite(program.max_speed)
@@ -404,7 +406,9 @@ def refuse_without_speeds(program: Program, axes: int) -> None:
 
 
 def refuse_without_positions(program: Program, straight: bool = False) -> None:
-    """Raises InputError NO_POSITIONS where Cartesian motion has moves, or straight ones, without a pose."""
+    """Raises InputError NO_POSITIONS if Cartesian motion has moves, or linear moves, without a
+    pose.
+    """
     if program.motion != "cartesian":
         return
     runs = [run for run in program.moves if run.interpolation == LINEAR_MOVE or not straight]
@@ -435,7 +439,7 @@ def refuse_calls_of_own(
     """
     own_names = {
         name.upper() for name in names
-    }  # controllers and disks that know no case would take one for the other
+    }  # case-insensitive controllers and disks would confuse them
     for block in program.blocks:
         if (
             isinstance(block, Call)
@@ -450,7 +454,7 @@ def refuse_calls_of_own(
 
 
 def refuse_names_of_data(program: Program, names: Collection[str], data: Collection[str]) -> None:
-    """Reject names of files or called programs that the controller's data already have.
+    """Reject names of files or called programs that data on the controller already have.
 
     Parameters
     ----------

@@ -40,14 +40,14 @@ class Move(NamedTuple):
 @dataclass
 class Run:
     """The state while the routines are followed, column by column. external: current external axes;
-    `used` have values, `unit` is their unit, and `slides` are called the track by a remark; active:
+    `used` have values, `unit` is their unit, and a remark marks `slides` as the track; active:
     the mechanical unit that the module has activated.
 
     placed: whether a move has a position, in positions and turns; joints: the numbers of joint
     moves. rounding: mm, NaN of moves that stop. nearest: ConfL is off, and the arm reaches
     positions in its nearest configuration. process_data: of the module. output, on: the switch of
-    the deposit, and its state. seam, weave: of the burning arc, struck: the weave it was struck
-    with, until it moves, last_weld: weld data and weave it was struck or burnt by. feeding: whether
+    the deposit, and its state. seam, weave: of the active arc, struck: the weave at its start,
+    until it moves, last_weld: weld data and weave of its start or last move. feeding: whether
     the wire is feeding, fed: whether it stopped within the bead.
     """
 
@@ -190,8 +190,8 @@ class Run:
         self.wire_half.append(move.wire_half)
 
     def stands_at(self, move: Move, where: str) -> bool:
-        """Whether the position of an instruction equals the robot's position by the text before. If
-        only joints were given, the position is given now, and also counts for the earlier move.
+        """Whether the position of an instruction equals the current position of the robot. If the
+        text gave only joints so far, this position also applies to the earlier move.
         """
         if not self.time_or_speed or self.moving or move.zone != "fine":
             return False
@@ -314,7 +314,8 @@ def _add_positions(read_moves: ReadMoves, run: Run) -> ReadMoves:
         position=positions,
         rotation=rotation,
         position_digits=_half_digit(run.positions),
-        # four numbers, each off by half a digit, turn by at most four of these: as much as three angles of so much
+        # rounding four numbers by half a digit each rotates by at most four half digits,
+        # like three angles of that error
         rotation_digits=4.0 / 3.0 * _half_digit(run.turns),
         frame=stands,
         tool=np.broadcast_to(carried, (len(placed), 4, 4)),

@@ -54,7 +54,7 @@ class Frames:
 @dataclass
 class Module:
     """A file: the statements of its one routine with the numbers of their lines, and its data by
-    name. slides: numbers of the external axes that a remark calls the track. speeds: of the tip,
+    name. slides: numbers of the external axes that a remark marks as the track. speeds: of the tip,
     mm/s. halves: half of their last digits. welds: mm/s in weld data.
     """
 
@@ -181,7 +181,7 @@ def _declare(module: Module, line: str, where: str) -> None:
 
 
 def _keep(module: Module, kind: str, name: str, value: Any) -> None:
-    """Keep a value by its name. ValueError or TypeError for one that is not understood."""
+    """Store a value by its name. Raises ValueError or TypeError if it cannot be read."""
     if kind == "tooldata":
         is_held, pose, (_mass, _centre, _axes, _x, _y, _z) = value
         module.tools[name] = _truth(is_held), _pose(pose)
@@ -189,7 +189,7 @@ def _keep(module: Module, kind: str, name: str, value: Any) -> None:
         is_held, fixed, unit, user, inside = value
         moved = (
             _truth(fixed) is False
-        )  # by the unit, whose own frame takes precedence over the user frame
+        )  # carried by the mechanical unit, whose frame takes precedence over the user frame
         written = moved and not np.array_equal(_pose(user), np.eye(4))
         if moved != bool(unit) or not isinstance(unit, str) or written:
             raise ValueError
@@ -273,7 +273,9 @@ _FEED_END = re.compile(r"TriggSpeed (\w+),0,0,ao(\d+),0;$")
 
 @dataclass
 class Weld:
-    """Weld data of a module: the controller's that it is taken of, and its speed, mm/s, with half of its last digit."""
+    """Weld data of a module: the weld data of the controller that it copies, and its speed, mm/s,
+    with half of its last digit.
+    """
 
     schedule: int
     speed: float | None = None
@@ -283,8 +285,8 @@ class Weld:
 
 @dataclass(frozen=True)
 class Switch:
-    """A digital output that is set `distance` mm of the tip's path before the end of a move; digits:
-    half of the last one.
+    """A digital output that switches `distance` mm before the end of a move, along the tip's path;
+    digits: half of the last one.
     """
 
     output: str

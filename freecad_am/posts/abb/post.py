@@ -67,7 +67,7 @@ NO_WIRE = NO_WEAVE = NO_TRIGGER = ""  # combinations that are not possible: refu
 NO_SCHEDULE: dict[str, str] = {}
 refuse_process = process.refuse
 LAST_GROUP, LAST_SCHEDULE = 9999, 65535  # group outputs
-# an ArcLEnd at the plain speed is at the end of the move before it
+# an ArcLEnd with the plain speed belongs to the end of the move before it
 MOVE_LINE = re.compile(rb" *(?:Move(?:AbsJ|L|J)|Trigg(?:AbsJ|L)|ArcL|ArcLEnd(?! [^v]*v_am,)) ")
 ON_CONTROLLER = controller_checks(
     "The world frame of the controller is the robot base",
@@ -78,7 +78,7 @@ ON_CONTROLLER = controller_checks(
 )
 AXES = 6
 SETUPS = ("part-on-robot", "tool-on-robot")
-FOLDER = "HOME:/"  # where parts are loaded from
+FOLDER = "HOME:/"  # the folder from which parts are loaded
 
 _RESERVED = INSTRUCTIONS | frozenset(
     (
@@ -167,15 +167,16 @@ NAMING = Naming(
     reserved=_RESERVED,
     what="a module's name",
 )
-_NO_END = 10**9  # how many lines a module may have is not known: it is cut by its points
+_NO_END = (
+    10**9
+)  # the maximum number of lines in a module is unknown: modules are cut by their points
 
 
 def write(program: Program) -> dict[str, bytes]:
     """The modules of a program, file name -> content; the same bytes for the same program.
 
-    One file NAME.mod where its points fit, else NAME.mod loads NAME01.mod, NAME02.mod and so on one
-    after the other, each with whole beads. The duration of the very first move is taken from the
-    program.
+    One file NAME.mod if its points fit; otherwise NAME.mod loads NAME01.mod, NAME02.mod and so on
+    in turn, each with whole beads. The program gives the duration of the first move.
 
     Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, MOVE_TIME, MOVE_SPEED,
     NO_POSITIONS, BEAD_TOO_LONG, ANALOGUE_INPUT, NO_WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
@@ -221,7 +222,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    """The name on the controller. Raises InputError PROGRAM_NAME with the reason and a valid
+    proposal.
+    """
     return NAMING.checked(name, where)
 
 
@@ -231,7 +234,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions can."""
+    """Raises InputError UNSUPPORTED_SETUP for a set-up that this controller does not support; it
+    supports both motions.
+    """
     if setup not in SETUPS:
         raise InputError(
             "UNSUPPORTED_SETUP",
@@ -337,7 +342,7 @@ def _switched(
 
 
 def _names_used(program: Program, words: process.Process, zones: text.Words) -> list[str]:
-    """Names of the data and signals in the text, except names that no program may have."""
+    """Names of the data and signals in the text, without names that are never valid for a program."""
     kinds = {WaitInput: "di", WaitBelow: "ai"}
     inputs = [
         f"{kinds[type(block)]}{block.number}"
@@ -395,7 +400,7 @@ class _Module:
 def _motion(
     moves: Moves, rows: slice, words: Sequence[str], program: Program, straight: bool = False
 ) -> list[str]:
-    """Lines through some points of moves; straight: as positions, whatever the moves are."""
+    """Lines through some points of moves; straight: as positions, even for joint moves."""
     first_external, slides = program.first_external, program.slides
     if moves.interpolation != LINEAR_MOVE and not straight:
         return text.joint_moves(

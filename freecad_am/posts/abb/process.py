@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The process data on the moves of a RAPID program: arc welding instructions with their data, an
-output that is switched ahead of a place, and an analogue output in proportion to the real speed of
-the tip.
+output that switches ahead of a point, and an analogue output in proportion to the real tip speed.
 
-Such a move is another instruction than MoveL or MoveAbsJ: its word begins with that, and a space. Data of the welder -
-seam3, weld3, weave2 - is declared on the controller; a program takes weld3 and gives it the speed of its beads.
+Such a move has another instruction than MoveL or MoveAbsJ: its word begins with the instruction and
+a space. The controller declares the data of the welder (seam3, weld3, weave2); a program copies
+weld3 and sets the speed of its beads.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from ..parts import place
 from ..refusals import Asked, schedule_refused, weave_refused, wire_refused
 from . import text
 
-# names of a module's own data, numbered except FEED_END: speeds, weld data, triggers of the wire,
-# switching on and off
+# names of data that a module declares, numbered except FEED_END: speeds, weld data, triggers of
+# the wire, switching on and off
 SPEED, WELD, FEED, FEED_END, SWITCH_ON, SWITCH_OFF = (
     "v_am",
     "d_am",
@@ -31,14 +31,11 @@ SPEED, WELD, FEED, FEED_END, SWITCH_ON, SWITCH_OFF = (
     "g_off",
 )
 TRIGGER_NAMES = (FEED_END, SWITCH_ON, SWITCH_OFF)
-# maximum number of speeds, or of other data of one kind, in a module: the controller keeps a line
-# for each
+# maximum number of data of one kind, such as speeds, in a module: each takes a line
 MOST_NAMES = 500
 ARC, CARTESIAN = "arc", "cartesian"
 LAST_WEAVE, LAST_SEAM = 255, 9999
-WAY_DECIMALS = (
-    4  # decimals of the distance, mm, before the end of a move at which an output is switched
-)
+WAY_DECIMALS = 4  # decimals of the distance, mm, from a switching point to the end of its move
 SLOWEST = 0.1  # mm/s at the tip at which these decimals resolve half a millisecond
 _Key = TypeVar("_Key")
 _NO_ARC = "[0,0,0,0,0,0,0,0,0]"
@@ -80,9 +77,9 @@ def refuse(request: Asked) -> None:
 
 @dataclass(frozen=True)
 class Aboard:
-    """Process data on a run of moves. on, off: s ahead of the end of the last one. arc: the
-    schedule of the arc, and weave the number of its weave, 0 for none. ends: whether the bead ends
-    with the run; stands: the torch stops there, still depositing.
+    """Process data of a run of moves. on, off: s ahead of the end of the last move. arc: schedule
+    of the arc; weave: number of its weave, 0 for none. ends: whether the bead ends with the run;
+    stands: whether the torch stops there, still depositing.
     """
 
     moves: Moves
@@ -122,7 +119,7 @@ def aboard(blocks: Iterable[Block]) -> list[Aboard]:
 
 class Process:
     """Words of the moves of a program, built block by block in the order of motion: from `plain`,
-    or for another instruction with process data.
+    or with the instruction that carries process data.
     """
 
     def __init__(self, program: Program, plain: Callable[[Moves], Sequence[str]]) -> None:
@@ -201,9 +198,8 @@ class Process:
         return _numbered(self._feeds, FEED, f"{0.06 * self._program.nc.wire_gain * ratio:#.7G}")
 
     def _switched(self, aboard_run: Aboard, word: str) -> list[str]:
-        """The triggers that switch the deposit before the end of a run with the last word `word`.
-        RAPID counts a time back from the stop only within braking; a distance, at the speed of the
-        move, has no such limit.
+        """The triggers that switch the deposit before the end of a run whose last word is `word`.
+        RAPID limits a time before the stop to the braking phase; a distance has no such limit.
         """
         if aboard_run.lead is None:
             return []
@@ -229,23 +225,23 @@ class Process:
         ]
 
     def arc_start(self, schedule: int) -> str:
-        """The word of the instruction that strikes the arc where the next bead starts."""
+        """The word of the instruction that starts the arc where the next bead starts."""
         aboard_run = self._aboard[self._at]
         return f"ArcLStart {text.SPEED},{self._arc(aboard_run, schedule, f'{aboard_run.moves.speed[0]:.3f}')},fine"
 
     def arc_end(self, schedule: int) -> str:
-        """The word of the instruction that ends it where the last bead did."""
+        """The word of the instruction that ends the arc where the last bead ended."""
         aboard_run = self._aboard[self._at - 1]
         return f"ArcLEnd {text.SPEED},{self._arc(aboard_run, schedule, f'{aboard_run.moves.speed[-1]:.3f}')},fine"
 
     @property
     def before(self) -> Moves:
-        """The last run of moves that words were given to."""
+        """The last run of moves that got words."""
         return self._aboard[self._at - 1].moves
 
     def data(self, used: Collection[str]) -> list[str]:
         """Declarations of the data whose names are used.
-        Raises InputError MOVE_SPEED where a module would have too many."""
+        Raises InputError MOVE_SPEED if a module would have too many."""
         for all_names in self._all_names:
             if len(set(all_names) & set(used)) > MOST_NAMES:
                 raise InputError(
@@ -311,7 +307,7 @@ class Process:
 
     @property
     def declared(self) -> list[str]:
-        """Names of data that the controller has to have, as far as words were given."""
+        """Names of data that the controller must declare for the words so far."""
         schedules = sorted({schedule for schedule, _ in self._welds})
         weaves = sorted({run.weave for run in self._aboard if run.weave and run.arc is not None})
         return [f"{kind}{number}" for number in schedules for kind in ("seam", "weld")] + [
@@ -325,5 +321,5 @@ def _speed_in(word: str) -> str:
 
 
 def _numbered(names: dict[_Key, str], kind: str, key: _Key) -> str:
-    """The name of a thing, the next one of its kind for a new one."""
+    """The name of an item; a new item gets the next name of its kind."""
     return names.setdefault(key, f"{kind}{len(names) + 1}")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads RAPID modules back: the behaviour of the controller, from nothing but the text.
+"""Reads RAPID modules back: models the controller from the text of the program alone.
 
-Shares nothing with the writer. Understands the plain instructions a path needs and refuses every
-other one, so that no motion can hide in unknown text.
+Shares no code with the writer. Accepts the plain instructions that a path needs and rejects all
+others, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _follow(module: Module, run: Run) -> None:
-    """Carry out the statements of a routine in order, and of the parts that it loads."""
+    """Execute the statements of a routine in order, and those of the parts that it loads."""
     run.followed.append(module.name)
     run.nearest, run.active, run.process_data = (
         False,
@@ -93,7 +93,7 @@ def _follow(module: Module, run: Run) -> None:
 def _load(
     module: Module, part_name: str, lines: Iterator[tuple[int, str]], run: Run, where: str
 ) -> None:
-    """A part is loaded, run and removed by the next lines; the robot must not deposit meanwhile."""
+    """Read the lines that load, run and unload a part; the robot must not deposit meanwhile."""
     number, called = next(lines, (0, ""))
     name, loaded = _RUN.match(called), run.modules.get(part_name.lower())
     if name is None:

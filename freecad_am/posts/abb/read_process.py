@@ -76,7 +76,7 @@ _EXTRA_TRIGGER = re.compile(r"\\T(\d):=(\w+)")
 
 
 def process_move(line: str, module: Module, run: Run, where: str) -> bool:
-    """Carry out a move with process data.
+    """Execute a move with process data.
 
     Parameters
     ----------
@@ -185,8 +185,8 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
 
 
 def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
-    """The arc is struck at the robot's position, burns along a move, or ends with it, or at the
-    robot's position after it.
+    """Start the arc at the robot's position, continue it along a move, or end it with a move or at
+    the robot's position after one.
     """
     kind, position, turn, axes, speed, seam, weld_name, weave, zone, tool, work_object = (
         arc.groups()
@@ -241,7 +241,7 @@ def _burns(move: Move, weld: Weld, name: str, dry: float, woven: int, run: Run, 
 
 
 def straight(run: Run) -> None:
-    """The torch stops and weaves no more."""
+    """End the weave when the torch stops."""
     if run.weave and run.struck is None:
         run.happens("weave", 0.0)
         run.weave = 0

@@ -21,12 +21,12 @@ from ..refusals import speeds_within
 # ---- What a RAPID module says in numbers: joint values, quaternions, times, speeds, zones
 
 ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS = 4, 3, 7
-# mm/s: the lowest speed that three decimals resolve well, and the largest of RAPID's own speeds
+# mm/s: the lowest speed that three decimals resolve well, and RAPID's largest predefined speed
 # (v7000)
 SPEEDS = (0.01, 7000.0)
 # s: the shortest move within a bead, and the shortest rapid
 SHORTEST_MOVE_S, SHORTEST_RAPID = 0.0001, 0.001
-# mm: RAPID's own largest zone is 200
+# mm: RAPID's largest predefined zone is 200
 LARGEST_ZONE = 100.0
 STOP = "fine"
 
@@ -127,7 +127,7 @@ class Words:
         ]
 
     def _rounded(self, moves: Moves) -> str:
-        """How corners are passed: never farther from one than half the shortest move of the bead."""
+        """Size of the corner zones: at most half the shortest move of the bead."""
         shortest = (
             float(np.nan_to_num(moves.speed * moves.duration).min())
             if moves.kind == DEPOSIT
@@ -154,17 +154,17 @@ def _times(moves: Moves) -> Array:
 
 
 END_OF_LINE = "\r\n"
-WIDTH = 80  # of remarks
+WIDTH = 80  # width of remarks
 
 # names of the data in the modules of a program and its parts; local to each (LOCAL)
 TOOL, WORK_OBJECT, SPEED, ZONE = "t_am", "w_am", "v_am", "z_am"
 MAIN = "main"
 # value of absent external axes
 _NO_AXIS, MOST_AXES = "9E9", 6
-# mm/s of the tip, which every move replaces by a speed or a time of its own; deg/s it turns; external axes: those
-# of RAPID's own v1000
+# mm/s of the tip, which every move overrides by its speed or time; deg/s; external axes: as in
+# RAPID's v1000
 _SPEEDS = "500,5000,1000"
-# kg, mm: the load that RAPID's own tool0 has
+# kg, mm: the load of RAPID's tool0
 _NOWHERE = "[[0,0,0],[1,0,0,0]]"
 _LOAD = "[0.001,[0,0,0.001],[1,0,0,0],0,0,0]"
 _ANGLES = ",".join([f"%.{ANGLE_DECIMALS}f"] * 6)
@@ -238,7 +238,8 @@ def data(
     tool_pose, object_pose = (
         _POSE % (*pose.position, *pose.quaternion) for pose in (tool, work_object)
     )
-    # the user frame of what a unit moves is the unit's own, whatever is written: the object frame is seen from there
+    # a work object on a mechanical unit uses the unit's frame as user frame, whatever the
+    # text says: the object frame is relative to it
     fixed, user, inside = (
         ("FALSE", _NOWHERE, f"[{object_pose}]") if unit else ("TRUE", f"[{object_pose}]", _NOWHERE)
     )
@@ -316,7 +317,9 @@ def linear_moves(
 
 
 def _move_lines(line: str, instruction: str, values: Array, words: Sequence[str]) -> list[str]:
-    """A line for each row of values (n, k) and its word, which begins with its own instruction, or is one of the usual."""
+    """A line for each row of values (n, k) with its word; a word with process data brings its own
+    instruction.
+    """
     split = [word.rpartition(" ") for word in words]
     rows = zip(values.tolist(), split, strict=True)
     return [
@@ -332,22 +335,22 @@ def _axes(count: int, first_external: int) -> str:
 
 
 def activated(unit: str) -> list[str]:
-    """Taking the axes of a mechanical unit under control, as they are; nothing for no unit."""
+    """The line that activates a mechanical unit; none without a unit."""
     return [f"    ActUnit {unit};"] if unit else []
 
 
 def remark(text: str) -> list[str]:
-    """A comment on as many lines as it needs, in plain characters."""
+    """A comment in plain characters, on as many lines as it needs."""
     return [f"! {line}" for line in textwrap.wrap(plain(text), WIDTH)]
 
 
 def wait(seconds: float) -> list[str]:
-    """Standing still for a time, to 0.001 s; nothing for no time."""
+    """The lines of a wait, to 0.001 s; none for 0 s."""
     return [f"    WaitTime {max(seconds, 0.001):.3f};"] if seconds > 0.0 else []
 
 
 def load(folder: str, part_name: str) -> list[str]:
-    """Loading the module of a part, running it and making room for the next one."""
+    """The lines that load the module of a part, run it and unload it."""
     path = f'"{folder}{part_name}.mod"'
     return [
         f"    Load \\Dynamic,{path};",

@@ -62,7 +62,7 @@ DECIMALS = 2  # of the seconds before the end
 
 
 def at_ends(program: Program) -> dict[int, str]:
-    """The options of the last moves of runs, with the space before, by the identity of the run."""
+    """The options of the last moves of runs, with a leading space, by the identity of the run."""
     if program.dry_run:
         return {}
     output = program.deposit_output
@@ -76,7 +76,9 @@ def at_ends(program: Program) -> dict[int, str]:
 
 
 def as_written(program: Program) -> list[Ahead]:
-    """Switches during motion, with their leads as in the listing: up to 5 ms longer than requested."""
+    """Switches during motion with their leads as the listing writes them, up to 5 ms longer than
+    requested.
+    """
     steps = 10**DECIMALS
     return [
         dataclasses.replace(ahead, lead=round(ahead.lead, DECIMALS), steps=steps)
@@ -85,7 +87,7 @@ def as_written(program: Program) -> list[Ahead]:
 
 
 def _ahead(seconds: float) -> str:
-    """How long before, to 0.01 s, as wide as controllers write it: TB    .05sec."""
+    """The lead, to 0.01 s, in the width that controllers write: TB    .05sec."""
     return f"TB{right_aligned(round(seconds, DECIMALS), DECIMALS, 7)}sec"
 
 
@@ -116,7 +118,7 @@ MOST_LINES = 9999
 
 _FIRST_MOVE = f"{100.0 * FIRST_SHARE:.0f}%"
 
-# words of the listing's own language
+# words of the language of listings
 _RESERVED = frozenset(
     (
         "ABORT",
@@ -136,7 +138,7 @@ _RESERVED = frozenset(
     )
     + ("PAUSE", "RUN", "SELECT", "THEN", "WAIT", "WHEN")
 )
-# names of 8 characters at most on older controllers
+# older controllers allow at most 8 characters in names
 NAMING = Naming(
     str.upper, "[A-Z]", "a letter", longest=36, spare=4, prefix="AM_", reserved=_RESERVED
 )
@@ -145,8 +147,9 @@ NAMING = Naming(
 def write(program: Program) -> dict[str, bytes]:
     """The listings of a program, file name -> content; the same bytes for the same program.
 
-    One file where it fits, else NAME.LS that calls NAME01.LS and so on, cut between beads wherever a bead fits.
-    The duration of the very first move is not used.
+    One file if the program fits; otherwise NAME.LS calls NAME01.LS and so on. Files are cut between
+    beads unless a bead is longer than a file.
+    The duration of the first move is not used.
 
     Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, MOVE_TIME, MOVE_SPEED,
     ENDLESS_STEP, TURN_NUMBER, NO_WIRE_OUTPUT, NOTHING_TO_WRITE.
@@ -178,7 +181,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller, upper case. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    """The name on the controller, upper case. Raises InputError PROGRAM_NAME with the reason and a
+    valid proposal.
+    """
     return NAMING.checked(name, where)
 
 
@@ -188,7 +193,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
+    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for a set-up that this controller does not
+    support.
+    """
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
             "REMOTE_TCP",
@@ -293,7 +300,9 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 
 def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
-    """Return a builder of the words after the positions of moves; call it in motion order."""
+    """Return a function that builds the words after the positions of moves; call it in the order of
+    motion.
+    """
     is_first, options = True, at_ends(program)
 
     def words(moves: Moves) -> Sequence[str]:
@@ -355,7 +364,7 @@ def _file(
 
 
 def _group(program: Program) -> int:
-    """The motion group of the axes that carry the part; the robot's own without such axes."""
+    """The motion group of the axes that carry the part; without such axes that of the robot."""
     return int(program.unit) if program.on_positioner else 1
 
 
@@ -408,10 +417,11 @@ def _record_text(program: Program, runs: Sequence[Run]) -> str:
 END_OF_LINE = "\r\n"
 REMARK_WIDTH = 32
 COMMENT_WIDTH = 16
-GROUPS = 5  # that the header has room for
+GROUPS = 5  # that fit into the header
 
-# Same job, same bytes: the controller puts the true date when it loads the file. This one is a valid day both
-# for a two-digit year and for the file dates of the controller's memory card, which begin in 1980.
+# A fixed date, so that the same job gives the same bytes: the controller sets the true date when
+# it loads the file. This day is valid for a two-digit year and for file dates of the controller's
+# memory card, which begin in 1980.
 _DATE = "DATE 00-01-01  TIME 00:00:00"
 
 _HEADER = """\
@@ -438,7 +448,7 @@ CONTROL_CODE\t= 00000000 00000000;
 /MN
 """
 
-# longest single wait written, s; longer ones become several lines
+# longest wait in one line, s; longer waits take several lines
 _LONGEST_WAIT = 300.0
 
 _JOINT_RECORD = (
@@ -487,18 +497,18 @@ def listing(
 
 
 def plain(text: str) -> str:
-    """The text in characters a listing may hold: accents dropped, no semicolon or quote."""
+    """The text in characters that a listing allows: without accents, semicolons and quotes."""
     ascii_text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode("ascii")
     return " ".join(ascii_text.translate(str.maketrans(';"', ",'")).split())
 
 
 def remark(text: str) -> list[str]:
-    """A remark, on as many lines as its width needs."""
+    """A remark, on as many lines as it needs."""
     return [f"  !{line} ;" for line in textwrap.wrap(plain(text), REMARK_WIDTH)]
 
 
 def wait(seconds: float) -> list[str]:
-    """Standing still for a time, to 0.01 s; nothing for no time."""
+    """The lines of a wait, to 0.01 s; none for 0 s."""
     lines = []
     hundredths = max(round(seconds * 100.0), int(seconds > 0.0))
     while hundredths > 0:
@@ -514,7 +524,7 @@ def call(name: str) -> str:
 
 
 def arc(word: str, schedule: int) -> str:
-    """The arc instruction, Start or End, by a schedule."""
+    """The arc instruction Start or End, with a schedule."""
     return f"  Arc {word}[{schedule}]    ;"
 
 
@@ -578,7 +588,9 @@ def pose_records(
 def _records(
     template: str, user_frame: int, tool_frame: int, words: Sequence[Sequence[str]], values: Array
 ) -> str:
-    """Positions 1.. by their template: its fields are the number, columns (n,) of words, and values (n, k)."""
+    """Records of positions from 1 on by a template, whose fields are the number, words (columns
+    (n,)) and values (n, k).
+    """
     record = template.replace("<frame>", f"UF : {user_frame}, UT : {tool_frame},")
     texts = [[right_aligned(value, 3, 10) for value in row] for row in values.tolist()]
     return "".join(
@@ -590,7 +602,7 @@ def _records(
 def right_aligned(value: float, decimals: int, width: int) -> str:
     """Format a number as the controller lists it.
 
-    No 0 before the point, except for 0 itself: .250, -.250, 0.000. -0.0 keeps its sign: -.000.
+    There is no 0 before the point except in 0.000: .250, -.250. -0.0 keeps its sign: -.000.
 
     Parameters
     ----------

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads FANUC listings back: the behaviour of the controller, from nothing but the text.
+"""Reads FANUC listings back: models the controller from the text of the program alone.
 
-Shares nothing with the writer. Understands the plain instructions a path needs and refuses every
-other one, so that no motion can hide in unknown text.
+Shares no code with the writer. Accepts the plain instructions that a path needs and rejects all
+others, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -22,12 +22,11 @@ from ...core.types import Array, Index, Mask
 from ..read_lines import Lines, floats
 from .records import Records, records_of, unreadable
 
-# ---- Listings of FANUC programs taken apart: instructions, moves that follow each other, and
-# recorded positions
+# ---- Parses listings of FANUC programs: instructions, runs of moves, and recorded positions
 
 _NO_LISTING = "it is not a listing with /PROG, /MN, /POS and /END in this order"
-_TITLE = 1000  # bytes that hold the first line
-# what a unit of a move says: duration s, speed mm/s, share
+_TITLE = 1000  # bytes that contain the first line
+# quantity of each unit of a move: duration s, speed mm/s, share
 UNITS = ("sec", "msec", "mm/sec", "%")
 _LINE = re.compile(r" *\d*:(.*?) *; *$")
 _MOTION = re.compile(
@@ -108,12 +107,12 @@ def name_of(file: str, content: bytes) -> str:
 
 
 def listing_of(file: str, content: bytes) -> Listing:
-    """A file taken apart. Raises InputError UNREADABLE_PROGRAM, naming file and line."""
+    """Parse a file. Raises InputError UNREADABLE_PROGRAM with file and line."""
     text = f"\n{_text(content)}\n"
     marks = [text.find(f"\n{section}\n") for section in ("/MN", "/POS", "/END")]
     if -1 in marks or marks != sorted(marks):
         raise unreadable(file, _NO_LISTING)
-    # the records, by far the largest part, are not split into lines
+    # records are by far the largest part, so they are not split into lines
     lines = text[1 : marks[1]].split("\n")
     start, positions = lines.index("/MN"), len(lines)
     instructions, moves = _instructions(file, lines[start + 1 :], start + 2)
@@ -146,7 +145,7 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
             moves.corner[row] = float(move[6])
         if move[7]:
             options[row] = move[7]
-    moves_before = np.cumsum(moving)  # how many moves there are up to a line
+    moves_before = np.cumsum(moving)  # number of moves up to a line
     instructions, moves_done = [], 0
     for row in [*sorted([*options, *(row for row in other_rows if lines[row].strip())]), count]:
         option = options.get(row, "")
@@ -175,10 +174,10 @@ _ROBOT_AXES = 6  # axes of the robot
 class Run:
     """The state while the programs are followed.
 
-    pending: records of the current listing that were moved to and are not among `values` yet.
-    recorded, numbers: frames of the last checked record, and the numbers of the selected ones.
-    track: the external axis that a remark calls the track, 0 for none, and whether positions have
-    one. moved: groups that headers name.
+    pending: records of the current listing that moves used and that are not in `values` yet.
+    recorded, numbers: frames of the last checked record, and numbers of the selected frames. track:
+    the external axis that a remark marks as the track, 0 for none, and whether positions have one.
+    moved: groups that headers name.
     """
 
     cartesian: bool = False
@@ -225,7 +224,7 @@ class Run:
         self.events.append(Event(len(self.duration), kind, value, digits, ahead))
 
     def begin(self, listing: Listing) -> None:
-        """Check the groups of a listing; one without moves may name none."""
+        """Check the groups of a listing; a listing without moves may name none."""
         groups = listing.records.moved
         if groups and self.moved not in (None, groups):
             raise unreadable(
@@ -234,7 +233,7 @@ class Run:
         self.moved = groups or self.moved
 
     def take(self, listing: Listing) -> None:
-        """Take over the records that are pending."""
+        """Add the pending records to the values."""
         if self.pending:
             rows, records = np.concatenate(self.pending), listing.records
             if self.values and (self.group, self.values[0].shape[1]) != (
@@ -254,8 +253,8 @@ class Run:
 
 
 def read_moves(run: Run) -> ReadMoves:
-    """All moves in the form of a reader. Raises InputError UNREADABLE_PROGRAM if a track is not declared
-    as one.
+    """All moves in the form of a reader. Raises InputError UNREADABLE_PROGRAM if no remark declares
+    the track.
     """
     cartesian, values, digits = run.cartesian, np.concatenate(run.values), run.digits
     joints, half_turn = (
@@ -300,7 +299,9 @@ def read_moves(run: Run) -> ReadMoves:
 
 
 def _joints(run: Run, values: Array) -> Array:
-    """(n, axes) rad and mm of the values of records, the track where a remark says that it is among the external axes."""
+    """Joint values (n, axes), rad and mm, of records; a remark gives the place of the track among
+    the external axes.
+    """
     number, track = run.track
     if track != bool(number) or number > values.shape[1] - _ROBOT_AXES:
         raise unreadable(
@@ -375,8 +376,8 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 def _follow(
     name: str, files: dict[str, tuple[str, bytes]], run: Run, callers: tuple[str, ...]
 ) -> None:
-    """Carry out the instructions of a program in order, and of programs it calls. A listing is kept
-    in memory while it is followed.
+    """Execute the instructions of a program in order, and those of the programs that it calls. A
+    listing stays in memory while it is executed.
     """
     if name in callers:
         raise unreadable(files[name][0], "it calls itself")
@@ -432,7 +433,7 @@ def _switch(
 
 
 def _trigger(option: str, where: str, run: Run) -> None:
-    """The last move has switched the deposit, by the time in `option` before its end."""
+    """Record that the last move switches the deposit, ahead of its end by the time in `option`."""
     trigger = _TRIGGER.match(option)
     output = trigger and _OUTPUT.match(trigger[3])
     if not trigger or not output:
@@ -445,14 +446,14 @@ def _trigger(option: str, where: str, run: Run) -> None:
 
 
 def _frame(frame: re.Match[str], where: str, run: Run) -> None:
-    """A user or a tool frame is selected."""
+    """Select a user or tool frame."""
     if run.frame.setdefault(frame[1], frame[2]) != frame[2]:
         raise unreadable(where, Text("a second U{} is selected", frame[1]))
     run.recorded = ("", "")
 
 
 def _arc(arc: re.Match[str], where: str, run: Run) -> None:
-    """The arc is struck, or ends, by a schedule."""
+    """Start or end the arc with a schedule."""
     if run.output not in ("", ARC) or run.on == (arc[1] == "Start"):
         raise unreadable(
             where, "an output switches the deposit too, the arc is already on, or it is not on yet"
@@ -462,7 +463,7 @@ def _arc(arc: re.Match[str], where: str, run: Run) -> None:
 
 
 def _move(listing: Listing, rows_moved: slice, option: str, run: Run) -> None:
-    """Carry out a run of moves, column by column, and the option of the last one."""
+    """Execute a run of moves, column by column, and the option of the last one."""
     moves, cartesian = listing.moves, listing.records.cartesian
     unit = moves.unit[rows_moved]
     straight = moves.straight[rows_moved]
@@ -504,7 +505,7 @@ def _move(listing: Listing, rows_moved: slice, option: str, run: Run) -> None:
 
 
 def _refuse(listing: Listing, move: int, run: Run) -> None:
-    """InputError for what cannot be understood of a move."""
+    """Raise InputError for the part of a move that is not understood."""
     moves, records = listing.moves, listing.records
     where = _line_name(listing, int(moves.line[move]))
     unit = int(moves.unit[move])
@@ -529,8 +530,8 @@ def _refuse(listing: Listing, move: int, run: Run) -> None:
 
 
 def _select(listing: Listing, row: int, run: Run, number: int) -> None:
-    """Check the frames that a position is recorded in; equal ones need no check until others are
-    selected.
+    """Check the frames in which a position is recorded; the same frames need no further check until
+    others are selected.
     """
     recorded = listing.records.frames[row]
     for word, frame in zip(("FRAME", "TOOL"), recorded, strict=True):

@@ -16,8 +16,7 @@ from ...core.types import Array, Index
 from ..parts import place
 from ..refusals import speeds_within
 
-# ---- What a FANUC listing says in numbers: times, speeds, angles within half a turn, positions,
-# CONFIG
+# ---- Numbers of a FANUC listing: times, speeds, angles within half a turn, positions, CONFIG
 
 # Ranges of the FANUC operator's manual (motion instruction, feed rate): 1 to 32000 msec, 0.1 to 3200 sec,
 # up to 2000 mm/sec.
@@ -36,8 +35,9 @@ def speed_words(moves: Moves) -> list[str]:
 
 
 def time_words(moves: Moves) -> list[str]:
-    """The time of each move. Whole milliseconds add up to the time of the run, none is 0; moves of more than 32 s
-    are in 0.1 s. Raises InputError MOVE_TIME."""
+    """The time of each move, in whole milliseconds above 0 that add up to the time of the run;
+    moves of more than 32 s are in 0.1 s. Raises InputError MOVE_TIME.
+    """
     seconds = np.where(np.isfinite(moves.duration), np.maximum(moves.duration, 0.0), 0.0)
     if seconds.max() > LONGEST_SEC:
         raise InputError(
@@ -59,7 +59,7 @@ def time_words(moves: Moves) -> list[str]:
             n,
             seconds.sum(),
         )
-    # time beyond the minimum of 1 ms per move: accumulated, monotonic, at most the total
+    # accumulated time beyond the minimum of 1 ms per move: monotonic, at most the total
     spare = np.minimum(
         np.maximum.accumulate(np.maximum(ends - np.arange(1, n + 1), 0)), max(int(ends[-1]) - n, 0)
     )
@@ -115,8 +115,8 @@ def configurations(moves: Moves, continuous: tuple[bool, ...]) -> list[str]:
 
     F where J5 > 0, D where the elbow is down; the last number counts the turns of J6. Whether the
     other two belong to J1 and J4 or to J4 and J5 differs between sources, so those axes must stay
-    within half a turn, where both readings agree. What U and D mean of an arm bent over backwards
-    (B) was not confirmed.
+    within half a turn, where both readings agree. The meaning of U and D for an arm that bends over
+    backwards (B) is unconfirmed.
     """
     if moves.configuration is None:
         raise InputError(
@@ -169,7 +169,7 @@ def _values(names: str, units: str) -> str:
 
 
 _JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\};")
-# the same with a track, and the axes of another motion group, in the same frames
+# the same with a track and the axes of another motion group, in the same frames
 _FULL_RECORD = re.compile(
     _FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"(?:,\s*E1 ?= *(-?\d*\.\d+) *mm)?"
     r"(?:\s*GP([2-8]):\s*UF : (\d+|F), UT : (\d+|F),((?:\s*J\d ?= *-?\d*\.\d+ *deg,?)+))?\s*\};"
@@ -222,7 +222,7 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
     InputError
         UNREADABLE_PROGRAM for text that is not understood, or positions recorded twice.
     """
-    # counting is many times faster than checking every line
+    # counting is much faster than checking every line
     several = text.count("GP") > text.count("GP1:") and re.search(
         r"^ *GP[2-8]:", text, re.MULTILINE
     )
@@ -280,7 +280,7 @@ def _check_groups(file: str, lines: list[str], records: Records) -> None:
 
 
 def _line(text: str, positions: int, point: int, again: int = 0) -> int:
-    """The line of the record of a position, or of the one that records it again."""
+    """The line of the record of a position, or of its second record."""
     starts = [match.start() for match in re.finditer(rf"^P\[{point}\b", text, re.MULTILINE)]
     lines_before = text.count("\n", 0, starts[min(again, len(starts) - 1)])
     return lines_before + positions + 2
@@ -292,7 +292,9 @@ def _place(file: str, text: str, positions: int, point: int) -> str:
 
 
 def _joint_records_of_groups(file: str, text: str, positions: int) -> Records:
-    """The joint positions of a text with a track or two motion groups, all alike."""
+    """The joint positions of a text with a track or two motion groups, if all records have the same
+    form.
+    """
     values, frames, decimals, points = [], [], 99, []
     groups: set[tuple[str, int, bool]] = set()
     for record in _FULL_RECORD.finditer(text):
@@ -347,7 +349,9 @@ def _joint_records_of_groups(file: str, text: str, positions: int) -> Records:
 
 
 def _any_records(file: str, text: str, positions: int) -> Records:
-    """The positions of a text, which begins after line `positions`, with any text between them."""
+    """The positions of a text that begins after line `positions`; other text may stand between
+    them.
+    """
     starts = _RECORD_START.findall(text)
     matches = _JOINTS.findall(text)
     cartesian = not matches

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """KUKA: KRL modules of beads in linear moves with the tool on the robot, and rapids to axis values.
 
-A joint move of KRL takes whole percents of the axes' speeds, so beads are linear moves, whose speed
-the controller holds at the tip. Output, controller settings and confirmations: docs/posts/kuka.md.
+Joint moves of KRL use whole percents of the axis speeds, so beads are linear moves, whose speed the
+controller keeps at the tip. Output, controller settings and confirmations: docs/posts/kuka.md.
 """
 
 from __future__ import annotations
@@ -163,16 +163,18 @@ _RESERVED = frozenset(
     )
     + ("WHILE", "WITH", "CELL", "SPS", "IR_STOPM")
 )
-# 24 characters from memory: fewer are taken
+# 24 characters from memory, unconfirmed: we use fewer
 NAMING = Naming(str, "[A-Za-z]", "a letter", longest=20, spare=4, prefix="am_", reserved=_RESERVED)
-_NO_END = 10**9  # how many lines a module may have is not known: it is cut by its points
+_NO_END = (
+    10**9
+)  # the maximum number of lines in a module is unknown: modules are cut by their points
 
 
 def write(program: Program) -> dict[str, bytes]:
     """The modules of a program, file name -> content; the same bytes for the same program.
 
-    One file NAME.src where its points fit, else NAME.src calls NAME01.src, NAME02.src and so on; a bead of more points gets
-    a file of its own. The duration of the very first move is not used.
+    One file NAME.src if its points fit; otherwise NAME.src calls NAME01.src, NAME02.src and so on.
+    A bead with more points gets its own file. The duration of the first move is not used.
 
     Raises InputError: PROGRAM_NAME, JOINT_DEPOSIT, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, UNSUPPORTED_FRAME,
     ENDLESS_AXIS, NO_JOINT_SPEED, JOINT_SPEED, MOVE_SPEED, NO_POSITIONS, NO_ANALOGUE_INPUT, NO_WIRE_OUTPUT, UNREACHABLE,
@@ -211,7 +213,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    """The name on the controller. Raises InputError PROGRAM_NAME with the reason and a valid
+    proposal.
+    """
     return NAMING.checked(name, where)
 
 
@@ -221,7 +225,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError UNSUPPORTED_SETUP, REMOTE_TCP or JOINT_DEPOSIT for what cannot be said to this controller."""
+    """Raises InputError UNSUPPORTED_SETUP, REMOTE_TCP or JOINT_DEPOSIT for a motion or set-up that
+    this controller does not support.
+    """
     if setup not in ("part-on-robot", "tool-on-robot"):
         raise InputError(
             "UNSUPPORTED_SETUP",
@@ -323,12 +329,12 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 
 def _instructions(program: Program, block: Block) -> list[str]:
-    # a wait of zero time stops the advance run until the robot stops
+    # a wait of 0 s holds the advance run until the robot stops
     output = f"$OUT[{program.deposit_output}]="
     if isinstance(block, (DepositOn, DepositOff)) and block.schedule is not None:
         return [text.after(block), *text.wait(block.lead)]
     if isinstance(block, (DepositOn, DepositOff)) and block.ahead is not None:
-        return []  # the move before does it
+        return []  # the move before it switches
     if isinstance(block, DepositOn):
         return [] if program.dry_run else [_STAND, f"{output}TRUE", *text.wait(block.lead)]
     if isinstance(block, DepositOff):
@@ -369,5 +375,5 @@ def _body(program: Program, piece_list: Sequence[Piece]) -> list[str]:
             else entry
         )
         if isinstance(entry, list) and any(line.startswith(text.CALL) for line in entry):
-            settings.clear()  # what ArcTech sets is not known
+            settings.clear()  # the settings that ArcTech leaves are unknown
     return [*lines, _STAND]

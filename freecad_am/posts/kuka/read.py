@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads KRL modules back: the behaviour of the controller, from nothing but the text.
+"""Reads KRL modules back: models the controller from the text of the program alone.
 
-Shares nothing with the writer. Understands the plain instructions a path needs and refuses every
-other one, so that no motion can hide in unknown text.
+Shares no code with the writer. Accepts the plain instructions that a path needs and rejects all
+others, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -18,8 +18,7 @@ from ...core.read_moves import ARC, Event, ReadMoves
 from ...core.types import Array
 from ..read_lines import Lines, floats
 
-# ---- Reads instructions of ArcTech: a linear move that stops, with the calls that belong to it in
-# front and behind
+# ---- Reads instructions of ArcTech: a linear move that stops, with its calls before and after it
 
 _DATA, _OF = re.compile(r"\b(WDAT(?:OFF)?)(\d+)\b"), r"\1@"
 _MOVE = "the move"
@@ -54,11 +53,11 @@ class ArcMove:
 
     @property
     def is_open(self) -> bool:
-        """Whether more of its lines are to come."""
+        """Whether more of its lines must follow."""
         return bool(self.lines)
 
     def accept_move(self, straight: bool, rounded: bool) -> bool:
-        """Whether a move is allowed here. Within an instruction it is a linear one that stops."""
+        """Whether a move is allowed here. Within an instruction only a linear move that stops is."""
         if not self.is_open:
             return True
         right = self.lines[self.lines_read] == _MOVE and straight and not rounded
@@ -95,12 +94,12 @@ def is_arc_line(line: str) -> bool:
 class Run:
     """The state while the modules are followed, column by column.
 
-    state: the last settings, by name; a module relies on no settings of another one. standing:
-    nothing moves, as the program has waited. signals: outputs, the first and the last, by the name
-    they have in the module. external: values of the external axes at each move; unit: the mechanism
-    that BASE is coupled to, and numbers of its axes; slides: number of the axis that a remark calls
-    the track. arc: the instruction of ArcTech that is being read. trigger: s before its end at
-    which the next move switches an output, which one, and whether on.
+    state: the last settings, by name; a module relies on no settings of another one. standing: the
+    robot rests because the program has waited. signals: first and last output, by their name in the
+    module. external: values of the external axes at each move; unit: the mechanism
+    that BASE is coupled to, and numbers of its axes; slides: number of the axis that a remark marks
+    as the track. arc: the instruction of ArcTech that is being read. trigger: time before its end,
+    s, at which the next move switches an output; the output; whether on.
     """
 
     files: dict[str, tuple[str, list[str]]]
@@ -148,7 +147,7 @@ class Run:
         self.events.append(Event(len(self.speed), kind, value, digits, ahead))
 
     def note_digits(self, what: str, texts: tuple[str, ...]) -> None:
-        """Keep half of the last digit of numbers of a kind."""
+        """Store half of the last digit of numbers of a kind."""
         half = 0.5 * 10.0 ** -min(len(text.partition(".")[2]) for text in texts)
         self.half_digits[what] = max(half, self.half_digits.get(what, 0.0))
 
@@ -200,7 +199,7 @@ def _about(axis: int, angle: Array) -> Array:
 
 
 def not_read(where: str, why: str) -> InputError:
-    """Return the error for a line that is not understood, or makes no sense where it is."""
+    """Return the error for a line that is not understood or is out of place."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)
 
 
@@ -231,8 +230,8 @@ _AWAITED, _LAYERED = re.compile(r"WAIT FOR \$IN\[(\d+)\]==TRUE$"), re.compile(r"
 _CALLED, _HEADED = re.compile(r"([A-Za-z]\w*)\(\)$"), re.compile(r"DEF ([A-Za-z]\w*)\(\)$")
 _ANY_HEAD = re.compile(
     r"\s*((?:GLOBAL\s+)?DEF(?:FCT)?\s[^;]*[^;\s])", re.IGNORECASE
-)  # as others write it, too
-# counted in whole milliseconds from the end of the next move
+)  # also as other programs write it
+# whole milliseconds, relative to the end of the next move
 _TRIGGER = re.compile(
     r"TRIGGER WHEN DISTANCE=1 DELAY=(0|-[1-9]\d*) DO \$OUT\[(\d+)\]=(TRUE|FALSE)$"
 )
@@ -274,7 +273,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _routine(file: str, lines: list[str]) -> str:
-    """The name of the one routine of a module, which is the file's."""
+    """The name of the only routine of a module; it must equal the name of the file."""
     title = (
         _HEADED.match(lines[2])
         if len(lines) > 3 and lines[:2] == ["&ACCESS RVP", "&REL 1"]
@@ -300,7 +299,7 @@ def _routine(file: str, lines: list[str]) -> str:
 
 
 def _go(name: str, run: Run) -> None:
-    """Carry out the lines of a module in order, and of modules it calls."""
+    """Execute the lines of a module in order, and those of the modules that it calls."""
     file, lines = run.files[name]
     run.followed.append(name)
     run.state, run.signals = {}, {}
@@ -331,7 +330,7 @@ def _go(name: str, run: Run) -> None:
 
 
 def _setting(line: str, run: Run) -> bool:
-    """Keep what a line sets for the moves behind it; whether it does."""
+    """Store the setting in a line for the moves after it; return whether the line has one."""
     if setting := _PERCENT.match(line):
         run.state["percent"] = float(setting[1])
     elif setting := _METRES.match(line):
@@ -349,7 +348,7 @@ def _setting(line: str, run: Run) -> bool:
         run.state[f"E{setting[1]}"] = float(setting[2])
     elif line in (_INITIAL, _ON_FLANGE, _TURNING):
         if line == _INITIAL:
-            run.state = {}  # earlier settings count no more
+            run.state = {}  # earlier settings no longer apply
         run.state[line] = 1.0
     else:
         return False
@@ -357,7 +356,7 @@ def _setting(line: str, run: Run) -> bool:
 
 
 def _couple(coupled: re.Match[str], run: Run, where: str) -> None:
-    """The base is carried by a mechanism."""
+    """Couple the base to the mechanism that carries it."""
     if coupled[1] != coupled[2] or run.state.get("BASE") != float(coupled[3]):
         raise not_read(
             where,
@@ -367,14 +366,14 @@ def _couple(coupled: re.Match[str], run: Run, where: str) -> None:
 
 
 def _declare(declared: re.Match[str], earlier_lines: list[str], run: Run, where: str) -> None:
-    """Name a group of outputs in a module, which comes before its instructions."""
+    """Declare a group of outputs; declarations come before the instructions of a module."""
     if any(not line.startswith(";") for line in earlier_lines):
         raise not_read(where, "it is declared after an instruction; declarations come first")
     run.signals[declared[1]] = int(declared[2]), int(declared[3])
 
 
 def _set(outputs: tuple[int, int], number: int, run: Run, where: str) -> None:
-    """A group of outputs, the first and the last, is set to a number."""
+    """Set a group of outputs, given by the first and the last, to a number."""
     if not run.standing or number >= 2 ** (outputs[1] - outputs[0] + 1):
         raise not_read(
             where, "it is set ahead of the motion, or its outputs are too few for the number"
@@ -385,7 +384,7 @@ def _set(outputs: tuple[int, int], number: int, run: Run, where: str) -> None:
 
 
 def _arc(line: str, run: Run, where: str) -> None:
-    """A line of ArcTech: what moves count on may have been set by it."""
+    """Read a line of ArcTech, which may change the settings of moves."""
     if run.trigger:
         raise not_read(where, "it interrupts the lines of another instruction")
     switched = run.arc.called(line)
@@ -406,7 +405,7 @@ def _arc(line: str, run: Run, where: str) -> None:
 
 
 def _trigger(trigger: re.Match[str], run: Run, where: str) -> None:
-    """The next move is to switch an output."""
+    """Let the next move switch an output."""
     if run.trigger or run.arc.is_open:
         raise not_read(where, "it interrupts the lines of another instruction")
     _one_output(trigger[2], run, where)
@@ -414,15 +413,15 @@ def _trigger(trigger: re.Match[str], run: Run, where: str) -> None:
 
 
 def _one_output(number: str, run: Run, where: str) -> None:
-    """The deposit is switched by one output, not by others or by ArcTech too."""
+    """Check that only one output switches the deposit, and not ArcTech too."""
     if run.output not in ("", number) or any(ARC in event.value for event in run.events):
         raise not_read(where, "it switches a second output")
     run.output = number
 
 
 def _follow_instruction(line: str, run: Run, where: str) -> None:
-    """An instruction, neither move nor setting: the advance run reads all but waits, so outputs and
-    calls come after one.
+    """Execute an instruction that is neither move nor setting. The advance run stops only at waits,
+    so outputs and calls must follow a wait.
     """
     if not any(form.match(line) for form in (_PAUSE, _AWAITED, _SWITCHED, _CALLED)):
         if line.startswith("TRIGGER") and not run.standing:
@@ -465,7 +464,9 @@ def _follow_instruction(line: str, run: Run, where: str) -> None:
 
 
 def _stopped(run: Run, where: str) -> bool:
-    """True: a wait holds the program until the robot stops. The corner before it is not rounded."""
+    """Return True: a wait holds the program until the robot stops. The corner before it must not be
+    rounded.
+    """
     if run.speed and not np.isnan(run.rounding[-1]):
         raise not_read(where, "the move before it is approximated, but this line stops the robot")
     return True
@@ -524,7 +525,7 @@ def _follow_move(line: str, run: Run, where: str) -> None:
 
 
 def _triggered(ahead: float, output: str, on: bool, run: Run, where: str) -> None:
-    """The move has switched an output `ahead` s before its end."""
+    """Record that the move switches an output `ahead` s before its end."""
     if not np.isnan(run.rounding[-1]):
         raise not_read(
             where, "a trigger needs a move that ends at its point, but the corner is rounded"
@@ -534,9 +535,8 @@ def _triggered(ahead: float, output: str, on: bool, run: Run, where: str) -> Non
 
 
 def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str) -> None:
-    """Check the external axes of a move: the same ones in all moves, coupled, and as fast as the
-    move needs, in percent: a linear one goes at its own speed only where they may be as fast as
-    they can.
+    """Check the external axes of a move: the same axes in all moves, coupled, and with enough
+    speed, percent. A linear move keeps its speed only if they may run at full speed.
     """
     unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
     if run.unit is not None and (run.unit, run.numbers) != (unit, numbers):

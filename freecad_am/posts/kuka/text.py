@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a KRL module says: its text, and its numbers: axis values, A B C, speeds, percents. Lines end in CR LF."""
+"""Text and numbers of a KRL module: axis values, A B C, speeds, percents. Lines end in CR LF."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ WELD_DATA, END_DATA = "WDAT", "WDATOFF"  # weld data, by number
 
 
 def after(block: DepositOn | DepositOff) -> str:
-    """The line behind such a move."""
+    """The line after such a move."""
     if isinstance(block, DepositOn):
         return f"{CALL}#ArcOnAfterMoveStd,{WELD_DATA}{block.schedule},{SEAM})"
     return f"{CALL}#ArcOffAfterMoveStd,{END_DATA}{block.schedule},{SEAM})"
@@ -52,7 +52,7 @@ def names(program: Program) -> list[str]:
 
 
 def refuse_post_flow(program: Program) -> None:
-    """Raises InputError SCHEDULE where a bead is to have a post-flow, which ArcTech has in its own data."""
+    """Raises InputError SCHEDULE if a bead has a post-flow, which ArcTech keeps in its weld data."""
     for block in program.blocks:
         if isinstance(block, DepositOff) and block.schedule is not None and block.lead > 0.0:
             raise InputError(
@@ -87,7 +87,7 @@ def remarks(program: Program) -> Iterator[str]:
 
 
 def lighting(number: int) -> list[str]:
-    """The lines in front of the move that lights the arc."""
+    """The lines before the move that starts the arc."""
     data, seam = f"{WELD_DATA}{number}", SEAM
     on_the_fly = f"TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOn,{data})"
     return [
@@ -99,7 +99,7 @@ def lighting(number: int) -> list[str]:
 
 
 def ending(number: int) -> list[str]:
-    """The lines in front of the move that ends it."""
+    """The lines before the move that ends the arc."""
     data, seam = f"{END_DATA}{number}", SEAM
     return [
         f"TRIGGER WHEN PATH=ArcGetPath(#ArcOffBefore,{data}) DELAY=0 DO {CALL}#ArcOffBeforeOffStd,{data},{seam}) PRIO=-1",
@@ -108,11 +108,11 @@ def ending(number: int) -> list[str]:
     ]
 
 
-TRIGGER = "TRIGGER "  # with which its line begins
+TRIGGER = "TRIGGER "  # beginning of its line
 
 
 def ahead_of_moves(program: Program) -> dict[int, str]:
-    """The lines in front of the last one of runs of moves, by the identity of the run."""
+    """The lines before the last move of runs, by the identity of the run."""
     if program.dry_run:
         return {}
     return {
@@ -123,7 +123,7 @@ def ahead_of_moves(program: Program) -> dict[int, str]:
 
 
 def leads(program: Program) -> dict[int, float]:
-    """s ahead of its end at which the last one of runs of moves switches an output, by the identity
+    """Time, s, before its end at which the last move of a run switches an output, by the identity
     of the run.
     """
     if program.dry_run:
@@ -134,8 +134,8 @@ def leads(program: Program) -> dict[int, float]:
 
 
 def in_front(lines: str, word: str) -> str:
-    """The word of a move, its settings in front of it, with such lines. A trigger comes last; calls
-    of ArcTech come first, as settings after them override theirs.
+    """The word of a move, after its settings and these lines. A trigger comes last; calls of
+    ArcTech come first, so that later settings override theirs.
     """
     if CALL in lines:
         return f"{lines}|{word}"
@@ -154,19 +154,22 @@ def _lines(program: Program, block: DepositOn | DepositOff) -> list[str]:
 
 
 END_OF_LINE = "\r\n"
-SCHEDULE, BITS = "am_schedule", 8  # signal that is set to its number, and its count of outputs
+SCHEDULE, BITS = (
+    "am_schedule",
+    8,
+)  # name of the signal that carries the schedule, and its number of outputs
 WIDTH = 80  # of remarks
 ANGLE_DECIMALS, LENGTH_DECIMALS = 4, 3
 # mm/s: the lowest speed that six decimals of m/s resolve well, and the speed that arms reach
 SPEEDS = (0.01, 3000.0)
 MILLISECOND = 0.001  # s: the step of a delay
-# percent: the lowest share of the axes' speeds in whole numbers; half a percent is rounded up to it
+# percent: the lowest whole share of the axis speeds; half a percent is rounded up to it
 LEAST_PERCENT = 1
 _AXES = [f"A{axis} %.{ANGLE_DECIMALS}f" for axis in range(1, 7)]
 _PLACE = [f"{axis} %.{LENGTH_DECIMALS}f" for axis in "XYZ"] + [
     f"{axis} %.{ANGLE_DECIMALS}f" for axis in "ABC"
 ]
-# of how a move is approached: it stops, or the corner is rounded
+# endings of a move: it stops, or the corner is rounded
 _STOPS, _ROUNDED = "", " C_DIS"
 
 
@@ -177,7 +180,7 @@ def module(name: str, lines: Iterable[str]) -> bytes:
 
 
 def remark(text: str) -> list[str]:
-    """A comment on as many lines as it needs, in plain characters."""
+    """A comment in plain characters, on as many lines as it needs."""
     return [f"; {line}" for line in textwrap.wrap(plain(text), WIDTH)]
 
 
@@ -187,7 +190,7 @@ def signal(first_output: int) -> list[str]:
 
 
 def wait(seconds: float) -> list[str]:
-    """Standing still for a time, to 0.001 s; nothing for no time."""
+    """The lines of a wait, to 0.001 s; none for 0 s."""
     return [f"WAIT SEC {max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
 
 
@@ -235,7 +238,7 @@ class Lines:
     """The lines of the moves of a program, built block by block in the order of motion: each move
     with its required settings before it, separated by |.
 
-    ahead: the time left in the last moves for switching the deposit ahead of their ends.
+    ahead: time in the last moves that is available for switching the deposit ahead of their ends.
     """
 
     def __init__(self, program: Program) -> None:
@@ -254,8 +257,7 @@ class Lines:
             f"{word} {{{','.join([*values, *external])}}}"
             for word, values in (("PTP", _AXES), ("LIN", _PLACE))
         )
-        # the speed shares of external axes also apply to linear moves, which they must not slow
-        # down
+        # speed shares of external axes also apply to linear moves and must not slow them down
         self._shares = "".join(f"$VEL_EXTAX[{number}]=%d|" for number in numbers)
         self._unhindered = self._external_speeds(100)
 
@@ -300,13 +302,13 @@ class Lines:
         return marked
 
     def _external_speeds(self, share: int) -> str:
-        """Settings of a share, percent, of the speeds of the external axes; empty without such
-        axes.
-        """
+        """Settings of the speed share, percent, of the external axes; empty without such axes."""
         return self._shares % ((share,) * self._shares.count("%"))
 
     def _percent(self, moves: Moves, values: Array) -> list[int]:
-        """Whole percents of the largest joint speeds: the fastest axis gets through its step in the time of the move."""
+        """Whole percents of the maximum joint speeds at which the slowest axis finishes its step in
+        the time of the move.
+        """
         previous = values[:1] if self._before is None else self._before[None]
         share = (np.abs(np.diff(values, axis=0, prepend=previous)) / self._nominal).max(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -314,8 +316,8 @@ class Lines:
         percent = np.where(share > 0.0, percent, 100.0)
         if self._before is None:
             percent[0] = 100.0 * FIRST_SHARE
-        # a rapid that is slow only because it is short runs at the smallest share: it was planned
-        # to take a minimum time
+        # a rapid that is slow only because it is short was planned with a minimum time:
+        # it runs at the smallest share
         tame = moves.duration <= SHORTEST_RAPID * (1.0 + 1e-9)
         wrong = ~((percent <= 100.5) & (tame | (percent >= 0.5 * LEAST_PERCENT)))
         if wrong.any():
@@ -329,17 +331,17 @@ class Lines:
             )
         percents = np.clip(np.rint(percent), LEAST_PERCENT, 100)
         if self._before is not None or len(moves) > 1:
-            # whole percents may be more than were planned, and the move shorter
+            # rounding to whole percents may speed a move up and shorten it
             self._switched(moves, float(100.0 * share[-1] / percents[-1]))
         return [int(value) for value in percents]
 
     def _switched(self, moves: Moves, seconds: float, corner: bool = False) -> None:
-        """Keep how much of the last move is left, where it switches the deposit."""
+        """Store the time left in the last move if it switches the deposit."""
         if id(moves) in self._leads:
             self.ahead.append(Ahead(moves, self._leads[id(moves)], seconds, corner, MILLISECOND))
 
     def _rounding(self, moves: Moves) -> float:
-        """mm: corners are rounded within half the shortest move of the bead at most."""
+        """Size of corner rounding, mm: at most half the shortest move of the bead."""
         shortest = (
             float(np.nan_to_num(moves.speed * moves.duration).min())
             if moves.kind == DEPOSIT
@@ -359,7 +361,7 @@ def spoken(words: Sequence[str], current_settings: dict[str, str]) -> list[str]:
             if setting.startswith(TRIGGER):
                 lines += setting.splitlines()
                 if CALL in setting:
-                    current_settings.clear()  # what ArcTech sets is not known
+                    current_settings.clear()  # the settings that ArcTech leaves are unknown
                 continue
             key = setting[: max(setting.find("="), 8)]
             if current_settings.get(key) != setting:

@@ -49,7 +49,7 @@ __all__ = ["read", "write"]
 NAMING = Naming(str.lower, "[a-z]", "a letter", longest=30, spare=3, prefix="am_")
 _NO_END = 10**9
 CONTROLLER = Controller(point_bytes=67)
-PENDANT = None  # no robot's
+PENDANT = None  # not for robots
 NO_WIRE = ""  # the speed of the wire can follow the torch speed
 NO_WEAVE = "programs of five-axis machines have no weave"
 NO_TRIGGER = (
@@ -72,15 +72,16 @@ MACHINE_OFFSET = "G59.3"
 OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2")
 # the machine stops at the end of every move
 EXACT_STOP = "G61.1"
-# mm/min or deg/min: its interpreter takes 0.1 where the time of a move asks for less, which would be too fast
+# mm/min or deg/min: the interpreter raises slower moves with a programmed time to 0.1, which
+# would be too fast
 SLOWEST = 0.2
-# s: an input that does not come stops the program for good
+# s: if the input does not come, the program stops for good
 LONGEST_WAIT = 10_000_000
-# comments of this kind would be carried out
+# comments of this kind would be executed
 _ACTIVE = re.compile(
     r"(?:abort|debug|error|log\w*|msg|print|probe\w*|py|warning)\s*,", re.IGNORECASE
 )
-# M words with a meaning of their own
+# M words with another meaning
 _TAKEN = frozenset(
     {
         f"M{n}"
@@ -93,8 +94,8 @@ _TAKEN = frozenset(
 def write(program: Program) -> dict[str, bytes]:
     """The files of a program, name -> content; the same bytes for the same program.
 
-    One file name.ngc where its points fit, else name.ngc calls the subs name01.ngc, name02.ngc and so on, each with whole
-    beads; a bead with more points has a part of its own.
+    One file name.ngc if its points fit; otherwise name.ngc calls the subs name01.ngc, name02.ngc
+    and so on, each with whole beads. A bead with more points gets its own part.
 
     Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, UNSUPPORTED_FRAME, MOVE_TIME, MOVE_SPEED,
     NO_POSITIONS, NO_TIP_KINEMATICS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, DEPOSIT_WORD, WIRE_OUTPUT, UNREACHABLE,
@@ -139,7 +140,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name of file and sub, in lower case as LinuxCNC looks for it. Raises InputError PROGRAM_NAME, proposing one."""
+    """The name of file and sub, in lower case as LinuxCNC looks for it. Raises InputError
+    PROGRAM_NAME with a valid proposal.
+    """
     return NAMING.checked(name, where)
 
 
@@ -149,7 +152,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
+    """Raises InputError UNSUPPORTED_SETUP for a set-up that this controller does not support; it
+    supports both motions of five-axis machines.
+    """
     nc_numbers.refuse_setup("linuxcnc", motion, setup)
     if carried is not None and motion == "cartesian":
         _refuse_tilt(carried)
@@ -219,7 +224,9 @@ def _refuse_cartesian(program: Program) -> None:
 
 
 def _refuse_tilt(carried: tuple[float, ...]) -> None:
-    """Raises InputError UNSUPPORTED_FRAME where the program's origin, X Y Z RX RY RZ (mm, rad), leans on the table."""
+    """Raises InputError UNSUPPORTED_FRAME if the program's origin, X Y Z RX RY RZ (mm, rad), is
+    tilted on the table.
+    """
     if max(abs(angle) for angle in carried[3:5]) > 1e-9:
         x, y, z, rx, ry, rz = (*carried[:3], *(math.degrees(angle) for angle in carried[3:]))
         raise InputError(
@@ -252,7 +259,7 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 
 def _remark(text: str) -> str:
-    """A comment of one line that nothing is carried out of."""
+    """A comment of one line that cannot be executed."""
     inside = text.replace("(", "[").replace(")", "]")
     return f"(remark: {inside})" if _ACTIVE.match(inside) else f"({inside})"
 
@@ -277,7 +284,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
             *(["M428", OFFSETS[program.user_frame - 1]] if cartesian else []),
             _through(program),
         ]
-        # at rest: at once
+        # immediate at rest
         wire = (
             []
             if block.wire is None
@@ -299,7 +306,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         ]
     if isinstance(
         block, Schedule
-    ):  # at rest: at once; within a bead queued, where the next move begins
+    ):  # immediate at rest; within a bead queued until the next move begins
         return [f"M6{7 if block.inside else 8} E{program.schedule_output - 1} Q{block.number}"]
     if isinstance(block, LayerStart):
         return [_remark(f"layer {block.layer}")]
@@ -307,7 +314,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return _dwell(block.seconds)
     if isinstance(block, WaitInput):
         return [f"M66 P{block.number - 1} L3 Q{LONGEST_WAIT}"]
-    if isinstance(block, WaitBelow):  # of analogue inputs M66 only reads the value, into #5399
+    if isinstance(block, WaitBelow):  # for analogue inputs M66 only reads the value into #5399
         sample, loop = f"M66 E{block.number - 1} L0", f"o<cool{block.layer}_{block.bead}>"
         return [
             sample,
@@ -322,7 +329,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
 
 
 def _output(program: Program, on: bool) -> str:
-    """Switch at once, not queued: the words wait for the end of the motion, so that the machine
+    """Switch immediately, not queued: the words wait for the end of the motion, so the machine
     stops before the deposit switches.
     """
     if program.nc.deposit_on:
@@ -331,12 +338,12 @@ def _output(program: Program, on: bool) -> str:
 
 
 def _through(program: Program) -> str:
-    """From here on corners are rounded as far as the tolerance lets them."""
+    """Round corners within the tolerance from here on."""
     return f"G64 P{program.nc.tolerance:.5f} Q{program.nc.tolerance:.5f}"
 
 
 def _wire(program: Program) -> str:
-    """Which analogue output and, to be filled in, its value."""
+    """Template of the statement that sets the analogue output."""
     return f"E{program.nc.wire_output - 1} Q{{}}"
 
 
@@ -367,7 +374,7 @@ def _motion(program: Program, run: Run) -> list[str]:
     ahead = len(blocks) - len(values)
     for row in np.flatnonzero(moves.halt[rows]).tolist():
         blocks[ahead + row] = f"{EXACT_STOP}\n{blocks[ahead + row]}\n{_through(program)}"
-    # queued: it takes effect where the next move begins, and corners are rounded all the same
+    # queued: it takes effect when the next move begins, and corners stay rounded
     text = nc_numbers.insert_wire_statements(program, moves, blocks, f"M67 {_wire(program)}")
     return [line for block in text for line in block.split("\n")]
 

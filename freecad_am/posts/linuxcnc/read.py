@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads LinuxCNC programs back: the behaviour of the controller, from nothing but the text.
+"""Reads LinuxCNC programs back: models the controller from the text of the program alone.
 
-Shares nothing with the writer. Understands the plain lines a path needs and refuses every other
-one, so that no motion can hide in unknown text.
+Shares no code with the writer. Accepts the plain lines that a path needs and rejects all others, so
+that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class _State:
     kinematics: str = ""
     zeroed: set[str] = field(default_factory=set)
     output: str = ""
-    switched: str = ""  # where the output was switched last
+    switched: str = ""  # place of the last switch of the output
     on_word: str = ""
     off_word: str = ""
     sampled: str = ""
@@ -113,7 +113,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _is_sub(name: str, lines: list[tuple[str, str]]) -> bool:
-    """Whether the lines of a program are one sub of its name, from the first to the last."""
+    """Whether the lines of a program form a single sub with its name."""
     begin, end = f"O<{name}> SUB", f"O<{name}> ENDSUB"
     if not any(text == begin for _, text in lines):
         return False
@@ -124,7 +124,7 @@ def _is_sub(name: str, lines: list[tuple[str, str]]) -> bool:
 
 
 def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
-    """Where each line is, and its words without comments."""
+    """The place of each line, and its words without comments."""
     located_lines = []
     for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
         layer = _LAYER.match(line.strip())
@@ -142,7 +142,7 @@ def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
 def _follow(
     name: str, lines: list[tuple[str, str]], state: _State, callers: tuple[str, ...]
 ) -> None:
-    """Carry out the lines of a program in order, and of the subs it calls."""
+    """Execute the lines of a program in order, and those of the subs that it calls."""
     if name in callers:
         raise unreadable(name, "it calls itself")
     for where, text in lines:
@@ -178,8 +178,8 @@ def _follow(
 
 
 def _tells_schedule(schedule: re.Match[str], state: _State) -> bool:
-    """Whether an analogue output selects schedules: unlike the wire's it is set at rest before
-    corners are rounded; within beads it is known already.
+    """Whether an analogue output selects schedules: unlike that of the wire, it is set at rest
+    before corners are rounded; within beads this is already known.
     """
     if schedule[1] == "8" and state.track.exact:
         state.schedules.add(schedule[2])
@@ -189,11 +189,11 @@ def _tells_schedule(schedule: re.Match[str], state: _State) -> bool:
 
 
 def _sets_mode(text: str, state: _State) -> bool:
-    """Whether a line sets how corners are passed or which tool counts, or waits; it is done then."""
+    """Execute a line that sets corner rounding or the tool, or waits; return whether it is one."""
     if corners := _CORNERS.match(text):
         state.track.exact = text == "G61.1"
-        # G61 stops only where it must; a point tolerance that differs from the corner tolerance is
-        # not ours
+        # G61 stops only where needed; we never write a point tolerance that differs from
+        # the corner tolerance
         is_known = corners[2] and corners[2] == corners[3]
         state.track.rounding = (
             float(corners[2]) if is_known else 0.0 if corners[1] else float("inf")
@@ -212,9 +212,7 @@ def _sets_mode(text: str, state: _State) -> bool:
 
 
 def _cooled(where: str, text: str, state: _State) -> bool:
-    """Whether a line is part of a loop that repeats until an analogue input, read in each pass, is
-    below a value.
-    """
+    """Whether a line belongs to a loop that reads an analogue input until it is below a value."""
     sampled, state.sampled = state.sampled, ""
     loop = _LOOP.match(text)
     if sample := _SAMPLE.match(text):
@@ -243,7 +241,7 @@ def _call(where: str, name: str, state: _State, callers: tuple[str, ...]) -> Non
     if name in state.files:
         _follow(name, state.files[name][1:-1], state, callers)
     else:
-        # a program of the controller; its final settings are unknown
+        # a program on the controller; the settings it leaves are unknown
         state.units, state.offset, state.zeroed, state.linear, state.kinematics = (
             set(),
             "",
@@ -303,7 +301,9 @@ def _move(where: str, words: dict[str, str], state: _State) -> None:
 
 
 def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None:
-    """Kinematics, and the deposit: an output by its number; the first of two M words switches on."""
+    """Switch the kinematics or the deposit: by the number of an output, or by two M words, the
+    first for on.
+    """
     if text in (_TIP_ON, _TIP_OFF):
         if state.track.on:
             raise unreadable(where, "the kinematics changes while the deposit is on")
@@ -326,6 +326,6 @@ def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None
         )
     state.switched = where
     state.output, state.track.on = name, on
-    if output[1] not in ("62", "63"):  # these wait for the next move instead
+    if output[1] not in ("62", "63"):  # these take effect with the next move instead
         state.track.rests()
     state.track.happens("on" if on else "off", float(output[2]) + 1.0 if output[1] else 0.0, text)

@@ -50,7 +50,7 @@ __all__ = ["read", "write"]
 
 _NO_END = 10**9
 CONTROLLER = Controller(point_bytes=80)
-PENDANT = None  # no robot's
+PENDANT = None  # not for robots
 NO_WIRE = ""  # the speed of the wire can follow the torch speed
 NO_WEAVE = "programs of five-axis machines have no weave"
 NO_TRIGGER = (
@@ -73,7 +73,7 @@ LAST_OUTPUT, LAST_INPUT, LAST_ANALOGUE = 99, 32, 8
 
 # M words that stop or end a program, change the tool or set the spindle
 _TAKEN = frozenset(f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 17, 19, 30, 40, 41, 42, 43, 44, 45, 70))
-# words of the language that begin like a name; others are found by trial on the controller
+# words of the language that look like a name; trials on the controller find others
 _RESERVED = INSTRUCTIONS | frozenset(
     (
         "AND",
@@ -150,8 +150,8 @@ NAMING = Naming(
 def write(program: Program) -> dict[str, bytes]:
     """The files of a program, name -> content; the same bytes for the same program.
 
-    One main program NAME.MPF where its points fit, else NAME.MPF calls NAME01.SPF, NAME02.SPF and so on, each with whole
-    beads; a bead with more points has a part of its own.
+    One main program NAME.MPF if its points fit; otherwise NAME.MPF calls NAME01.SPF, NAME02.SPF and
+    so on, each with whole beads. A bead with more points gets its own part.
 
     Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_STEP, MOVE_TIME, MOVE_SPEED,
     NO_POSITIONS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
@@ -189,7 +189,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller, upper case. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    """The name on the controller, upper case. Raises InputError PROGRAM_NAME with the reason and a
+    valid proposal.
+    """
     return NAMING.checked(name, where)
 
 
@@ -199,7 +201,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions of a table can."""
+    """Raises InputError UNSUPPORTED_SETUP for a set-up that this controller does not support; it
+    supports both motions of five-axis machines.
+    """
     nc_numbers.refuse_setup("siemens", motion, setup)
 
 
@@ -247,7 +251,7 @@ def _refuse_schedules(program: Program) -> None:
 
 
 def _refuse_continuous_steps(program: Program) -> None:
-    """C=DC(...) takes the shorter way, so a move of half a turn or more would go wrong."""
+    """Reject moves of half a turn or more of a continuous axis: C=DC(...) takes the shorter way."""
     axes = np.flatnonzero(program.continuous)
     degrees = np.degrees(np.concatenate([run.joints for run in program.moves])[:, axes])
     steps = np.abs(np.diff(degrees, axis=0))
@@ -280,7 +284,9 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 
 def _rpy(bryant: Sequence[float]) -> tuple[str, ...]:
-    """Degrees about Z, the new Y and the new X, as work offsets count them, of the rotation Rx Ry Rz."""
+    """Angles, degrees, of the rotation Rx Ry Rz about Z, the new Y and the new X, as work offsets
+    have them.
+    """
     (sa, sb, sc), (ca, cb, cc) = np.sin(bryant).tolist(), np.cos(bryant).tolist()
     across = math.hypot(cb * cc, ca * sc + sa * sb * cc)
     z, y = math.atan2(ca * sc + sa * sb * cc, cb * cc), math.atan2(ca * sb * cc - sa * sc, across)
@@ -371,12 +377,11 @@ def _motion(program: Program, run: Run) -> list[str]:
     ahead = len(blocks) - len(words)
     for row in np.flatnonzero(moves.stops[rows]).tolist():
         blocks[ahead + row] = f"G9 {blocks[ahead + row]}"
-    # a synchronized action of one block: it takes effect where that begins, without a stop
+    # a synchronized action of one block: it takes effect when the block begins, without a stop
     worded = nc_numbers.insert_wire_statements(
         program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}")
     )
-    # the time of one block would apply to all blocks compressed into it, and so would the wire's
-    # speed
+    # the time and the wire speed of one block would apply to all blocks compressed with it
     by_speed = all(feed.startswith(nc_numbers.PATH) for feed in run.words[rows])
     if program.nc.compress and by_speed and len(worded) == len(blocks):
         return [blocks[0], "COMPCAD", *blocks[1:], "COMPOF"]

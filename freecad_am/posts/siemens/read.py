@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads SINUMERIK programs back: the behaviour of the controller, from nothing but the text.
+"""Reads SINUMERIK programs back: models the controller from the text of the program alone.
 
-Shares nothing with the writer. Understands the plain blocks a path needs and refuses every other
-one, so that no motion can hide in unknown text.
+Shares no code with the writer. Accepts the plain blocks that a path needs and rejects all others,
+so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ class _State:
     waiting: bool = False
     shape: Shape | None = None
     output: str = ""
-    switched: str = ""  # where the output was switched last
+    switched: str = ""  # place of the last switch of the output
     on_word: str = ""
     off_word: str = ""
 
@@ -83,7 +83,8 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()
     }
     words = {text for blocks in programs.values() for _, text in blocks}
-    # an H word that is ever 0 switches; others select schedules, which begin with 1
+    # an H word that is 0 somewhere switches the deposit; others select schedules, which begin
+    # with 1
     state = _State(
         programs, switching={text.partition("=")[0] for text in words if text.endswith("=0")}
     )
@@ -111,7 +112,7 @@ def _blocks(file: str, content: bytes) -> list[tuple[str, str]]:
 
 
 def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
-    """Carry out the blocks of a program in order, and of programs it calls."""
+    """Execute the blocks of a program in order, and those of the programs that it calls."""
     end = "M17" if callers else "M30"
     blocks = state.files[name]
     if not blocks or blocks[-1][1] != end or name in callers:
@@ -181,7 +182,7 @@ def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
 
 
 def _mode(token: str, state: _State) -> bool:
-    """Whether the word sets a mode; it is set then."""
+    """Set a mode; return whether the word is one."""
     if token in _FEEDS:
         state.feed = token
     elif token in _UNITS:
@@ -266,7 +267,7 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
     ):
         raise unreadable(where, Text("{!r} is not understood", token))
     else:
-        # a program of the controller; its final settings are unknown
+        # a program on the controller; the settings it leaves are unknown
         state.units, state.offset, state.group, state.linear, state.corners = (
             set(),
             "",
@@ -279,7 +280,9 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
 
 
 def _switch(where: str, token: str, output: re.Match[str], state: _State) -> None:
-    """The deposit: an output or H word with its value; the first of two M words switches on."""
+    """Switch the deposit: by an output or H word with its value, or by two M words, the first for
+    on.
+    """
     if output[5]:
         state.on_word = state.on_word or token
         on = token == state.on_word

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Words of SINUMERIK that may be the only word of a block: written like a subprogram call, but not
-one.
+"""Words of SINUMERIK that may stand alone in a block: they look like a subprogram call but are
+none.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a VAL 3 application says in numbers: joint values, frames, motion descriptors."""
+"""Numbers of a VAL 3 application: joint values, frames, motion descriptors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ...core.types import Array
 from ..parts import place
 
 ANGLE_DECIMALS, LENGTH_DECIMALS = 5, 4
-# what a descriptor does not limit: mm/s and deg/s no arm reaches
+# mm/s and deg/s beyond any arm, for descriptors without a limit
 UNLIMITED = "99999"
 # mm/s, and percent of the nominal joint speed
 SLOWEST, LEAST_PERCENT = 0.01, 0.001
@@ -97,8 +97,8 @@ class Descriptors:
         return words
 
     def _percent(self, moves: Moves, steps: Array) -> Array:
-        """Percent of the nominal joint speed, (n,): the fastest axis gets through its step in the
-        time of the move.
+        """Percent of the nominal joint speed, (n,), at which the slowest axis finishes its step in
+        the time of the move.
         """
         share = (np.abs(steps) / self.nominal).max(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -120,8 +120,8 @@ class Descriptors:
         return np.where(share > 0.0, np.clip(percent, LEAST_PERCENT, 100.0), 100.0)
 
     def _blends(self, moves: Moves) -> list[str]:
-        """How each move ends. Corners within a bead are passed through, never farther from one than
-        half its shortest move, except at halts; the program waits at its end.
+        """How each move ends. Corners within a bead are rounded by at most half its shortest move,
+        except at halts; the program waits at its end.
         """
         distance = 0.0
         if moves.kind == DEPOSIT:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Stäubli: VAL 3 applications of joint moves, or of linear moves with the speed held at the deposition point.
 
-With the part on the robot linear moves have a fixed target, the deposition point, and a tool of
-their own each: the point of the part that is to come there (Chalvin 2019, III.A, "jauges outil").
+With the part on the robot linear moves have a fixed target, the deposition point, and each its own
+tool: the point of the part that moves there (Chalvin 2019, III.A, "jauges outil").
 Output, controller settings and confirmations: docs/posts/staubli.md.
 """
 
@@ -180,14 +180,14 @@ def _rows(template: str, values: Array) -> list[str]:
 
 
 def _remark(text: str) -> list[str]:
-    """A comment on as many lines as it needs, in plain characters."""
+    """A comment in plain characters, on as many lines as it needs."""
     decomposed = unicodedata.normalize("NFKD", text.replace("ß", "ss"))
     plain = decomposed.encode("ascii", "ignore").decode("ascii").replace("]]>", "")
     return [f"// {line}" for line in textwrap.wrap(plain, 80)]
 
 
 def _delay(seconds: float) -> list[str]:
-    """Standing still for a time, to 0.001 s; nothing for no time."""
+    """The lines of a wait, to 0.001 s; none for 0 s."""
     return [f"delay({max(seconds, 0.001):.3f})"] if seconds > 0.0 else []
 
 
@@ -221,7 +221,7 @@ AXES = 6
 SETUPS = ("part-on-robot", "tool-on-robot")
 PART = "prog"  # alias of the part that is loaded
 
-# words of the language that an alias of a library cannot be; case does not count in file names
+# words of the language that cannot be aliases of a library; case does not matter in file names
 _RESERVED = frozenset(
     (
         "AND",
@@ -277,8 +277,8 @@ call {alias}:start()"""
 def write(program: Program) -> dict[str, bytes]:
     """The files of a program, path with slashes -> content; the same bytes for the same program.
 
-    One application NAME/ where its points fit, else NAME/ loads NAME/NAME01/, NAME/NAME02/ and so on one after the
-    other, each with whole beads. The duration of the very first move is not used.
+    One application NAME/ if its points fit; otherwise NAME/ loads NAME/NAME01/, NAME/NAME02/ and so
+    on in turn, each with whole beads. The duration of the first move is not used.
 
     Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, NO_JOINT_SPEED, JOINT_SPEED,
     MOVE_SPEED, NO_POSITIONS, BEAD_TOO_LONG, NO_WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
@@ -313,7 +313,9 @@ _NO_END = 10**9  # programs are short: moves are in the data
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    """The name on the controller. Raises InputError PROGRAM_NAME with the reason and a valid
+    proposal.
+    """
     return NAMING.checked(name, where)
 
 
@@ -323,7 +325,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError UNSUPPORTED_SETUP for what cannot be said to this controller; both motions can."""
+    """Raises InputError UNSUPPORTED_SETUP for a set-up that this controller does not support; it
+    supports both motions.
+    """
     if setup not in SETUPS:
         raise InputError(
             "UNSUPPORTED_SETUP",

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads VAL 3 applications back, file by file: the behaviour of the controller, from nothing but
-the text.
+"""Reads VAL 3 applications back, file by file: models the controller from the text of the program
+alone.
 
-Shares nothing with the writer. Understands the plain instructions a path needs and refuses every
-other one, so that no motion can hide in unknown text.
+Shares no code with the writer. Accepts the plain instructions that a path needs and rejects all
+others, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -90,7 +90,7 @@ def _application(file: str, files: dict[str, bytes]) -> Application:
 def _parsed(file: str, files: dict[str, bytes]) -> ElementTree.Element:
     if file not in files:
         raise unreadable(file, "the file is missing")
-    if b"\0" in files[file]:  # UTF-16, in which the next would not be seen
+    if b"\0" in files[file]:  # UTF-16, in which the next check would find nothing
         raise unreadable(file, "it is not text in UTF-8")
     if b"<!DOCTYPE" in files[file]:
         raise unreadable(file, "it declares a document type, which controllers never write")
@@ -223,7 +223,7 @@ _UNLIMITED = 99999.0
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """Moves of one statement: letter j or l, and the rows of the arrays they take."""
+    """Moves of one statement: letter j or l, and the rows of the arrays that they use."""
 
     app: Application
     where: str
@@ -237,7 +237,7 @@ class Step:
 
 
 class _Values:
-    """What the arrays say, each read once."""
+    """The values of the arrays, each read once."""
 
     def __init__(self) -> None:
         self._read: dict[tuple[str, str, tuple[str, ...]], tuple[Array, float]] = {}
@@ -254,10 +254,9 @@ class _Values:
         return self._read[key][0]
 
     def digits(self, columns: tuple[str, ...]) -> float:
-        """Half of the last digit of the values in these columns, 0 where none were read.
-
-        A single value, such as the only frame of a part, is a setting and exact: it counts only if
-        no array of several values has these columns.
+        """Half of the last digit of the values in these columns, 0 if none were read. A single
+        value, such as the only frame of a part, is an exact setting: it is used only if no array of
+        several values has these columns.
         """
         halves = self._half_digits.get(columns, {})
         return halves.get(True, halves.get(False, 0.0))
@@ -274,8 +273,8 @@ class _Values:
         return next(iter(self._fathers[key])) if len(self._fathers[key]) == 1 else ""
 
     def frame(self, app: Application, name: str, where: str) -> Array:
-        """(4, 4) the frame of the points of an array; it must be fixed in the world, and the arm
-        keep its configuration.
+        """The frame (4, 4) of the points of an array; it must be fixed in the world, and the arm
+        must keep its configuration.
         """
         for value in app.data[name].values:
             if any(
@@ -329,7 +328,7 @@ class _Values:
 
 
 def _corners(values: _Values, app: Application, descriptor: str, step: Step) -> Array:
-    """(n,) mm before and after their ends that moves may leave their lines to round corners, 0 where they stop."""
+    """Distances (n,), mm, from their ends within which moves may round corners, 0 where they stop."""
     leave, reach = values(app, descriptor, _CORNERS)[step.speed].T
     words = np.array([value.get("blend", "") for value in app.data[descriptor].values])[step.speed]
     full = values(app, descriptor, _ACCELERATION)[step.speed]
@@ -447,7 +446,7 @@ class _Run:
     events: list[Event] = field(default_factory=list)
 
     def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
-        """Something happens before the next move."""
+        """Record an event before the next move."""
         self.events.append(Event(self.moves, kind, value, digits))
 
 
@@ -484,7 +483,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _check_stop(app: Application, output: str) -> None:
-    """Stopping an application must end its motion and switch off its outputs."""
+    """Check that stopping an application ends its motion and switches off its outputs."""
     lines = [line for _, line in app.programs.get("stop", [])]
     named = [
         name
@@ -501,7 +500,7 @@ def _check_stop(app: Application, output: str) -> None:
 
 
 def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, str], ...]) -> None:
-    """Carry out the statements of a program in order, and of programs it calls."""
+    """Execute the statements of a program in order, and those of the programs that it calls."""
     caller = (app.folder, name)
     if name not in app.programs or caller in callers:
         raise unreadable(
@@ -549,7 +548,7 @@ def _load(
     run: _Run,
     where: str,
 ) -> None:
-    """Loading a part stops the program where it fails; the robot must not deposit meanwhile."""
+    """Load a part; the program must stop if that fails, and the robot must not deposit meanwhile."""
     next_statements = [next(statements, (0, ""))[1] for _ in range(3)]
     if not next_statements[0].startswith("popUpMsg(") or next_statements[1:] != ["return", "endIf"]:
         raise unreadable(where, "it loads a part where the robot cannot stop")
@@ -566,7 +565,7 @@ def _load(
 
 
 def _library(app: Application, alias: str, run: _Run, where: str) -> Application | None:
-    """The application behind an alias; None for one elsewhere on the controller."""
+    """The application of an alias; None if it is elsewhere on the controller."""
     if alias not in app.libraries:
         raise unreadable(where, Text("{} is not a library of the project", alias))
     if (app.folder, alias) in run.loaded:
@@ -652,7 +651,9 @@ def _move(app: Application, line: str, counter: Integers, run: _Run, where: str)
 
 
 def _indices(index: str | None, counter: Integers) -> Integers | None:
-    """The rows an index takes for each value of the counter; None for a counter outside its loop."""
+    """The rows that an index selects for each value of the counter; None for a counter outside its
+    loop.
+    """
     if index is None or index.isdigit():
         return np.full(max(len(counter), 1), int(index or 0))
     return counter + int(index[4:] or 0) if len(counter) else None

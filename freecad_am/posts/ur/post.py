@@ -50,14 +50,15 @@ from ..refusals import (
 from .read import INSTRUCTIONS, read
 
 DECIMALS = 7  # of rad and m
-# of the shorter one of the ways before and after a point, at most: blends that overlap make the controller leave points out
+# largest share of the shorter move at a point: overlapping blends make the controller skip points
 LARGEST_SHARE = 0.4
 MICRON = 1e-6  # m, the step of a blend radius
 # s: the controller's own step, and the shortest time that is written
 CYCLE, MIN_TIME_S = 0.002, 0.001
 # mm/s: a path speed is written to 0.001 mm/s
 SLOWEST, FASTEST = 0.01, 1000.0
-# mm on the flange: places for the point whose way the blends of joint moves count on, the part being carried
+# mm on the flange: candidate tool points, to which blends of joint moves refer if the robot
+# carries the part
 TOOL_POINTS = np.array(
     [[0, 0, 0], [200, 0, 0], [-200, 0, 0], [0, 200, 0], [0, -200, 0], [0, 0, 200]], dtype=np.float64
 )
@@ -108,7 +109,7 @@ def _ways(program: Program) -> tuple[Array | None, Array]:
 
 
 def _radii(program: Program, tip_steps: Array) -> Array:
-    """(n,) m: the blend at the end of each move, 0 where it stops. A share of the shorter of the
+    """Blend radii (n,), m, at the end of each move, 0 where it stops: a share of the shorter of the
     two adjacent moves.
     """
     moves = program.moves
@@ -211,7 +212,7 @@ ON_CONTROLLER = controller_checks(
 LAST_PIN = 16  # digital inputs and outputs: 1 to 8 are the standard ones 0 to 7, 9 to 16 the configurable ones
 LAST_ANALOGUE = 2
 
-# words of the language, and functions of its library that our programs or programs next to them use
+# words of the language, and library functions that our programs or others on the controller use
 _RESERVED = INSTRUCTIONS | frozenset(
     (
         "AND",
@@ -306,8 +307,8 @@ def write(program: Program) -> dict[str, bytes]:
     """The script of a program, file name -> content; the same bytes for the same program.
 
     One file: a function of the program's name, which calls functions inside it, NAME01, NAME02 and
-    so on, where it has more than max_points. The duration of the very first move is not planned but
-    equals `FIRST_TIME`.
+    so on, where it has more than max_points. The first move has no planned duration and takes
+    `FIRST_TIME`.
 
     Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, MOVE_TIME, MOVE_SPEED,
     BLEND_RADIUS, NO_POSITIONS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, NO_WIRE_OUTPUT, ANALOGUE_INPUT, UNREACHABLE,
@@ -336,7 +337,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name of file and function. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    """The name of file and function. Raises InputError PROGRAM_NAME with the reason and a valid
+    proposal.
+    """
     return NAMING.checked(name, where)
 
 
@@ -346,7 +349,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
+    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for a set-up that this controller does not
+    support.
+    """
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
             "REMOTE_TCP",
@@ -412,7 +417,7 @@ def _own_remarks(program: Program, names: Sequence[str]) -> Iterator[str]:
 
 
 def _frames(program: Program, tool_point: Array | None) -> list[str]:
-    """The tool, and in Cartesian programs the frame that positions are seen in."""
+    """The tool, and in Cartesian programs the frame of the positions."""
     tool = program.carried if tool_point is None else (*tool_point.tolist(), 0.0, 0.0, 0.0)
     lines = [f"set_tcp({_pose(tool)})"]
     if program.motion == "cartesian":
@@ -477,7 +482,7 @@ def _motion(run: Run) -> list[str]:
         pattern, values = f"movep({_POSE_ON_PLATFORM}, a=1.2, %s)", _poses(moves, rows)
     elif moves.position is None:
         pattern, values = f"movej({_JOINTS}, a=1.4, v=1.05, %s)", _joints(moves, rows)
-    else:  # the controller's own arm finds the joints of the position, those next to the planned ones
+    else:  # the controller solves the position for its calibrated arm, near the planned joints
         pattern = f"movej(get_inverse_kin({_POSE_ON_PLATFORM}, {_JOINTS}), a=1.4, v=1.05, %s)"
         values = np.hstack([_poses(moves, rows), _joints(moves, rows)])
     return [

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads URScript back: the behaviour of the controller, from nothing but the text.
+"""Reads URScript back: models the controller from the text of the program alone.
 
-Shares nothing with the writer. Nothing is evaluated: each line has to be one of the few that a path
-needs, unchanged, and every other one is refused, so that no motion can hide in unknown text.
+Shares no code with the writer and evaluates nothing: each line must be one of the few that a path
+needs. All others are rejected, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class _Line:
 
 @dataclass
 class _Function:
-    """A function: the line it begins with, its lines, and the functions inside it by their names."""
+    """A function: its first line, its lines, and its inner functions by name."""
 
     begins: int
     lines: list[_Line] = field(default_factory=list)
@@ -111,7 +111,7 @@ class _Run:
     on: bool = False
 
     def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
-        """Something happens before the next move."""
+        """Record an event before the next move."""
         self.events.append(Event(len(self.deposit), kind, value, digits))
 
 
@@ -136,7 +136,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _parsed(file: str, content: bytes) -> tuple[str, _Function]:
-    """The function that a script is, with its name."""
+    """The function of a script, with its name."""
     try:
         lines = content.decode("ascii").split("\n")
     except UnicodeDecodeError:
@@ -174,7 +174,7 @@ def _follow(
     run: _Run,
     callers: tuple[str, ...],
 ) -> None:
-    """Carry out the lines of a function in order, and of the functions of the script that it calls."""
+    """Execute the lines of a function in order, and those of the functions that it calls."""
     lines = iter(function.lines)
     functions = {**functions, **function.inside}
     for line in lines:
@@ -215,14 +215,14 @@ def _follow(
 
 
 def _loop(lines: Iterator[_Line], where: str) -> None:
-    """A loop that waits has one line, which takes time."""
+    """Read a waiting loop: it has one line, which takes time."""
     inside, end = (next(lines, _Line(0, "")).text for _ in range(2))
     if not re.fullmatch(r"  sleep\(0\.\d*[1-9]\d*\)", inside) or end != "end":
         raise unreadable(where, "only a loop that waits is understood")
 
 
 def _move(text: str, run: _Run, where: str) -> bool:
-    """Whether the line moves, or says what moves count on, which has to come before them."""
+    """Execute a move, or a setting that moves need before them; return whether the line is one."""
     columns_read: tuple[str, ...]
     if move := _BY_JOINTS.match(text):
         columns_read = (*_NONE, *move.groups()[:6], move[7], "nan", move[8])
@@ -296,7 +296,7 @@ def _moves(run: _Run) -> ReadMoves:
 
 
 def _decimals(texts: tuple[str, ...]) -> int:
-    """The fewest decimals of numbers, a large number without any."""
+    """The fewest decimals of numbers; a large value without numbers."""
     return 99 if texts[0] == "nan" else min(len(text) - text.index(".") - 1 for text in texts)
 
 

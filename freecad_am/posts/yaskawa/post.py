@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Yaskawa: INFORM jobs (.JBI) of joint moves, or of beads in linear moves with the tool on the robot, all to pulses.
 
-Rapids are joint moves that stop at every point, in either. Pulses need no option of the controller
-and define the arm's configuration and turns; the pulses per degree are in the machine file, as they
-depend on the robot. Output, controller settings and confirmations: docs/posts/yaskawa.md.
+Rapids are joint moves that stop at every point, in either. Pulses need no controller option and
+define the arm's configuration and turns; the machine file has the pulses per degree, which depend
+on the robot. Output, controller settings and confirmations: docs/posts/yaskawa.md.
 """
 
 from __future__ import annotations
@@ -170,23 +170,22 @@ MOST_EXTERNAL = 6
 MOST_LINES = 9999
 OUTPUTS = 4096
 LONGEST_WAIT = 600.0  # s of one TIMER
-# percent of the largest joint speed: its step, and the lowest value in a bead, which is right to 10
-# %
+# percent of the maximum joint speed: its step, and the lowest value in a bead, accurate to 10 %
 STEP_PERCENT, LEAST_PERCENT = 0.01, 0.05
 LEVELS = 8  # of rounded corners
 # what a unit of path speed is in mm/s, and its decimals
 UNITS = {"mm/s": (1.0, 1), "cm/min": (1.0 / 6.0, 0), "mm/min": (1.0 / 60.0, 0)}
 FASTEST = 1500.0  # mm/s
 _COMMENT = 32
-# names of 8 characters at most on older controllers
+# older controllers allow at most 8 characters in names
 NAMING = Naming(str.upper, "[A-Z]", "a letter", longest=32, spare=4, prefix="AM_")
 
 
 def write(program: Program) -> dict[str, bytes]:
     """The jobs of a program, file name -> content; the same bytes for the same program.
 
-    One job where it fits, else NAME.JBI that calls NAME01.JBI and so on, cut between beads wherever a bead fits. The
-    duration of the very first move is not used.
+    One job if the program fits; otherwise NAME.JBI calls NAME01.JBI and so on. Jobs are cut between
+    beads unless a bead is longer than a job. The duration of the first move is not used.
 
     Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, NO_PULSES, NO_SPEED_UNIT,
     NO_JOINT_SPEED, JOINT_SPEED, MOVE_SPEED, DEPOSIT_OUTPUT, NO_WIRE_OUTPUT, NO_ANALOGUE_INPUT, UNREACHABLE,
@@ -227,7 +226,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller, upper case. Raises InputError PROGRAM_NAME saying why not, and proposing one."""
+    """The name on the controller, upper case. Raises InputError PROGRAM_NAME with the reason and a
+    valid proposal.
+    """
     return NAMING.checked(name, where)
 
 
@@ -237,7 +238,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for what cannot be said to this controller."""
+    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for a set-up that this controller does not
+    support.
+    """
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
             "REMOTE_TCP",
@@ -332,7 +335,7 @@ def _own_remarks(program: Program, off: float) -> Iterator[str]:
 
 
 def _meaning(program: Program) -> Iterator[str]:
-    """The meaning of the numbers of a job, which its own words do not give."""
+    """The meaning of the numbers in a job, which its words do not state."""
     external = [f"E{number + 1}" for number in range(len(program.external_kinds))]
     for axis, slides, count in zip(
         [*AXES, *external], program.slides.tolist(), program.pulses_per_degree, strict=True
@@ -343,7 +346,7 @@ def _meaning(program: Program) -> Iterator[str]:
 
 
 def _remark(text: str) -> list[str]:
-    """A comment on as many lines as its width needs."""
+    """A comment on as many lines as it needs."""
     return [f"'{line}" for line in textwrap.wrap(plain(text), _COMMENT)]
 
 
@@ -377,8 +380,8 @@ class _Words:
 
 
 def _percent(program: Program, moves: Moves, steps: Array, is_first: bool) -> Array:
-    """Percent of the largest joint speeds, (n,): the axis that takes longest gets through its step
-    in the time of the move.
+    """Percent of the maximum joint speeds, (n,), at which the slowest axis finishes its step in the
+    time of the move.
     """
     share = (np.abs(steps) / np.array(program.max_speed)).max(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -446,7 +449,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
 
 
 def _timer(seconds: float) -> list[str]:
-    """Standing still for a time, to 0.01 s; nothing for no time."""
+    """The lines of a wait, to 0.01 s; none for 0 s."""
     hundredths = max(round(100.0 * seconds), int(seconds > 0.0))
     max_hundredths = round(100.0 * LONGEST_WAIT)
     full_waits, remainder = divmod(hundredths, max_hundredths)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads INFORM jobs back: the behaviour of the controller, from nothing but the text.
+"""Reads INFORM jobs back: models the controller from the text of the program alone.
 
-Shares nothing with the writer. The pulses per degree and the unit of V come from the text's own
-remarks. Understands the plain instructions a path needs and refuses every other one, so that no
-motion can hide in unknown text.
+Shares no code with the writer. The pulses per degree and the unit of V come from remarks in the
+text. Accepts the plain instructions that a path needs and rejects all others, so that unknown text
+cannot hide motion.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ _PER_UNIT = re.compile(r"'pulses/(deg [SLURBT]|(?:deg|mm) E[1-7]) (-?\d+(?:\.\d+
 _UNIT = re.compile(r"'V in (mm/s|cm/min|mm/min)$")
 _MM_PER_S = {"mm/s": 1.0, "cm/min": 10.0 / 60.0, "mm/min": 1.0 / 60.0}
 _ROBOT_AXES = 6  # axes of a robot
-_LINE = 34  # characters of a remark with its sign, and one
+_LINE = 34  # characters of a remark with its sign, plus one
 
 
 @dataclass
@@ -84,14 +84,16 @@ class _Run:
     slides: set[str] = field(default_factory=set)
     unit: str = ""
     axes: int = 0
-    decimals: list[int] = field(default_factory=lambda: [99, 99])  # the fewest of VJ and of V
+    decimals: list[int] = field(
+        default_factory=lambda: [99, 99]
+    )  # the fewest decimals of VJ and of V
     external: tuple[bool, str] | None = None
     output: str = ""
     on: bool = False
-    weaves: str = ""  # where the weave began that has not ended
+    weaves: str = ""  # start of the current weave
 
     def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
-        """Something happens before the next move."""
+        """Record an event before the next move."""
         self.events.append(Event(len(self.deposit), kind, value, digits))
 
 
@@ -238,7 +240,7 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
 
 
 def _external_pulses(file: str, letters: str, lines: list[str], line_index: int) -> Array:
-    """(n, k) pulses of a track or a station at the positions, on lines after number `line_index`."""
+    """Pulses (n, k) of a track or station at the positions, on the lines after `line_index`."""
     rows: list[list[float]] = []
     for number, line in enumerate(lines):
         point = _EXTERNAL[letters].match(line)
@@ -261,7 +263,7 @@ def _axes(count: int) -> list[str]:
 
 
 def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...]) -> None:
-    """Carry out the lines of a job in order, and of jobs it calls."""
+    """Execute the lines of a job in order, and those of the jobs that it calls."""
     job = jobs[name]
     if name in callers:
         raise unreadable(job.file, "it calls itself")
@@ -310,7 +312,7 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
 
 
 def _arc(arc: re.Match[str], run: _Run, where: str) -> None:
-    """The arc is struck, or ends, by a file of conditions."""
+    """Start or end the arc with a file of conditions."""
     if run.output not in ("", ARC) or run.on == arc[1].startswith("ON"):
         raise unreadable(
             where, "an output switches the deposit too, the arc is already on, or it is not on yet"
@@ -320,7 +322,7 @@ def _arc(arc: re.Match[str], run: _Run, where: str) -> None:
 
 
 def _weave(weave: re.Match[str], run: _Run, where: str) -> None:
-    """The torch begins to weave, or ends."""
+    """Start or end weaving."""
     if bool(weave[1]) == bool(run.weaves):
         raise unreadable(where, "weaving is already on, or not on yet")
     run.weaves = where if weave[1] else ""
@@ -348,7 +350,7 @@ def _remark(text: str, run: _Run, where: str) -> None:
 
 
 def _numbers(move: re.Match[str]) -> tuple[str | None, str | None]:
-    """The positions of track and station that a move names."""
+    """The numbers of the track and station positions in a move."""
     return move[2] or None, move[3] or None
 
 
