@@ -50,7 +50,8 @@ _UNITS = (
 
 @dataclass(frozen=True, eq=False)
 class WorkOffset:
-    """pose: (4, 4) of the part's coordinates in the maker's base frame. residual: (n,) mm, how far each point is from where
+    """pose: (4, 4) of the part's coordinates in the manufacturer's base frame. residual: (n,) mm,
+    how far each point is from where
     it was touched."""
 
     pose: Array

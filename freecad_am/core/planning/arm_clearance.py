@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The links of a robot in its cell, and against each other, as `cell.arm_clearance` keeps them clear while planning."""
+"""Keeps the links of a robot clear of the cell and of each other during planning, by
+`cell.arm_clearance`.
+"""
 
 from __future__ import annotations
 
@@ -26,12 +28,14 @@ CODE = "ARM_CLEARANCE"
 STEP, SLIDE = (
     float(np.radians(2.0)),
     10.0,
-)  # of the joint that moves most on rapids, rad and mm, between two looks
+)  # largest joint step on rapids between two checks, rad and mm
 
 
 @dataclass(frozen=True)
 class ArmKept:
-    """Links in their cell, and how many points of the deposit are there when a bead begins, by layer and index."""
+    """The link clearance check, with the number of printed points when a bead begins, by layer and
+    index.
+    """
 
     contact: ArmContact
     before: Mapping[Place, int]
@@ -80,7 +84,9 @@ class ArmKept:
         return met.any.reshape(joints.shape[:2])
 
     def moment(self, bead_id: Place) -> int:
-        """How many points are there before a bead; before its layer, of one that was divided since."""
+        """Number of points printed before a bead; for a bead that was divided later, before its
+        layer.
+        """
         return self.before.get(bead_id, self.before[bead_id[0], 0])
 
 

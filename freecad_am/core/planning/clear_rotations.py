@@ -37,7 +37,9 @@ from .rotation.refine_state import state_of
 from .task import MIN_MARGIN, UNREACHABLE, Task, condition_margin
 
 MAX_LINEARIZATIONS = 10
-GAP_RANGE_MM = 50.0  # mm; pairs with more than this extra clearance are no constraint
+GAP_RANGE_MM = (
+    50.0  # mm; link pairs with more extra clearance than this do not constrain the search
+)
 EXTRA_GAP_MM = 0.01  # mm of extra clearance, so that the result is clear
 REACH = 0.3  # rad; largest change of a polynomial between two checks
 UNCHANGED = 1e-4  # rad, and share of the objective; smaller changes do not count
@@ -152,14 +154,17 @@ def _looked(
 FIRST_LOOK, TURNS = (
     4,
     72,
-)  # candidates of a bead checked before a map is made, and the rotations of the map
-# points of a bead that are checked first: a bead fails if one of them has no clear rotation
+)  # number of candidates checked before a map is computed, and number of rotations in the map
+# number of points checked first: a bead fails if one of them has no clear rotation
 ENDS = 3
 POINTS_PER_BEAD = 24  # and turn, at which the links are checked
-SHARES = (0.75, 0.5, 0.25, 0.0)  # of the step from the start of the local search to its result
-TOUCHING = (
-    -1e-3
-)  # margin of the candidate that is planned where none is clear, so that the obstacle can be named
+SHARES = (
+    0.75,
+    0.5,
+    0.25,
+    0.0,
+)  # shares of the step from the start of the local search to its result
+TOUCHING = -1e-3  # margin of the candidate that is planned if none is clear, so that a message can name the obstacle
 
 
 def exclude_touching(
@@ -337,7 +342,9 @@ def brought_clear(
 
 @dataclass(frozen=True)
 class _Serving:
-    """Which beads keep limits, condition and links clear with coefficients (B, degree + 1): (B,)."""
+    """Returns which beads (B,) keep limits, condition and link clearance with coefficients (B,
+    degree + 1).
+    """
 
     task: Task
     kept: ArmKept
@@ -362,7 +369,7 @@ def _stepped_back(
     """Return coefficients (B, degree + 1) that serve, as close as possible to `reached`, and the
     mask (B,) of them.
 
-    Beads without serving coefficients keep those reached. joined: (B,) beads that have to join up.
+    Beads without such coefficients keep `reached`. joined: (B,) beads whose ends must join.
     """
     result, changed = reached.copy(), np.zeros(len(start), dtype=bool)
     for share in SHARES:
@@ -370,7 +377,9 @@ def _stepped_back(
             break
         mixed = start + share * (reached - start)
         good = ~changed & serves(mixed)
-        if share > 0.0:  # between two numbers of whole turns a bead that has to join up does not
+        if (
+            share > 0.0
+        ):  # a bead whose ends must join does not join between two numbers of whole turns
             good &= ~joined | (np.abs(reached - start)[:, 1:].max(axis=1, initial=0.0) < 1e-9)
         result[good], changed[good] = mixed[good], True
     return result, changed
@@ -414,7 +423,7 @@ def _find_touching(
 
 
 def _fits(task: Task, points: Points, threshold: Array, coefficients: Array) -> Mask:
-    """(B,) whether limits and condition hold."""
+    """Return whether each bead keeps limits and condition, (B,)."""
     phi = task.rotation(points, points.polynomial(coefficients))[0]
     joints = task.joints(points, phi)
     margin = np.minimum(

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The criteria of a joint path (Chalvin 2020, eqs. 1 to 6 as corrected in ERRATA, and eq. 17).
 
-Every criterion is to be minimised and comes per bead with its derivative along d q / d phi of each point. The sums
-over points are means, so that a bead with more points is not judged worse; eq. 17 stays a sum.
+Every criterion is minimised and given per bead, with its derivative along d q / d phi at each
+point. Sums over points are means, so that more points do not make a bead worse; eq. 17 stays a sum.
 """
 
 from __future__ import annotations
@@ -453,7 +453,7 @@ def _figures(
 
 
 def criteria_values(task: Task, paths: Sequence[BeadPath]) -> dict[str, float | None]:
-    """Every criterion an objective can be (criteria.py) for the whole path, whichever it was planned by.
+    """Return all criteria (criteria.py) of the whole path, whatever its objective was.
 
     Sums over steps for the displacement, the largest value for limits-klein, means over points for the others; None
     where a point is unreachable.
@@ -497,7 +497,7 @@ def _rates(path: BeadPath) -> tuple[Array, Array, Array]:
 
 
 def _in_axis_units(values: Array | None, units: Array) -> list[float | None] | None:
-    """Values of the axes in the unit each is shown in."""
+    """Values of the axes in their displayed units."""
     if values is None:
         return None
     return [float(value) if np.isfinite(value) else None for value in values / units]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Looks a planned bead over, point by point, and names what forbids it: layer, point and axis."""
+"""Checks a planned bead point by point, and reports problems with layer, point and axis."""
 
 from __future__ import annotations
 

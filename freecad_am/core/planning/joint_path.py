@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The joint path: what the planning found for every bead."""
+"""The joint path: the result of planning for every bead."""
 
 from __future__ import annotations
 
@@ -63,14 +63,14 @@ class JointPath:
 
     method: str
     objective: str
-    branch: tuple[str, ...]  # none of a machine with rotary axes
+    branch: tuple[str, ...]  # None for a five-axis machine
     limits: str
     beads: tuple[BeadPath, ...]
     issues: tuple[Issue, ...]
     comparison: tuple[dict[str, object], ...] = ()
-    optimality: dict[str, object] | None = None  # with a certificate: objective, bound and gap
+    optimality: dict[str, object] | None = None  # with joints.certificate: objective, bound and gap
     of_level: dict[str, object] | None = (
-        None  # with external axes optimised: the figures of the rule they began with
+        None  # with optimised external axes: figures of the `level` plan
     )
 
     @property
@@ -111,7 +111,7 @@ class JointPath:
         return condition, threshold
 
     def toolpath(self, planned: Toolpath) -> Toolpath:
-        """The toolpath with its beads as they will be run: seams moved, courses split."""
+        """The toolpath with its beads as executed: with moved seams and split beads."""
         layers = []
         for index, layer in enumerate(planned.layers):
             beads = tuple(path.bead for path in self.beads if path.layer == index)

@@ -29,7 +29,7 @@ _BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 
 
 def asked(parameters: ProgramParameters, controller: Controller) -> bool:
-    """Whether the last moves onto beads are linear ones."""
+    """Whether the last moves onto beads are linear."""
     arc = parameters.schedule.by == ARC and controller.arc_moves
     ahead = parameters.trigger.lead is not None and controller.linear_triggers
     return parameters.motion == "cartesian" and (arc or ahead)
@@ -42,7 +42,7 @@ def shorten_approaches(motion: Motion, cell: Cell) -> Motion:
     ends = _ends(motion)
     ends = ends[ends > 0]
     off, tilt = linear_deviations(motion, cell, ends)
-    with np.errstate(divide="ignore"):  # how far it leaves grows with the square of the way
+    with np.errstate(divide="ignore"):  # the deviation grows with the square of the length
         share = np.sqrt(SHARE / np.maximum(off / OFF_WAY_MM, tilt / OFF_WAY_RAD))
     cut = (off > SHARE * OFF_WAY_MM) | (tilt > SHARE * OFF_WAY_RAD)
     ends, share = ends[cut], share[cut]

@@ -24,7 +24,7 @@ from .joint_path import BeadPath, JointPath
 from .rapids.moves_between_beads import RapidWays, Way, findings
 from .rapids.retracts import Leg
 
-RAPID_SHARE = 0.8  # of an axis's largest speed that a rapid move may ask for
+RAPID_SHARE = 0.8  # share of the maximum axis speed that a rapid may use
 OF_ALL = ("layer", "bead", "bead_class")  # columns that are constant for all rows of a part
 
 

@@ -22,7 +22,7 @@ ON_BEADS = "CLEARANCE"
 # maximum steps between two checks: of the joint that moves most, rad and mm, and of the nozzle's
 # ends in the world, mm
 STEP, SLIDE, WAY = float(np.radians(2.0)), 5.0, 1.0
-PIECE = 4096  # moves, or looks, that are done together
+PIECE = 4096  # number of moves or checks in one batch
 
 
 def in_the_way(cell: Cell) -> tuple[str, ...]:
@@ -127,7 +127,7 @@ def _find_batch_contacts(cell: Cell, start: Array, end: Array) -> Mask:
 
 
 def _in_world(cell: Cell, joints: Array) -> tuple[Array, Array]:
-    """Tip and axis (n, 3) of a nozzle that the flange carries, in the maker's base frame."""
+    """Tip and axis (n, 3) of a nozzle that the flange carries, in the manufacturer's base frame."""
     to_world = frames.inverse(cell.world(joints)) @ (
         cell.poses.station @ frames.inverse(cell.poses.mount)
     )
@@ -135,6 +135,6 @@ def _in_world(cell: Cell, joints: Array) -> tuple[Array, Array]:
 
 
 def _transform(pose: Array, tip: Array, axis: Array) -> tuple[Array, Array]:
-    """Points and directions (n, 3) seen through poses (n, 4, 4)."""
+    """Points and directions (n, 3) transformed by poses (n, 4, 4)."""
     turn = pose[:, :3, :3]
     return np.einsum("nij,nj->ni", turn, tip) + pose[:, :3, 3], np.einsum("nij,nj->ni", turn, axis)

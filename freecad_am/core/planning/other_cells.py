@@ -42,7 +42,9 @@ Look = Callable[[JointPath, cells.Cell, Toolpath], Sequence[Issue]]
 
 
 class Fixed(NamedTuple):
-    """A toolpath with fixed build directions where they were not: the keys that say so, and what makes it."""
+    """A toolpath with fixed build directions as a change: its job keys, and the function that makes
+    it.
+    """
 
     remedy: str
     make: Callable[[], Toolpath]
@@ -54,8 +56,8 @@ class Tried:
 
     fixed: the toolpath with the part's axis as build direction; None if it has that direction
     already or cannot. own_speed: for several features, whether each has a travel speed of its own.
-    shapes: of its cell, as loaded. look: finds the collisions of arm and platform; None to skip
-    this check.
+    shapes: of its cell, as loaded. look: finds collisions of arm and platform; None to skip this
+    check.
     """
 
     toolpath: Callable[[], Toolpath]
@@ -119,13 +121,13 @@ def some_of(toolpath: Toolpath, failed: Sequence[int]) -> Toolpath:
 
 COLLISIONS = frozenset({"ARM_COLLISION", "PLATFORM_COLLISION", "ARM_CLEARANCE"})
 CLEARANCE = 5.0  # mm, of the arm
-BELOW = 0.5  # mm; what reaches farther below the plane of the platform is in it
+BELOW = 0.5  # mm; bodies that extend farther below the platform plane collide with it
 SHIFTS = (
     (0.0, -150.0),
     (0.0, 150.0),
     (-150.0, 0.0),
     (150.0, 0.0),
-)  # of the deposition point, ahead of the robot and up, mm
+)  # shifts of the deposition point, ahead of the robot and up, mm
 
 
 def change_cell(job: Tried, remedy: str, **values: object) -> Tried:
@@ -188,7 +190,7 @@ def held_by_clamp(job: Tried) -> Tried | None:
 
 
 def branches(job: Tried) -> Iterator[Tried]:
-    """The other branches that promise most."""
+    """The most promising other branches."""
     if job.settings.branch == "auto" or job.joints.own_branch != OF_CELL:
         return
     toolpath = job.toolpath()
@@ -208,7 +210,7 @@ def branches(job: Tried) -> Iterator[Tried]:
 def points(job: Tried) -> Iterator[Tried]:
     """Yield other positions of the deposition point or the fixed platform.
 
-    The first is the one where the machine has most room; positions near the present one follow.
+    The first one leaves the machine most room; positions near the present one follow.
     """
     if job.settings.external:  # the platform is on the positioner
         return
@@ -235,7 +237,7 @@ def points(job: Tried) -> Iterator[Tried]:
 
 
 def external_axes(job: Tried, codes: set[str]) -> Iterator[Tried]:
-    """A positioner elsewhere, or external axes for a robot that has none."""
+    """Yield a positioner at other positions, or external axes for a robot without any."""
     for remedy, settings in external_remedies.move_positioner(job.settings, job.folders):
         yield dataclasses.replace(job, settings=settings, remedy=remedy)
     toolpath = job.toolpath()
@@ -263,7 +265,7 @@ def _adjacent(point: Pose) -> list[Pose]:
 
 
 def _before(job: Tried) -> list[Pose]:
-    """Places of a platform before a robot that carries the tool, level."""
+    """Level positions of a platform in front of a robot that carries the tool."""
     cell = cells.resolve(job.settings, np.eye(4), folders=job.folders)
     arm = cell.machine.arm
     if arm is None:

@@ -41,8 +41,8 @@ METHODS = {
 }
 ALL_METHODS = METHODS | {
     closed_form.METHOD: closed_form.plan
-}  # and the method for machines without a choice
-# what there is to choose where a robot is free to turn about the tool
+}  # method of machines without a free coordinate
+# settings that apply only to robots with a free tool rotation
 OF_ROBOTS = (
     "method",
     "rz",
@@ -143,14 +143,16 @@ def plan_joints(
                 planned = joint_path
             if planned.feasible:
                 return dataclasses.replace(planned, issues=(*planned.issues, *not_used))
-    assert planned is not None  # there is one way at least
+    assert planned is not None  # there is at least one way
     return dataclasses.replace(
         planned, issues=(*out_of_reach(cell, planned.beads), *planned.issues, *not_used)
     )
 
 
 def _choices(task: Task) -> tuple[str, str, tuple[str, ...]]:
-    """Method, objective and branch of a joint path; where nothing is free there is one method, and nothing to optimise."""
+    """Method, objective and branch of a joint path; without a free coordinate there is one method
+    and no objective.
+    """
     if not task.cell.machine.free:
         return closed_form.METHOD, "none", ()
     return (
@@ -181,7 +183,7 @@ def _in_branches(
     branches: Sequence[int],
     progress: Progress,
 ) -> JointPath:
-    """The joint path, external axes as the beads have them, in the first of the branches that serves."""
+    """The joint path in the first feasible branch, with the external axes of the beads."""
     (beads, bead_ids), cell, parameters = placed, base_task.cell, base_task.parameters
     together, notes = optimised.asked(parameters, cell)
     task = dataclasses.replace(base_task, branch=branches[0])
@@ -350,7 +352,7 @@ def _ranked(
         objective = candidates.objective[best, bead_rows]
         feasible = margin >= 0.0
         worth = float(objective[feasible].sum()) if feasible.any() else np.inf
-        # rounded, so that every machine puts the same one of two mirrored branches first
+        # rounded, so that every computer ranks two mirrored branches alike
         ranks.append(
             (
                 -int(feasible.sum()),
@@ -384,7 +386,7 @@ def _optimise_external(
     level: tuple[list[BeadPath], list[Issue]],
     progress: Progress,
 ) -> tuple[tuple[list[BeadPath], list[Issue]], dict[str, object]]:
-    """The same with the external axes optimised, and the figures of `level`."""
+    """The joint path with optimised external axes, and the figures of `level`."""
     planned, issues = METHODS[task.parameters.method](task, beads, bead_ids, _silent)
     first_issues = given.not_used(task.parameters, bead_ids) + issues
 
@@ -425,11 +427,11 @@ def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], li
 
 
 def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[Issue]]]:
-    """The paths longer where their beads go back or run on, with the points that straight motion asks for."""
+    """The paths with retreats and overlaps added, and the points that straight motion needs."""
     if (
         not task.cell.machine.free
-        # these beads are checked with overlap and retreat: the axes have room for the whole run or for
-        # none
+        # these beads are checked with overlap and retreat: the axes have room for the
+        # whole run or not at all
     ):
         return [(path, []) for path in paths]
     longer = [

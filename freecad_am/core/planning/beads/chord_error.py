@@ -18,8 +18,9 @@ from ..task import Task
 INNER_SHARES = np.array([0.25, 0.5, 0.75])
 FINE_SHARES = (
     np.array([1.0, 2.0, 4.0, 5.0]) / 6.0
-)  # of segments that use up more than half of the chord error
-# what the polynomials through both ends, where the tip is on the bead, and INNER_SHARES are there: (4, 3)
+)  # sampling of segments that use more than half of the chord error
+# values there of the polynomials through both ends, where the tip is on the bead, and
+# INNER_SHARES: (4, 3)
 INTERPOLATION = np.array(
     [
         [
@@ -33,7 +34,7 @@ INTERPOLATION = np.array(
 )
 ROUNDS = 8
 POINTS_PER_BATCH = 4096  # approximate number of points of beads that are checked together
-# margin for rounding, mm: beads of revolution use up their whole chord error
+# margin for rounding, mm: beads of revolution use their whole chord error
 ROUNDING = 1e-6
 
 
@@ -198,7 +199,7 @@ def leaning(cell: Cell, bead: Bead, joints: Array) -> Array:
 
 
 def _looked_at(task: Task, points: Array, joints: Array, segments: Index, shares: Array) -> Array:
-    """The same at shares (s,) of their length: (s, k) mm."""
+    """Return the deviations (s, k), mm, at shares (s,) of their length."""
     start, joint_step = joints[segments], joints[segments + 1] - joints[segments]
     offset = (
         task.cell.tip_at(start[:, None] + joint_step[:, None] * shares[:, None])

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Phases at the ends of beads: points where they begin and end, and the speed of the torch there.
 
-They are put in once seams, overlaps and joints are known, on the way that is driven: joints run straight between points.
+They are inserted once seams, overlaps and joints are known, on the actual path, where joints run
+straight between points.
 """
 
 from __future__ import annotations
@@ -22,8 +23,8 @@ from ...types import Array, Index
 from ..joint_path import BeadPath
 
 STEPS = 4  # iterations; each leaves a small share of the previous error
-END_MM = 1e-3  # mm; a point so near to where a phase ends is where it ends
-STEP_MM = 0.2 * MIN_STEP  # a point so near to where a step of a ramp ends is where it ends
+END_MM = 1e-3  # mm; a point this close to the end of a phase counts as its end
+STEP_MM = 0.2 * MIN_STEP  # a point this close to the end of a ramp step counts as its end
 CODE = "PHASE_LENGTH"
 _UNIT = ("build", "tool", "tangents")
 Condition = Callable[[Array, Array], Array]

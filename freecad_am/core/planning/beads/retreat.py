@@ -18,7 +18,7 @@ from ..external import stroke
 from ..joint_path import BeadPath
 from ..task import Task
 
-BACK = -0.999  # cosine between the way to a point and the way on from it
+BACK = -0.999  # cosine between the directions to a point and from it
 
 
 class _Way(NamedTuple):
@@ -30,7 +30,7 @@ class _Way(NamedTuple):
     share: float
 
     def of(self, column: Array) -> Array:
-        """(past, ...) a column (n, ...) of the bead on the way back, without its end."""
+        """Return a column (n, ...) of the bead along the way back, (past, ...), without its end."""
         back = column[::-1]
         end_value = back[self.past - 1] + self.share * (back[self.past] - back[self.past - 1])
         return np.concatenate([back[1 : self.past], [end_value]])
@@ -58,7 +58,7 @@ def gone_back(bead: Bead, length: float) -> Bead:
     def both(column: Array | None) -> Array | None:
         return None if column is None else extended(retreat.of)(column)
 
-    # compute the tangents before: at the reversal, the point row looks straight next to its end
+    # compute the tangents first: near the reversal the extended points look straight
     tangents = _tangents(bead)
     back = -tangents[::-1, ::-1]
     turning = np.stack([tangents[-1, 0], back[0, 1]])[None]
@@ -69,7 +69,7 @@ def gone_back(bead: Bead, length: float) -> Bead:
         tangents=np.concatenate([tangents[:-1], turning, back[1 : retreat.past], ends]),
         build=extended(directions)(bead.build),
         tool=extended(directions)(bead.tool),
-        # the parameter keeps rising: it gives the position along the bead
+        # the parameter keeps increasing, because it is the position along the bead
         parameter=extended(lambda column: 2.0 * column[-1] - retreat.of(column))(bead.parameter),
         speed=np.concatenate([bead.speed, bead.speed[::-1][: retreat.past]]),
         width=both(bead.width),
@@ -139,7 +139,7 @@ def _way(bead: Bead, length: float) -> _Way:
     return _Way(count + 1, (length - length_before) / (float(along[count]) - length_before))
 
 
-# ---- Runs closed beads on past their seam, over their own beginning
+# ---- Extends closed beads past their seam, over their beginning
 
 
 def extend_past_seam(task: Task, path: BeadPath, overlap: float) -> BeadPath:

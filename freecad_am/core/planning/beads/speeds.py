@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Travel speeds that axes cannot follow: where the deposit is slowed, and where that is for the user to decide."""
+"""Travel speeds that axes cannot follow: slows short places down and leaves the rest to the user."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ..joint_path import BeadPath
 
 SLOWED = "SLOWED"
 JUST = 1.0 - 1e-9  # share of the maximum speed of an axis
-PILE = 1.0  # of the bead's width: allowed excess of deposit where the bead is slowed
+PILE = 1.0  # allowed excess of deposit where the bead is slowed, as a share of the bead width
 DEFAULT_WIDTH_RATIO = 2.0  # a bead's width in layer heights without a model
 
 
@@ -206,7 +206,7 @@ def _approached(middle: Array, speed: Array, share: Array, law: SpeedLaw | None)
 
 
 def _runs(mask: Mask) -> list[list[int]]:
-    """First and one past the last of each run of true values."""
+    """Start and stop of each run of true values."""
     ends: list[list[int]] = (
         np.flatnonzero(np.diff(np.r_[False, mask, False].astype(int))).reshape(-1, 2).tolist()
     )
@@ -267,7 +267,7 @@ def _axis_speeds(path: BeadPath) -> Array:
 
 
 def share_of_speed(cell: Cell, paths: Sequence[BeadPath]) -> float:
-    """The share of their speeds at which the axes can follow all paths, at most 1."""
+    """The share of the travel speeds at which the axes can follow all paths, at most 1."""
     return float(
         min(
             (
@@ -282,7 +282,7 @@ def share_of_speed(cell: Cell, paths: Sequence[BeadPath]) -> float:
 
 
 def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
-    """An issue for every bead on which an axis would have to turn faster than it can."""
+    """Report each bead on which an axis would exceed its maximum speed."""
     issues = []
     for path in paths:
         speed = _axis_speeds(path)

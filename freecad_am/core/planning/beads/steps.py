@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points of beads that follow sooner than a controller steps: removed where the bead hardly needs
-them.
+"""Removes points of beads that follow each other faster than a controller steps.
 
 Where walls are thin, small, or printed fast, corners and ends have points some hundredths of a
 millimetre apart. Removed points are within a share of the chord error of the remaining path;
-where they would not be, the move gets the time of a step.
+otherwise they stay, and the move gets the time of a step.
 """
 
 from __future__ import annotations
@@ -269,7 +268,7 @@ def _remove_returns(motion: Motion, keep: Mask, min_distance: float, off: float)
     while True:
         rows = np.flatnonzero(keep)
         step_lengths = np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)
-        # to the start of a bead there is a rapid, which has no blend of its own
+        # a rapid leads to the start of a bead, and it has no blend
         close_rows = 1 + np.flatnonzero(
             (step_lengths < MIN_STEP_SHARE * min_distance) & inside[rows[1:]]
         )
@@ -319,7 +318,7 @@ def _add_needed(motion: Motion, keep: Mask, off: float) -> Mask:
         exceeds = deviation > off
         if not exceeds.any():
             return keep
-        # the farthest of each gap, which often is enough for its neighbours
+        # the farthest point of each gap often suffices for its neighbours
         order = np.lexsort((deviation[exceeds], start[exceeds]))
         farthest_rows = np.flatnonzero(np.diff(start[exceeds][order], append=-1))
         keep[gone[exceeds][order[farthest_rows]]] = True

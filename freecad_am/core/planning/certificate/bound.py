@@ -32,21 +32,21 @@ from ..task import MIN_MARGIN, Task, condition_margin
 from . import least_ahead
 from .lattice import CELLS, Lattice, divided, lattice, possible, whole_turn
 
-# ---- The best course of the rotation near a known one, each point free: Newton's steps along the
-# chain of eq. 17
+# ---- Finds the best rotations near known ones, each point free, by Newton steps along the chain
+# of eq. 17
 
 STEPS = 30
 STARTS, VALUE_TOLERANCE = (
     24,
     1e-6,
-)  # courses about a turn, and the share by which one has to be better than those before it
+)  # number of starts over a turn, and the share by which a course must beat the earlier ones
 DIFFERENCE_STEP_RAD = 1e-5  # rad; step of the finite difference for slopes
 MAX_ACTIVE_SETS, HOLD_STIFFNESS = (
     6,
     1e9,
-)  # rounds that fix more points, and their stiffness in multiples of the largest curvature
-MIN_STEP_SHARE = 0.02  # of a Newton step that is still tried
-MIN_DECREASE = 1e-7  # share of the value by which a step has to lower it
+)  # rounds that fix further points, and their stiffness in multiples of the largest curvature
+MIN_STEP_SHARE = 0.02  # smallest share of a Newton step that is tried
+MIN_DECREASE = 1e-7  # share by which a step must lower the value
 
 
 Joints = Callable[[Array], Array]
@@ -206,7 +206,7 @@ def _newton(moved: Array, slope: Array, scale: Array, joined: bool, is_fixed: Ma
     bands[1, is_fixed] = HOLD_STIFFNESS * bands[1].max()
     rate[is_fixed] = 0.0
     sides = rate[:, None]
-    if joined:  # what holds both ends together is a multiplier
+    if joined:  # a multiplier holds both ends together
         together = np.zeros(len(slope))
         together[0], together[-1] = 1.0, -1.0
         sides = np.stack([rate, together], axis=1)
@@ -265,7 +265,7 @@ def _steps(joints: Array) -> Array:
 # rotations at each point
 
 LEVELS = 4
-POINT_TOLERANCE = 1e-3  # share of a point's value at which its bound is near enough
+POINT_TOLERANCE = 1e-3  # share of a point's value at which its bound is close enough
 
 
 def point_bound(task: Task, points: Points, threshold: Array) -> float:
@@ -321,7 +321,7 @@ def point_bound(task: Task, points: Points, threshold: Array) -> float:
 
 
 def _values(task: Task, points: Points, index: Index, phi: Array) -> Array:
-    """(n,) what the objective says of rotations phi (n,) at chosen points; NaN out of reach."""
+    """Return the objective (n,) of rotations phi (n,) at chosen points; NaN out of reach."""
     name, selected = task.parameters.objective, points.select_points(index)
     joints = task.raw_joints(selected, phi)
     if name not in ("manipulability", "condition"):
@@ -338,14 +338,14 @@ def _values(task: Task, points: Points, index: Index, phi: Array) -> Array:
     return worth
 
 
-BOUND_TOLERANCE = 0.005  # share of the objective at which a bound is near enough
+BOUND_TOLERANCE = 0.005  # share of the objective at which a bound is close enough
 ROTATIONS = (
     180,
     360,
     720,
     1440,
-)  # of a turn at every point, the finer where the coarser are not near enough
-BETWEEN_BEADS = 180  # rotations of a turn for the bound of a whole job
+)  # rotations per turn at every point; finer ones are used if the bound is not close enough
+BETWEEN_BEADS = 180  # rotations per turn for the bound of a whole job
 PIECE = 100_000  # rotations at points that are held together
 MIN_GROUPS = 4  # groups of steps of a bead
 GROUPED = 0.002  # of the objective: maximum loss by grouping steps
@@ -500,8 +500,7 @@ def whole_job(
     value, following = np.zeros(BETWEEN_BEADS), None
     for number in range(len(paths) - 1, -1, -1):
         report(1.0 - (number + 1) / len(paths))
-        # above this cost a step is not checked individually: it exceeds the cost of reaching any
-        # better course
+        # steps above this cost are not checked individually: they cost more than any better course
         max_cost = max([costs[number], *step_costs[max(0, number - 1) : number + 1]])
         value, first_lattice = _through(
             task, bead_points[number], paths[number], BETWEEN_BEADS, max_cost, value, following
@@ -523,7 +522,7 @@ def _displacement_bound(task: Task, points: Points, path: BeadPath, objective: f
     for number, count in enumerate(ROTATIONS):
         value, first_lattice = _through(task, points, path, count, objective, np.zeros(count), None)
         previous, best = best, max(best, min(objective, least_ahead.least_of(value, first_lattice)))
-        # half as far between rotations is an error of a sixteenth
+        # halving the distance between rotations divides the error by sixteen
         if best >= target or (
             previous > 0.0 and best - previous < 8.0 * BOUND_TOLERANCE * objective
         ):
@@ -569,7 +568,7 @@ def _through(
     """
     groups = _grouped(steps(path.joints, points), task.weights)
     chunk_size = max(2, PIECE // count)
-    next_lattice, step_count = following, 1.0  # the step to the point after
+    next_lattice, step_count = following, 1.0  # the step to the next point
     for end in range(len(groups), 0, -chunk_size):
         rows = groups[max(0, end - chunk_size) : end]
         chunk = lattice(task, points, rows, path.threshold[rows], count)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points of a bead, each with N rotations about the tool axis over a turn: the joints there."""
+"""The joints at points of a bead, for N rotations of a turn about the tool axis at each point."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ def possible(
         False where no rotation of the cell can serve.
     """
     count = len(phi)
-    begins = ~_goes_on(index, phi, half)  # the previous cell ends elsewhere than this one begins
+    begins = ~_goes_on(index, phi, half)  # the previous cell does not end where this one begins
     sampled = np.concatenate([phi[begins] - half[begins], phi, phi + half])
     sampled_points = points.select_points(np.concatenate([index[begins], index, index]))
     joints, begin_count = task.raw_joints(sampled_points, sampled), int(begins.sum())
@@ -93,7 +93,8 @@ def possible(
         np.where(lost_behind[:, None], ahead, behind),
     )
     turned, bend = 0.5 * np.abs(ahead + behind), np.abs(ahead - behind)
-    # of a parabola the line through its ends, a quarter of the second difference away, is off by as much: twice that here
+    # a line through the ends of a parabola is off by up to a quarter of its second
+    # difference: allow twice that
     off = 0.5 * bend + (half**2)[:, None] * turned.max(axis=1, keepdims=True)
     off = np.where((lost_ahead ^ lost_behind)[:, None], 0.5 * np.abs(ahead), off)
     feasible &= _within_limits(task, middle, turned + off + bend)
@@ -109,7 +110,9 @@ def possible(
 
 
 def _goes_on(index: Index, phi: Array, half: Array) -> Mask:
-    """(n,) whether a cell phi +- half at a point begins where the one before it ends, at the same point."""
+    """Return whether each cell (n,) phi +- half begins where the previous cell ends, at the same
+    point.
+    """
     continues = np.zeros(len(phi), dtype=bool)
     gap = np.abs(phi[1:] - phi[:-1] - half[1:] - half[:-1])
     continues[1:] = (index[1:] == index[:-1]) & (gap < 1e-6 * half[1:])
@@ -117,7 +120,9 @@ def _goes_on(index: Index, phi: Array, half: Array) -> Mask:
 
 
 def _within_limits(task: Task, joints: Array, reach: Array) -> Mask:
-    """Whether joints (n, axes), moved by up to `reach` and by whole turns, can be within the limits of each axis."""
+    """Return whether joints (n, axes) can be within the limits of each axis when moved by up to
+    `reach` and by whole turns.
+    """
     limits = task.cell.limits
     beyond = np.abs(_short(joints - task.middle)) - np.where(
         task.continuous, np.inf, 0.5 * (limits.upper - limits.lower)
@@ -152,10 +157,10 @@ NO_FIVE = 9
 RATE_SAMPLES, HARMONICS = (
     180,
     36,
-)  # rotations at which the rate of joints is seen, and how finely it is followed
+)  # number of rotations at which joint rates are sampled, and the subdivisions of each
 SMOOTH = 0.06  # rad
 KNOWN = 1000  # samples at which the rotations of the lattice are interpolated
-EVENLY = 0.25  # share of rotations that are not where joints move much
+EVENLY = 0.25  # share of rotations spread evenly, not by joint motion
 LARGEST_SHARE = 12.0  # times the mean
 COARSE = 60  # cells of a turn in the first pass; cells next to an impossible one are divided
 
@@ -211,8 +216,9 @@ class Lattice:
 
     @cached_property
     def shift(self) -> Index:
-        """(m, N) by how many rotations the middle of five in a row, about whole cells, is off that rotation; NO_FIVE where
-        there are no five."""
+        """Offset (m, N), in rotations, of the middle of five consecutive rotations with whole
+        cells; NO_FIVE if there are no five.
+        """
         right_count, left_count = (np.zeros(self.possible.shape, dtype=np.int64) for _ in range(2))
         to_right, to_left = np.ones_like(self.possible), np.ones_like(self.possible)
         for by in range(4):
@@ -315,8 +321,9 @@ def lattice(task: Task, points: Points, rows: Index, threshold: Array, count: in
 
 
 def _rotations(task: Task, points: Points, rows: Index, count: int) -> Array:
-    """(count + 1,) rotations of a turn, the last a turn after the first, the nearer to each other the more joints move there
-    at one of the points."""
+    """Return rotations (count + 1,) over a turn, closer together where joints move more at one of
+    the points; the last is a turn after the first.
+    """
     phi = -np.pi + TURN / RATE_SAMPLES * np.arange(RATE_SAMPLES)
     joints = task.raw_joints(
         points.select_points(np.repeat(rows, len(phi))), np.tile(phi, len(rows))
@@ -327,8 +334,8 @@ def _rotations(task: Task, points: Points, rows: Index, count: int) -> Array:
         return np.linspace(-np.pi, np.pi, count + 1)
     rate = np.minimum(rate / rate.mean(), LARGEST_SHARE)
     order = np.arange(1, HARMONICS + 1)
-    # use the harmonics of a smooth density: its integral is exact, and no joint path gets a sharper
-    # bend
+    # use the harmonics of a smooth density: its integral is exact, and joint paths do not get
+    # sharper bends
     smooth = np.exp(-0.5 * (np.arange(HARMONICS + 1) * SMOOTH) ** 2)
     waves = np.fft.rfft(EVENLY + (1.0 - EVENLY) * rate)[: HARMONICS + 1] * smooth
     factor = (

@@ -17,12 +17,13 @@ from ...geometry.frames import TURN
 from ...types import Array, Index, Mask
 from .lattice import COARSE, NO_FIVE, Lattice
 
-# of a fourth difference, which makes a 96th of itself within a step of the middle of five, a 24th further out: twice that
+# share of a fourth difference: its error is 1/96 within a step of the middle of five, 1/24
+# further out; allow twice that
 INNER_ERROR, OUTER_ERROR = 2.0 / 96.0, 2.0 / 24.0
-MOST_STEPS = 9.0  # steps of the lattice, more than there are about one
-NEWTON = 3  # steps to the least of polynomials, and as often again about the rotation that is the nearest then
+MOST_STEPS = 9.0  # offset larger than any within the five rotations
+NEWTON = 3  # Newton steps to the minimum of a polynomial, repeated about the rotation that is then nearest
 MIN_SEPARATION = 3  # rotations between two minima that are both refined
-FAR_ABOVE = 2.0  # times the best known sum
+FAR_ABOVE = 2.0  # multiple of the best known sum
 # the powers of 1, x, .. x^4 (rows) in the polynomial that is 1 at one of -2 .. 2 (columns) and 0 at the others
 POWERS = np.linalg.inv(np.vander(np.arange(-2.0, 3.0), 5, increasing=True))
 FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
@@ -191,13 +192,13 @@ def _neighbours(lattice: Lattice, i: int, next_lattice: Lattice, j: int, max_cos
     widest = int(gaps.argmax())
     first_cell, last_cell = met[(widest + 1) % len(met)] - 1, met[widest] + 1
     last_cell += COARSE if last_cell < first_cell else 0
-    if gaps[widest] <= 3:  # one more at both ends leaves none out
+    if gaps[widest] <= 3:  # one more at both ends, so that none is omitted
         return np.arange(-1, lattice.count + 1)
     return np.arange(first_cell * cell - 1, last_cell * cell + 2)
 
 
 def _any(possible: Mask, cell: int) -> Mask:
-    """(COARSE,) whether one of the cells on both sides of each coarse rotation is possible."""
+    """Return whether a cell on either side of each coarse rotation (COARSE,) is possible."""
     cells = possible.reshape(COARSE, cell).any(axis=1)
     return np.asarray(cells | np.roll(cells, 1))
 
@@ -256,7 +257,7 @@ def _at_best(
     model = _near((column + nearest) % len(value), start[row], next_lattice, j, value)
     finer, step, doubt = model.least(
         step - nearest, weights
-    )  # about the rotation that is the nearest then
+    )  # about the rotation that is then nearest
     torn = np.flatnonzero(doubt > TORN * np.abs(finer))
     if len(torn):
         finer[torn] = np.maximum(finer[torn], model.of(torn).least_by_lines(weights))

@@ -27,8 +27,10 @@ from .. import criteria
 from ..points import Points
 from ..task import Task
 
-IRRELEVANT_MARGIN = 0.75  # a condition margin larger than any request: its derivatives are omitted
-MAX_SPEED_SHARE = 0.9  # of its largest speed, what an external axis may be asked for
+IRRELEVANT_MARGIN = (
+    0.75  # condition margin above which derivatives are omitted; larger than any request
+)
+MAX_SPEED_SHARE = 0.9  # largest share of its maximum speed that an external axis may use
 
 
 @dataclass(frozen=True, eq=False)
@@ -186,7 +188,9 @@ class Freedom:
         return values.T.ravel(), np.concatenate(slopes, axis=1)
 
     def _hard(self, values: Array, phi: Array, phi_rate: Array) -> tuple[Array, Array]:
-        """Tool near enough to the vertical, rotation in its range, external axes fast enough."""
+        """Constraints on the tilt of the tool, the range of the rotation and the speed of external
+        axes.
+        """
         constraints, count = [], 1 + self.external.axes
         if self.allowed < np.pi - 1e-9:
             constraints.append(self._tilts(values))
@@ -328,14 +332,14 @@ def axes_in_world(external: ExternalAxes, values: Array) -> list[Array]:
     return world_axes
 
 
-ROUNDS = 4  # each with the constraints added that the one before came close to
-ACTIVE = 0.1  # rows with this much more margin than requested are at first no constraint of the optimiser
+ROUNDS = 4  # each run adds the constraints that the previous run came close to
+ACTIVE = 0.1  # rows with this much more margin than requested are left out of the first run
 ITERATIONS, TOLERANCE = 80, 1e-7
 # Largest changes of a variable in further attempts, after one without bounds ended outside its constraints. SLSQP may
 # step across a singularity, from which it does not return; whether it does depends on the last bits of the processor.
 CLOSER = (0.5, 0.1)
-VIOLATION = 1e-5  # of a constraint, no more than the start's own violation, that still counts as an end within
-# objective of an unreachable state, in multiples of the start's objective
+VIOLATION = 1e-5  # violation of a constraint, at most that of the start, that still counts as kept
+# objective of an unreachable state, as a multiple of the objective at the start
 UNREACHABLE_OBJECTIVE = 1e3
 
 
@@ -463,8 +467,10 @@ def _solved(
     value: Callable[[Array], tuple[float, Array]],
     constraint_values: Callable[[Bound, Array], tuple[Array, Array]],
 ) -> tuple[Array, int]:
-    """The best z that SLSQP finds; run again if it violates constraints that it was not given."""
-    from scipy.optimize import minimize  # slow to import, and most jobs never need it
+    """Return the best z that SLSQP finds; SLSQP runs again if z violates constraints that it did
+    not have.
+    """
+    from scipy.optimize import minimize  # slow to import, and most jobs do not need it
 
     v, count, rows = len(start), 0, np.zeros(0, dtype=np.int64)
     for _ in range(ROUNDS):

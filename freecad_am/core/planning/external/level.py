@@ -30,8 +30,10 @@ Levelled = tuple[list[Bead], list[Place], list[Issue]]
 
 
 def ways(cell: Cell, toolpath: Toolpath) -> Iterator[Levelled]:
-    """The beads of a toolpath as `levelled` gives them, and where that changes them once more, with seams and cuts already
-    chosen for axes that have a whole turn too: others are chosen with the rotation, where that is planned for."""
+    """Yield the beads of `levelled`, then the beads with seams and cuts also chosen for axes that
+    have a whole turn, if these differ. Otherwise such seams are chosen together with the
+    rotation.
+    """
     if cell.external is None:
         yield (
             [bead for _, _, bead in toolpath],
@@ -216,7 +218,7 @@ def axes_figures(cell: Cell, paths: Sequence[BeadPath]) -> dict[str, object]:
 
 
 def allowed_by_layer(features: Parts) -> dict[int, float]:
-    """The largest angle to the vertical, rad, of each layer."""
+    """The largest allowed angle to the vertical of each layer, rad."""
     return {
         int(layer): feature.rules.max_from_vertical
         for feature, layers in features
@@ -227,7 +229,7 @@ def allowed_by_layer(features: Parts) -> dict[int, float]:
 def _standing_all(
     external: ExternalAxes, cell: Cell, bead_directions: Sequence[Array], max_lean: float
 ) -> tuple[Array, bool]:
-    """Values (k,) of the external axes to begin with, and whether they serve the whole job."""
+    """Initial values (k,) of the external axes, and whether they serve the whole job."""
     zero = np.zeros(external.axes)
     if not external.turning:
         return zero, True
@@ -240,14 +242,16 @@ def _standing_all(
 
 
 def _standing(external: ExternalAxes, cell: Cell, direction: Array, previous: Array) -> Array:
-    """Values (k,) with a direction (3,) upright, the nearest to those before."""
+    """Values (k,) that turn a direction (3,) upright, nearest to the previous values."""
     return np.asarray(stroke.chosen(cell, stroke.upright(external, direction[None]), previous)[0])
 
 
 def _follow_directions(
     external: ExternalAxes, cell: Cell, directions: Array, max_lean: float, previous: Array
 ) -> Array:
-    """Values (n, k) along a bead: one and the same where that is near enough, else each direction upright."""
+    """Values (n, k) along a bead: constant if the tool then stays close enough to the vertical,
+    else with each direction upright.
+    """
     mean_direction = middle(directions)
     if (
         mean_direction is not None

@@ -34,14 +34,14 @@ from .stroke import directions_on_face
 
 OPTIMISED = "rotation and external axes together"
 POINTS_PER_BEAD = 40
-GIVEN_BACK = 0.25  # share of the gained objective to spend on a larger margin
-SUFFICIENT_MARGIN = 0.5  # a margin that need not be larger: half way from the limit to the middle
+GIVEN_BACK = 0.25  # share of the gain in the objective to spend on a larger margin
+SUFFICIENT_MARGIN = 0.5  # sufficient margin: halfway from the limit to the middle
 TRIES = 2  # attempts for a bead that leans too far between the optimised points
-SPARE = 1e-4  # of margin and angle, a reserve for the curve between the points
-STANDING = 12  # positions of an axis without a preferred position
+SPARE = 1e-4  # reserve of margin and angle for the curve between the points
+STANDING = 12  # number of positions tried of an axis without a preferred position
 LEANING = np.array(
     [-1.0, -0.5, 0.5, 1.0]
-)  # shares of the largest angle from the vertical, tried of every axis
+)  # shares of the largest angle from the vertical, tried for every axis
 SLIDING = np.array([-0.2, -0.1, 0.1, 0.2])  # shares of the arm's reach
 
 
@@ -88,7 +88,9 @@ def optimised(
 
 
 def better(path: BeadPath, reference: BeadPath) -> bool:
-    """Whether a path keeps its limits with less objective and no less margin than another, or the other does not."""
+    """Return whether a path keeps its limits with a lower objective and at least the margin of
+    another path, or the other path breaks limits.
+    """
     if not path.reachable or path.margin < 0.0 or not np.isfinite(path.objective):
         return False
     if not reference.reachable or reference.margin < 0.0:
@@ -264,7 +266,7 @@ def _freedom(
 def _evaluate_path(
     task: Task, path: BeadPath, freedom: Freedom, x: Array, iterations: int
 ) -> BeadPath:
-    """The path of a bead with changes x, at all its points."""
+    """Return the path of a bead with changes x, at all its points."""
     coefficients, _ = freedom.values(x)
     points = gather([path.bead], task.cell)
     rows = x.reshape(1 + freedom.external.axes, -1)
@@ -288,7 +290,9 @@ def _evaluate_path(
 
 
 def _optimise_in_stages(freedom: Freedom, path: BeadPath) -> tuple[Freedom, Array, int]:
-    """Least objective with no less margin than the path, then the largest margin that gives back little of the gain."""
+    """Minimise the objective with at least the margin of the path, then maximise the margin at the
+    cost of little of the gain.
+    """
     x = np.zeros((1 + freedom.external.axes) * freedom.shape.shape[1])
     state = freedom.look(x)
     if state is None:
@@ -413,7 +417,7 @@ def choose_better(
 
 
 def _worse(task: Task, result: Found, level: Found) -> set[tuple[int | None, int | None]]:
-    """Places of beads that have errors, or less margin than any of `level`, once turns are counted."""
+    """Places of beads that, after unwrapping, have errors or less margin than all beads of `level`."""
     wrong = {(issue.layer, issue.bead) for issue in result[1] if issue.level == ERROR}
     if not has_errors(level[1]):
         smallest_margin = least_margin(task, level[0])

@@ -28,15 +28,18 @@ from ...types import Array
 
 Cells = Iterator[tuple[str, CellParameters]]
 
-# of the arm's reach, how far the face is ahead of the shoulder, and, mm, higher than it is
+# distance of the face ahead of the shoulder, as a share of the arm's reach, and its height above
+# it, mm
 AHEAD = ((0.75, 0.0), (0.6, 0.0), (0.9, 0.0), (0.75, 300.0), (0.6, -300.0))
-MAX_POSITIONERS = 2  # positioners, the likeliest
-TRACK_SHARE = 0.6  # of the reach; a track may help along a part at least this long
+MAX_POSITIONERS = 2  # number of positioners tried, the likeliest first
+TRACK_SHARE = 0.6  # share of the reach; a track may help along a part of at least this length
 NOT_LEVEL, AUTO = "NOT_LEVEL", "{} and `cell.branch: auto`"
 
 
 def move_positioner(settings: CellParameters, folders: Sequence[str]) -> Cells:
-    """The positioner, with all that carries the part, nearer to the robot, or farther off; nothing of a cell without one."""
+    """Yield cells with the positioner, and all that carries the part, nearer to the robot or
+    farther away; none without a positioner.
+    """
     named = settings.external
     carriers = [k for k, mechanism in enumerate(named) if mechanism.carries == PART]
     robot = machines.load(settings.machine, tuple(folders))
@@ -145,7 +148,7 @@ def weight(toolpath: Toolpath, process: ProcessParameters) -> float:
 
 
 def _face(mechanism: Machine, pose: Pose) -> Array:
-    """(3,) where its face is in the world at zero, mm."""
+    """Position (3,) of its face in the world with the axes at zero, mm."""
     face_pose = (
         frames.bryant(pose)
         @ frames.inverse(mechanism.base)
@@ -158,7 +161,7 @@ def _before(robot: Machine, towards: Array, height: float) -> list[Array]:
     """Return positions (3,) in front of a robot, towards a point (2,) and near the given height,
     world frame.
     """
-    assert robot.arm is not None  # who asks has looked
+    assert robot.arm is not None  # the caller has checked this
     shoulder, _ = robot.arm.shoulder
     turn = math.atan2(towards[1], towards[0]) if math.hypot(*towards) > 1.0 else 0.0
     out = np.array([math.cos(turn), math.sin(turn)])

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Finds room along a bead for axes of a positioner that have less than a whole turn: another seam, another way to turn the
-part, a place at the limit from where the tool leans no more than it may, or as the last resort a bead that is cut.
+"""Fits beads to axes of a positioner that have less than a whole turn: by another seam, another way
+to turn the part, waiting at a limit while the tool leans within its allowance, or as the last
+resort by cutting the bead.
 
-Such an axis has a gap that no whole turn leads over. A way to turn the part has room from a point on until it leaves the
-limits by more than leaning makes up for, so seams and cuts follow from how far each way reaches.
+The range of such an axis has a gap that whole turns cannot bridge. From a point on, a way to turn
+the part is usable until it exceeds the limits by more than the allowed lean, so seams and cuts
+follow from how far each way reaches.
 """
 
 from __future__ import annotations
@@ -25,7 +27,7 @@ from ...toolpath import Bead
 from ...types import Array, Index, Mask
 from ..turns import directed
 
-STEPS = 200  # of the search for the middle of directions
+STEPS = 200  # steps of the search for the middle of directions
 
 
 def directions_on_face(cell: Cell, tool: Array) -> Array:
@@ -104,7 +106,7 @@ def upright(external: ExternalAxes, directions: Array) -> list[Array]:
     )
     if not np.isfinite(
         solutions.first_turn + solutions.second_turn
-    ).all():  # axes that are not at right angles reach no farther
+    ).all():  # axes that are not at right angles do not reach farther
         angle = rotary_pair.nearest(second_axis, source, external.up).angle
         return [np.unwrap(np.stack([np.zeros(len(angle)), angle], axis=-1), axis=0)]
     return directed.rotary_courses(solutions)
@@ -164,7 +166,8 @@ def limits_of(cell: Cell) -> tuple[Index, Array, Array]:
 
 ROUNDING = 1e-9
 ROUNDS = 6  # rounds that add points between the points of a bead
-# rad from where planning ends to where an axis waits at a limit, so that waiting there is within limits to the last digit
+# rad between the planning limit and an axis that waits at it, so that rounding keeps it within
+# limits
 WAITS = RESERVE
 
 
@@ -250,7 +253,9 @@ def _begun_elsewhere(
 def _split_bead(
     solutions: _Ways, cuts: Sequence[int], previous: Array, overlap: float
 ) -> list[Bead]:
-    """A bead in pieces, cut at points that serve, or of a closed one from where fewer do; the last one runs on."""
+    """Return a bead in pieces, cut at suitable points; a closed bead starts where fewer pieces
+    suffice. The last piece gets the overlap.
+    """
     bead = solutions.bead
     starts = [0, *(cut % (len(bead) - 1) for cut in cuts[1:-1] if bead.closed)]
     cut_lists = [_cuts(solutions.reach, start, solutions.last(start, overlap)) for start in starts]
@@ -413,11 +418,11 @@ class _Ways:
 
     @cached_property
     def reach(self) -> Index:
-        """(n,) the last point to which any way has room from a point on."""
+        """The last point (n,) that any way reaches from a point."""
         return np.asarray(self.furthest.max(axis=0, initial=-1))
 
     def last(self, start: int, overlap: float) -> int:
-        """The point at which the bead ends if it begins at one, or up to which it runs on."""
+        """The point at which the bead, or its overlap, ends if it begins at a given point."""
         return (
             start
             + len(self.bead)
@@ -426,12 +431,14 @@ class _Ways:
         )
 
     def nearly_round(self, count: int) -> Index:
-        """Segments of a closed bead in which what a way has room for ends, where all but these two are in it."""
+        """Segments of a closed bead in which a way runs out of room although it covers all other
+        segments.
+        """
         course, start = np.nonzero(self.fits[:, 1 : count + 1] & ~self.fits[:, :count])
         end = self.furthest[course, start + 1]
         nearly_complete = (
             end - start > count - 2
-        )  # and so with a share of the segments at both ends perhaps all round
+        )  # so with a share of both end segments it may cover the whole bead
         return np.asarray(
             np.unique(np.concatenate([start[nearly_complete], end[nearly_complete] % count]))
         )
@@ -452,8 +459,10 @@ class _Ways:
             yield int(start[k]), self.values[course[k], start[k] : start[k] + count + 1]
 
     def choose_values(self, low: int, high: int, previous: Array) -> Array:
-        """Values (n, k) from one point to another: one and the same where that serves, else of the ways that have room the
-        one that holds the axes back least, then moves least, then starts nearest to where they are."""
+        """Values (n, k) from one point to another: constant if that serves, else the usable way
+        that clamps the axes least, then moves least, then starts nearest to their current
+        values.
+        """
         directions = self.directions[low : high + 1]
         mean_direction = middle(directions)
         if (
@@ -486,7 +495,9 @@ def _overlap_points(bead: Bead, start: int, overlap: float) -> int:
 
 
 def _whole_turn_copies(course: Array, lower: Array, upper: Array) -> Iterator[Array]:
-    """A course (n, k) moved by all whole turns that bring it between limits somewhere; by none of axes without limits."""
+    """Yield a course (n, k) moved by all whole turns that bring some of it within limits; axes
+    without limits stay.
+    """
     with np.errstate(invalid="ignore"):
         fewest = np.ceil((lower - course.max(axis=0)) / TURN)
         greatest = np.floor((upper - course.min(axis=0)) / TURN)
@@ -499,7 +510,9 @@ def _whole_turn_copies(course: Array, lower: Array, upper: Array) -> Iterator[Ar
 
 
 def _set_external(bead: Bead, values: Array, previous: Array, rows: Index) -> Bead:
-    """The bead with values (n, k) of the axes that turn the part, and of others (k,) as they were."""
+    """The bead with values (n, k) of the axes that turn the part, and unchanged values (k,) of the
+    others.
+    """
     external = np.tile(previous, (len(bead), 1))
     external[:, rows] = values
     return dataclasses.replace(bead, external=external)

@@ -3,8 +3,8 @@
 
 One law covers the whole job: the track follows a share of the deposit's motion along it, so that
 the robot is never farther than half a window from its best position. So a position on the part has
-one position of the track, whatever was printed before. The track moves as smoothly as the beads
-run; if the whole part is within the window, it does not move. Windows and offsets are tried in the
+one position of the track, whatever was printed before. The track moves as smoothly as the beads; if
+the whole part is within the window, it does not move. Windows and offsets are tried in the
 order of increasing motion.
 """
 
@@ -25,7 +25,7 @@ from ...types import Array
 # track
 WINDOWS = (0.6, 0.3, 0.0)
 OFFSETS = (0.0, 0.4, -0.4)
-MAX_TRIALS = 3  # that are worth planning
+MAX_TRIALS = 3  # placements that are planned
 
 
 def place_track(
@@ -76,7 +76,7 @@ def place_track(
 
 
 def _at_points(bead: Bead, cell: Cell) -> Array:
-    """(n,) mm, how far the points of a bead are along the track in the world."""
+    """Positions (n,), mm, of the points of a bead along the track in the world."""
     external = cell.external
     assert external is not None and external.along is not None and bead.external is not None
     at_zero = bead.external.copy()

@@ -43,12 +43,12 @@ FEWEST_POINTS = 3  # of a piece
 ROUNDS = 10
 STRAY = math.radians(
     0.5
-)  # between two points the tool may lean this far from the direction asked for
-LIMIT_TOLERANCE = 1e-9  # a limit met exactly is kept, rad and mm
-# rad; distance from a pole within which a direction counts as on it; larger values are tried if an
-# axis would race near the pole; less than STRAY
+)  # allowed deviation of the tool from the requested direction between two points
+LIMIT_TOLERANCE = 1e-9  # tolerance at limits, rad and mm: a limit that is met exactly is kept
+# rad; within this angle a direction counts as on the pole; larger values, below STRAY, are tried
+# if an axis would race near the pole
 POLES = (AT_POLE, math.radians(0.2), math.radians(0.4))
-RACES = 2.0  # times its largest speed at which an axis does; below that the bead is slowed
+RACES = 2.0  # ratio to its maximum speed above which an axis races; below that the bead is slowed
 
 
 class _Run(NamedTuple):
@@ -115,7 +115,9 @@ def plan(
 
 
 def _within_stroke(task: Task, bead: Bead, previous: Array) -> list[_Run]:
-    """The bead as it is, or where a turning axis has no room for it, from another seam or in pieces."""
+    """The bead unchanged, or from another seam or in pieces if a rotary axis lacks the stroke for
+    it.
+    """
     unsplit = _run(task, bead, previous)
     if unsplit.fits or not _short_of_turns(task, unsplit.axes):
         return [unsplit]
@@ -140,7 +142,7 @@ def _run(task: Task, bead: Bead, previous: Array) -> _Run:
     for pole in POLES[:1] if task.lock is not None else POLES:
         run = _finer(task, bead, previous, pole)
         race = _race(task, run)
-        # straight on through a pole a tilting axis changes its side, for which it may have no room
+        # straight through a pole a tilting axis changes sides, for which it may lack the stroke
         if run.bent is None and race <= RACES and (run.fits or not runs):
             return run
         runs.append((run.bent is not None, not run.fits, race, run))
@@ -159,7 +161,7 @@ def _race(task: Task, run: _Run) -> float:
 
 
 def _finer(task: Task, bead: Bead, previous: Array, pole: float) -> _Run:
-    """The bead with directions within `pole` rad of a pole on it, finer where it must be."""
+    """The bead with directions within `pole` rad of a pole moved onto it, refined where needed."""
     cell, checked, axes = task.cell, bead, previous
     bead = gone_back(bead, task.rules.retreat).run_on(task.rules.overlap)
     for _ in range(ROUNDS):
@@ -198,7 +200,7 @@ def _not_straight(point: int, distance: float, leans: float, layer: int, bead: i
 def _path(task: Task, run: _Run, bead_id: Place) -> BeadPath:
     """Convert the run to a path.
 
-    There is no condition to keep: the courses keep poles apart.
+    There is no condition to check, because the courses avoid poles.
     """
     none, limits = np.full(len(run.bead), np.nan), task.cell.limits
     half = 0.5 * (limits.upper - limits.lower)
@@ -220,7 +222,7 @@ def _path(task: Task, run: _Run, bead_id: Place) -> BeadPath:
 
 
 def _short_of_turns(task: Task, joints: Array) -> bool:
-    """Whether it is a turning axis that runs out of its stroke on axis values (n, 5)."""
+    """Whether a rotary axis exceeds its stroke on axis values (n, 5)."""
     limits, turning = task.cell.limits, ~task.cell.machine.chain.sliding
     over = (
         np.maximum(limits.lower + RESERVE - joints, joints - limits.upper + RESERVE)
@@ -265,7 +267,8 @@ def _start(angles: Array, low: float, high: float) -> int:
     lowest, highest = windows.min(axis=1), windows.max(axis=1)
     off = shortest(0.5 * (lowest + highest) - 0.5 * (low + high))
     over = np.maximum(np.abs(off) + 0.5 * (highest - lowest) - 0.5 * (high - low), 0.0)
-    # rounded, so that every machine gets the same point; among fitting ones the nearest to the seam
+    # rounded, so that every computer gets the same point: among fitting points the nearest to
+    # the seam
     fits = np.flatnonzero(over <= 0.0)
     if len(fits):
         return int(fits[np.argmin(np.minimum(fits, n - fits))])

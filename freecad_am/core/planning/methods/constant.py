@@ -23,10 +23,10 @@ from ..task import Task, condition_margin
 Progress = Callable[[float, str], None]
 
 RZ_CANDIDATES, RZ_FINE_CANDIDATES = 360, 21
-LOOKED = 72  # how many of these the link check tries
+LOOKED = 72  # number of RZ values that the link check tries
 POINT_STRIDE = 8  # stride of the points that are checked before the others
 
-Clear = Callable[[float], bool]  # whether no link gets too close with an RZ, rad
+Clear = Callable[[float], bool]  # whether all links are clear with an RZ, rad
 
 
 def plan(

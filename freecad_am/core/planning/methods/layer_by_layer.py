@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Layer by layer: one polynomial of the rotation per bead (Chalvin 2020, section 4.3).
 
-Search everywhere, refine locally, settle in the flat valley, then find room for the turns of limited axes.
+Search the whole range, refine locally, resolve ties, then fit the turns of limited axes.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from ..turns import unwrap
 Progress = Callable[[float, str], None]
 Place = tuple[int, int]
 
-# of a joined bead's rotation from start to end, tried besides what the search found best
+# whole turns of a joined bead's rotation that are tried besides the best candidate
 OTHER_TURNS = (-1.0, 0.0, 1.0)
-# times the objective of the best, from where another number of turns is not tried
+# multiple of the best objective above which another number of turns is not tried
 NOT_MUCH_WORSE = 2.0
 
 

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Point by point: at each point the rotation that moves the joints least from the point before (Chalvin 2020, 5.2).
+"""Point by point: the rotation with the least joint motion from the previous point (Chalvin 2020,
+5.2).
 
-All beads go forward together, one point at a time. Each step is a Gauss-Newton step of the one unknown; where
-it would break a limit or come too close to a singularity, the whole turn is searched. Beads start
-where the margin is largest. Kept for comparison: the sudden moves it makes are why layers are
-planned as a whole.
+All beads advance together, one point at a time. Each step is a Gauss-Newton step of the only
+unknown; if it would break a limit or come too close to a singularity, the whole turn is searched.
+Beads start at the largest margin. The method serves comparison: its sudden moves are the reason for
+planning whole layers.
 """
 
 from __future__ import annotations
@@ -120,7 +121,7 @@ def _step(
 
 
 def _near(task: Task, points: Points, phi: Array, previous: Array) -> Array:
-    """Joints at phi in the turns nearest to the joints before; NaN where unreachable."""
+    """Joints at phi in the turns nearest to the previous joints; NaN where unreachable."""
     joints = task.raw_joints(points, phi, previous)
     joints -= TURN * np.nan_to_num(np.round((joints - previous) / TURN))
     return joints
