@@ -8,10 +8,12 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import (
     arcs,
     cut_at_length,
+    divided_by_step,
     doubled_area,
     length,
     nearest,
@@ -41,6 +43,7 @@ ROUND_END = 0.25 * math.pi  # in radii: length of a rectangle with the area of a
 LONGEST_ENDS = 0.4995  # maximum share of a bead's length for each of its round ends
 SHARES = 0.02  # of a bead's usual width; widths within this step count as equal
 SHARE_STEP = 0.05  # of the usual width; maximum change of the width along an edge of a bead
+DIGITS = 6  # of coordinates in mm by which a bead begins at one of its ends
 FARTHEST_TOLERANCE = 1e-9  # of a ring's extent; points within it count as equally far out
 
 
@@ -584,7 +587,12 @@ def bare_parts(
     lines = [(curve.points, curve.closed) for curve in curves]
     if region.extent < 2.0 * beads.inset or curves[0].dot:
         return []
-    reached = along(lines, beads.inset, max(beads.chord_error, COARSE * beads.inset))
+    error = max(beads.chord_error, COARSE * beads.inset)
+    places = np.vstack([_places(curve, beads.inset) for curve in curves])
+    distance = cKDTree(places).query(np.vstack(region.borders()))[0].max()
+    if distance < 3.0 * beads.inset - error:
+        return []  # a bare piece would reach to a corner of the border that is farther out
+    reached = along(lines, beads.inset, error)
     bare = []
     for piece in region.without(reached, least_area=LEAST_BARE * beads.inset**2):
         if piece.extent <= 2.0 * beads.inset:
@@ -596,6 +604,11 @@ def bare_parts(
         if out > 2.0 * beads.inset:
             bare.append((piece, out))
     return bare
+
+
+def _places(curve: PlaneCurve, step: float) -> Array:
+    """Places (n, 2) along a curve, at most `step` mm apart."""
+    return divided_by_step(curve.closed_points()[0], step)[0]
 
 
 def outermost(
@@ -683,7 +696,8 @@ def _spine(region: Region, beads: Beads, min_width: float) -> tuple[Array, bool]
     points, closed = spine(region, min_width, step)
     if len(points) > 1:
         points = _smooth(points, closed, 0.2 * beads.chord_error)
-        if not closed and tuple(points[-1]) < tuple(points[0]):
+        first, last = np.round(points[[0, -1]], DIGITS).tolist()
+        if not closed and last < first:
             points = points[::-1]
     return points, closed
 

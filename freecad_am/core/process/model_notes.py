@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 
 from ..geometry.columns import columns, dots, lengths
+from ..geometry.curves.plane_curve import running_sums
 from ..geometry.ramps import limit_growth
 from ..issues import NOTE, WARNING, Issue, Text, Word
 from ..parameters.process import ProcessParameters
@@ -463,11 +464,11 @@ def limit_acceleration(points: Array, speed: Array, closed: bool, acceleration: 
     (n,) array
         Speeds, mm/s.
     """
-    s = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    s = running_sums(np.linalg.norm(np.diff(points, axis=0), axis=1))
     square = speed * speed
     if closed:
-        s = np.r_[s[:-1] - s[-1], s, s[1:] + s[-1]]
-        square = np.r_[square[:-1], square, square[1:]]
+        s = np.concatenate([s[:-1] - s[-1], s, s[1:] + s[-1]])
+        square = np.concatenate([square[:-1], square, square[1:]])
     limited = np.sqrt(limit_growth(square, 2.0 * acceleration * s))
     n = len(points)
     slowed: Array = limited[n - 1 : 2 * n - 1] if closed else limited

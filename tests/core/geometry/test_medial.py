@@ -7,7 +7,7 @@ import numpy as np
 from scipy.spatial import QhullError
 
 from freecad_am.core.geometry.regions import medial
-from freecad_am.core.geometry.regions.medial import MAX_UNMOVED_POINTS, spine
+from freecad_am.core.geometry.regions.medial import spine
 from freecad_am.core.geometry.regions.region import regions
 
 
@@ -15,11 +15,30 @@ def test_the_middle_of_a_strip_is_found_from_very_many_places_too():
     """A gap of 1 % asked for places 0.014 mm apart: exactly on parallel lines they took more than a minute."""
     (strip,) = regions([np.array([[0.0, 0.0], [103.0, 0.0], [103.0, 8.0], [0.0, 8.0]])])
     before = time.process_time()
-    path, closed = spine(strip, 0.035, 222.0 / (1.2 * MAX_UNMOVED_POINTS))
+    path, closed = spine(strip, 0.035, 222.0 / 14_400)
     assert time.process_time() - before < 4.0  # more than ten times that before
     assert not closed and np.ptp(path[:, 0]) > 103.0 - 8.0 - 0.1
     between = path[(path[:, 0] > 4.0) & (path[:, 0] < 99.0)]
     assert np.abs(between[:, 1] - 4.0).max() < 1e-4
+
+
+def test_gaps_of_the_same_shape_have_the_same_middle_wherever_they_are(monkeypatch):
+    """Layers and islands have thousands of equal gaps; the diagram takes longest."""
+    diagrams, diagram = [], medial.Voronoi
+    monkeypatch.setattr(medial, "Voronoi", lambda places: diagrams.append(1) or diagram(places))
+    gap = np.array([[0.0, 0.0], [9.123, 0.3], [20.0, 0.0], [20.0, 1.1], [8.0, 1.7], [0.0, 0.9]])
+    by = np.array([123.456, -78.9])
+    (here,), (there,) = regions([gap]), regions([gap + by])
+    path, _ = spine(here, 0.2, 0.05)
+    moved, _ = spine(there, 0.2, 0.05)
+    assert len(diagrams) <= 1 and np.abs(moved - path - by).max() < 1e-8
+
+
+def test_the_middle_of_walls_with_places_on_circles_has_no_double_points():
+    """Four places on one circle are one vertex, not two that the move parts."""
+    (strip,) = regions([np.array([[0.0, 0.0], [24.0, 0.0], [24.0, 2.0], [0.0, 2.0]])])
+    path, _ = spine(strip, 0.3, 0.1)
+    assert np.hypot(*np.diff(path, axis=0).T).min() > 1e-3
 
 
 def test_the_middle_is_found_where_places_on_lines_are_too_much_for_the_diagram(monkeypatch):

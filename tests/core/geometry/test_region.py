@@ -5,6 +5,8 @@ import builtins
 
 import numpy as np
 import pytest
+from shapely.geometry import LineString
+from shapely.ops import unary_union
 
 from freecad_am.core.geometry.regions import region as module
 from freecad_am.core.geometry.regions.region import mended, regions
@@ -85,6 +87,26 @@ def test_parallel_curves_are_at_the_distance(distance):
             assert off.min() > -0.011 and off.max() < 1e-3
     assert whole.grown(0.0, 0.01) == (whole,)
     assert whole.grown(-60.0, 0.01) == ()
+
+
+def test_short_edges_have_the_bands_that_the_library_makes():
+    """Edges of two points are drawn here, because one call of the library for each takes too long."""
+    rng = np.random.default_rng(3)
+    edges = rng.uniform(-5.0, 5.0, (40, 2, 2))
+    edges[7, 1] = edges[7, 0]  # a disc
+    radii = rng.uniform(0.3, 1.5, len(edges))
+    for edge, radius in zip(edges, radii):
+        (band,) = module.along([(edge, False)], radius, 0.01)
+        expected = LineString(edge).buffer(radius, module._quarter_segments(radius, 0.01))
+        assert band.shape.symmetric_difference(expected).area < 1e-9
+    bands = module.along([(edge, False) for edge in edges], radii, 0.01)
+    expected = unary_union(
+        [
+            LineString(edge).buffer(radius, module._quarter_segments(radius, 0.01))
+            for edge, radius in zip(edges, radii)
+        ]
+    )
+    assert sum(band.area for band in bands) == pytest.approx(expected.area, abs=1e-6)
 
 
 def test_without_the_library_a_filling_says_what_is_missing(monkeypatch):

@@ -93,7 +93,25 @@ def arcs(points: Array, closed: bool = False) -> Array:
     (n,) or (n + 1,) array
         mm; the last value of a closed one is at its first point again.
     """
-    return np.asarray(np.r_[0.0, np.cumsum(np.hypot(*steps(points, closed).T))])
+    return running_sums(np.hypot(*steps(points, closed).T))
+
+
+def running_sums(lengths: Array) -> Array:
+    """Return the sums of the first 0 to n of lengths.
+
+    Parameters
+    ----------
+    lengths : (n,) array
+        mm, or another unit.
+
+    Returns
+    -------
+    (n + 1,) array
+        From 0, in the unit of the lengths.
+    """
+    sums = np.zeros(len(lengths) + 1)
+    np.cumsum(lengths, out=sums[1:])
+    return sums
 
 
 def sines(vectors: Array, references: Array) -> Array:
@@ -301,7 +319,7 @@ def divide_edges(points: Array, count: Index) -> tuple[Array, Mask]:
     edge = np.repeat(np.arange(len(count)), count)
     number = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
     inner = points[edge] + (number / count[edge])[:, None] * np.diff(points, axis=0)[edge]
-    return np.vstack([inner, points[-1:]]), np.r_[number == 0, True]
+    return np.concatenate([inner, points[-1:]]), np.concatenate([number == 0, [True]])
 
 
 def divided_by_step(points: Array, step: float) -> tuple[Array, Mask]:
@@ -384,7 +402,7 @@ def cut_at_length(points: Array, length: float) -> Array:
     (m, 2) array
         The beginning; all points if it is shorter.
     """
-    s = np.r_[0.0, np.cumsum(np.hypot(*np.diff(points, axis=0).T))]
+    s = arcs(points)
     if length >= s[-1]:
         return points
     k = int(np.searchsorted(s, length, side="right"))

@@ -11,6 +11,7 @@ small where it runs into a corner.
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from itertools import chain
 from typing import NamedTuple
 
@@ -19,15 +20,18 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import QhullError, Voronoi
 
-from ...types import Array, Index
+from ...types import Array, Index, Mask
 from ..curves.plane_curve import winding
 from .region import Region, simplified
 from .strip import Strip
 
 MIN_WALL_SPREAD, MIN_SPREAD = 0.75, 0.3  # least spread of an edge of the axis
-# number of points beyond which they are moved by a share of the region's size: the diagram of many on parallel lines or a circle,
-# exactly, takes a time that grows with more than their square
-MAX_UNMOVED_POINTS, MOVE_SHARE = 12_000, 1e-9
+# of the region's size, by which points are moved: the diagram of points exactly on parallel lines or a circle takes a time that
+# grows with the square of their number, and Qhull may fail at it
+MOVE_SHARE, LARGER_MOVE_SHARE = 1e-11, 1e-9
+PLACES = 9  # of coordinates in mm; gaps whose corners differ by less have one spine
+SHAPES = 512  # spines kept
+JOIN_SHARE = 1e-8  # of the region's size; vertices this close are one without the move
 
 
 class _Axis(NamedTuple):
@@ -58,14 +62,25 @@ def spine(region: Region, min_clearance: float, step: float) -> tuple[Array, boo
     closed : bool
         True in a region with one hole that the path surrounds.
     """
-    axis = _axis(region, min_clearance, step)
+    borders = region.borders()
+    origin = borders[0][0]
+    shape = tuple(np.round(border - origin, PLACES).tobytes() for border in borders)
+    path, closed = _spine(shape, min_clearance, step)
+    return path + origin, closed
+
+
+@lru_cache(maxsize=SHAPES)
+def _spine(shape: tuple[bytes, ...], min_clearance: float, step: float) -> tuple[Array, bool]:
+    """`spine` of a region with these borders, (n, 2) mm each: layers and islands have many equal gaps."""
+    borders = tuple(np.frombuffer(border).reshape(-1, 2) for border in shape)
+    axis = _axis(borders, min_clearance, step)
     for spread in (MIN_WALL_SPREAD, MIN_SPREAD):
         links = axis.links[
             (axis.spread >= spread) & (axis.clearance[axis.links] >= min_clearance).all(axis=1)
         ]
         if not len(links):
             continue
-        ring = _find_cycle(axis.points, links) if len(region.borders()) > 1 else None
+        ring = _find_cycle(axis.points, links) if len(borders) > 1 else None
         if ring is not None:
             return axis.points[ring], True
         path = _find_longest_path(axis.points, links)
@@ -116,25 +131,29 @@ def spine_round(
     return strip.period.from_uv(np.vstack([[[-half, v]], within]))
 
 
-def _axis(region: Region, min_clearance: float, step: float) -> _Axis:
-    """Return the axis inside a region where it is wider than 2 `min_clearance` mm, without
+def _axis(borders: tuple[Array, ...], min_clearance: float, step: float) -> _Axis:
+    """Return the axis inside borders where it is wider than 2 `min_clearance` mm, without
     branches into corners.
     """
-    border_points, follows = _sample_border(region.borders(), step)
-    middle, size = border_points.mean(axis=0), max(region.extent, 1e-300)
+    border_points, follows = _sample_border(borders, step)
+    middle = border_points.mean(axis=0)
+    size = max(float(np.hypot(*np.ptp(borders[0], axis=0))), 1e-300)
     scaled = (border_points - middle) / size
-    moved = scaled + MOVE_SHARE * np.random.default_rng(0).uniform(-1.0, 1.0, scaled.shape)
+    moves = np.random.default_rng(0).uniform(-1.0, 1.0, scaled.shape)
     try:
-        diagram = Voronoi(moved if len(scaled) > MAX_UNMOVED_POINTS else scaled)
-    except QhullError:  # points exactly on lines and circles may be degenerate for Qhull
-        diagram = Voronoi(moved)
+        diagram = Voronoi(scaled + MOVE_SHARE * moves)
+    except QhullError:
+        diagram = Voronoi(scaled + LARGER_MOVE_SHARE * moves)
     corners = diagram.vertices * size + middle
     pairs = diagram.ridge_points
     ends = np.fromiter(
         chain.from_iterable(diagram.ridge_vertices), dtype=np.intp, count=2 * len(pairs)
     ).reshape(-1, 2)
     adjacent = (follows[pairs[:, 0]] == pairs[:, 1]) | (follows[pairs[:, 1]] == pairs[:, 0])
-    use = (ends >= 0).all(axis=1) & ~adjacent
+    use = (ends >= 0).all(axis=1)
+    ends[use], is_long = _join_vertices(diagram.vertices, ends[use])
+    use[use] = is_long
+    use &= ~adjacent
     pairs, ends = pairs[use], ends[use]
     radius = np.hypot(*(corners[ends] - border_points[pairs[:, :1]]).transpose(2, 0, 1))
     pair_distance = np.hypot(*(border_points[pairs[:, 0]] - border_points[pairs[:, 1]]).T)
@@ -145,12 +164,24 @@ def _axis(region: Region, min_clearance: float, step: float) -> _Axis:
     ends, radius, spread = ends[use], radius[use], spread[use]
     members = np.unique(ends)
     inside = np.zeros(len(corners), dtype=bool)
-    inside[members] = winding(region.borders(), corners[members]) > 0
+    inside[members] = winding(borders, corners[members]) > 0
     use = inside[ends].all(axis=1)
     ends = ends[use]
     clearance = np.zeros(len(corners))
     clearance[ends] = radius[use]
     return _Axis(corners, clearance, ends, spread[use])
+
+
+def _join_vertices(vertices: Array, ends: Index) -> tuple[Index, Mask]:
+    """Ends (m, 2) of edges by number of vertices (n, 2), with vertices joined that are JOIN_SHARE apart or less; and the mask of
+    the edges that are longer.
+    """
+    is_long = np.hypot(*(vertices[ends[:, 0]] - vertices[ends[:, 1]]).T) > JOIN_SHARE
+    joints = ends[~is_long]
+    graph = coo_matrix((np.ones(len(joints)), joints.T), shape=(len(vertices), len(vertices)))
+    label = connected_components(graph, directed=False)[1]
+    first = np.unique(label, return_index=True)[1]
+    return first[label[ends]], is_long
 
 
 def _sample_border(rings: tuple[Array, ...], step: float) -> tuple[Array, Index]:

@@ -65,7 +65,7 @@ class Stroke(NamedTuple):
     def drop_repeats(self) -> Stroke:
         """The stroke without segments of no length."""
         long = lengths(self.points) > 0.0
-        return Stroke(self.points[np.r_[True, long]], self.widths[long])
+        return Stroke(self.points[np.concatenate([[True], long])], self.widths[long])
 
 
 class Outline(NamedTuple):

@@ -17,7 +17,7 @@ import numpy as np
 
 from ...issues import NOTE, InputError, Issue, Text
 from ...types import Array, Index, Mask
-from ..curves.plane_curve import doubled_area, nearest_on_rings, winding
+from ..curves.plane_curve import doubled_area, nearest_on_rings, running_sums, winding
 from ..step_count import turn_segments
 
 MERGED = 1e-12  # of the extent; closer points count as one
@@ -25,6 +25,7 @@ MERGED = 1e-12  # of the extent; closer points count as one
 STRAIGHTNESS_TOLERANCE = 1e-9
 SLIVER = 1e-12  # of the squared extent; smaller pieces are dropped where no other area is stated
 AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at once
+_POLYGON, _MULTI_POLYGON = 3, 6  # in the well-known binary form
 # the library's number for corners that stay corners, and up to how many times the distance these may stand out
 _MITRE, SHARPEST = 2, 1000.0
 DIGITS = 9  # of coordinates in mm where points are left out: last bits decide nothing
@@ -45,6 +46,7 @@ class Shapely(NamedTuple):
 
     geometry: Any
     ops: Any
+    wkb: Any
     arcs: str  # name of the argument with the segments of a quarter turn
 
 
@@ -53,7 +55,7 @@ def shapely() -> Shapely:
     """The library. Raises InputError MISSING_LIBRARY where it is not installed."""
     try:
         import shapely as package
-        from shapely import geometry, ops
+        from shapely import geometry, ops, wkb
     except ImportError:
         raise InputError(
             "MISSING_LIBRARY",
@@ -63,7 +65,7 @@ def shapely() -> Shapely:
             "shapely",
         ) from None
     return Shapely(
-        geometry, ops, "resolution" if package.__version__.startswith("1.") else "quad_segs"
+        geometry, ops, wkb, "resolution" if package.__version__.startswith("1.") else "quad_segs"
     )
 
 
@@ -182,8 +184,7 @@ class Region:
         low, high = self.area / float(self.shape.length), math.sqrt(self.area / math.pi)
         while high - low > WIDTH * high:
             middle = 0.5 * (low + high)
-            core = self.grown(-middle, 0.1 * WIDTH * middle)
-            if core:
+            if self.has_room(2.0 * middle, 0.1 * WIDTH * middle):
                 low = middle
             else:
                 high = middle
@@ -196,9 +197,19 @@ class Region:
         """
         if distance == 0.0:
             return (self,)
-        return _parts(
-            _buffered(self.shape, distance, chord_error), SLIVER * self.extent**2, self.sheet
-        )
+        return _parts(self._grown(distance, chord_error), self._sliver, self.sheet)
+
+    def has_room(self, width: float, chord_error: float) -> bool:
+        """Whether a circle of a diameter (mm) fits inside: `grown` by minus half of it leaves something."""
+        return any(part.area > self._sliver for part in self._grown(-0.5 * width, chord_error))
+
+    @property
+    def _sliver(self) -> float:
+        """mm^2; smaller pieces are dropped."""
+        return SLIVER * self.extent**2
+
+    def _grown(self, distance: float, chord_error: float) -> list[Any]:
+        return _polygons(_buffered(self.shape, distance, chord_error))
 
     def without(
         self, others: Sequence[Region], wide: float = 0.0, least_area: float = 0.0
@@ -220,17 +231,18 @@ class Region:
         tuple of Region
             What remains, in the order of leftmost points.
         """
-        left = self.shape.difference(_union(others))
+        least = max(self._sliver, EIGHT * (0.5 * wide) ** 2, least_area)
+        left = _polygons(self.shape.difference(_union(others)))
         if wide > 0.0:
-            left = _cut_hairs(left, STRAIGHTNESS_TOLERANCE * self.extent)
-        least = max(SLIVER * self.extent**2, EIGHT * (0.5 * wide) ** 2, least_area)
+            large = [piece for piece in left if piece.area > least]
+            left = _cut_hairs(large, STRAIGHTNESS_TOLERANCE * self.extent)
         return _parts(left, least, self.sheet)
 
     def common(self, others: Sequence[Region], every_point: bool = False) -> tuple[Region, ...]:
         """What it shares with others. every_point: as `regions`."""
         return _parts(
-            self.shape.intersection(_union(others)),
-            SLIVER * self.extent**2,
+            _polygons(self.shape.intersection(_union(others))),
+            self._sliver,
             every_point=every_point,
         )
 
@@ -272,7 +284,8 @@ class Region:
         """The same with no more points than `tolerance` mm asks for, wherever its rings begin."""
         geometry = shapely().geometry
         rings = [_at_corner(ring[:-1]) for ring in _closed_rings(self.shape)]
-        found = _parts(geometry.Polygon(rings[0], rings[1:]).simplify(tolerance), 0.0, self.sheet)
+        simple = geometry.Polygon(rings[0], rings[1:]).simplify(tolerance)
+        found = _parts(_polygons(simple), 0.0, self.sheet)
         if len(found) != 1:
             return self
         if all(len(ring) != 4 for ring in found[0].borders()):
@@ -369,7 +382,7 @@ def mended(
     shape, changed = _nested(clean), 0.0
     if shape is None:
         shape, changed = _wound(clean)
-    kept = _parts(shape, least, every_point=every_point)
+    kept = _parts(_polygons(shape), least, every_point=every_point)
     dropped = max(float(shape.area) - sum(region.area for region in kept), 0.0)
     noise = SLIVER * extent**2
     return Mended(kept, changed if changed > noise else 0.0, dropped if dropped > noise else 0.0)
@@ -394,8 +407,7 @@ def along(
     tuple of Region
         In the order of their leftmost points.
     """
-    bands = _fill_pinholes(_bands(curves, half, chord_error), chord_error**2)
-    return _parts(bands, 0.0)
+    return _parts(_fill_pinholes(_bands(curves, half, chord_error), chord_error**2), 0.0)
 
 
 def measure_bands(
@@ -432,16 +444,58 @@ def _bands(curves: Sequence[tuple[Array, bool]], half: float | Array, chord_erro
     """Return the shape of the points within `half` mm of curves."""
     lines = [np.vstack([points, points[:1]]) if closed else points for points, closed in curves]
     widths = np.full(len(lines), half).tolist()
+    return _bands_of(
+        tuple(np.ascontiguousarray(line).tobytes() for line in lines), tuple(widths), chord_error
+    )
+
+
+@lru_cache(maxsize=4)
+def _bands_of(contents: tuple[bytes, ...], widths: tuple[float, ...], chord_error: float) -> Any:
+    """`_bands` of lines, by what is in them: gaps, cover and closing of one filling ask for the same bands in turn."""
+    lines = [np.frombuffer(content).reshape(-1, 2) for content in contents]
+    straight = [number for number, line in enumerate(lines) if len(line) == 2]
     bands = [
         _buffered(shapely().geometry.LineString(stretch), width, chord_error)
         for line, width in zip(lines, widths)
+        if len(line) > 2
         for stretch in _bends(line)
     ]
+    if straight:
+        edges = np.array([lines[number] for number in straight])
+        radii = np.array([widths[number] for number in straight])
+        segments = np.array([_quarter_segments(radius, chord_error) for radius in radii])
+        bands += [
+            _capsules(edges[segments == count], radii[segments == count], count)
+            for count in set(segments.tolist())
+        ]
     return shapely().ops.unary_union(bands)
 
 
-def _fill_pinholes(shape: Any, area: float) -> Any:
-    """Return a shape without the holes below an area (mm^2), thousands of which the chords of arcs leave between bands."""
+def _capsules(edges: Array, radii: Array, segments: int) -> Any:
+    """Return the points within radii (n,) mm of edges (n, 2, 2), as one shape of n polygons that may overlap. segments: of a
+    quarter circle.
+
+    The library buffers edges one by one, which takes eight times as long; the corners are the same.
+    """
+    start, end = edges[:, 0], edges[:, 1]
+    size = np.hypot(*(end - start).T)[:, None]
+    along = np.where(size > 0.0, (end - start) / np.maximum(size, 1e-300), [1.0, 0.0])
+    left = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    angle = np.linspace(0.0, math.pi, 2 * segments + 1)[:, None]
+    cap = radii[:, None, None] * (np.sin(angle) * along[:, None] - np.cos(angle) * left[:, None])
+    corners = np.concatenate(
+        [end[:, None] + cap, start[:, None] - cap, (end + cap[:, 0])[:, None]], axis=1
+    )
+    ring = np.dtype([("order", "u1"), ("counts", "<u4", 3), ("corners", "<f8", corners.shape[1:])])
+    rings = np.zeros(len(edges), dtype=ring)
+    rings["order"], rings["corners"] = 1, corners
+    rings["counts"] = _POLYGON, 1, corners.shape[1]  # of one ring
+    head = np.array([(1, (_MULTI_POLYGON, len(edges)))], dtype=[("order", "u1"), ("is", "<u4", 2)])
+    return shapely().wkb.loads(head.tobytes() + rings.tobytes())
+
+
+def _fill_pinholes(shape: Any, area: float) -> list[Any]:
+    """Return the polygons of a shape without the holes below an area (mm^2), thousands of which the chords of arcs leave between bands."""
     polygons = []
     for polygon in _polygons(shape):
         outer, *holes = _closed_rings(polygon)
@@ -449,7 +503,7 @@ def _fill_pinholes(shape: Any, area: float) -> Any:
         if len(large) < len(holes):
             polygon = shapely().geometry.Polygon(outer, large)
         polygons.append(polygon)
-    return polygons[0] if len(polygons) == 1 else shapely().geometry.MultiPolygon(polygons)
+    return polygons
 
 
 def _union(regions: Sequence[Region]) -> Any:
@@ -469,7 +523,7 @@ def join(parts: Sequence[Region], width: float) -> tuple[Region, ...]:
     shape = _buffered(shape, -0.5 * width, error)
     if sum(part.shape.length for part in parts) - shape.length < LONG_SLIT * width:
         return tuple(parts)
-    return _parts(shape, SLIVER * shape.area)
+    return _parts(_polygons(shape), SLIVER * shape.area)
 
 
 def _has_slit(shape: Any, wider: Any, width: float) -> bool:
@@ -483,11 +537,13 @@ def _bends(line: Array) -> list[Array]:
     or find a shape that crosses itself."""
     if len(line) < 3:
         return [line]
-    way = np.diff(line, axis=0)
+    way = line[1:] - line[:-1]
     heading = np.arctan2(way[:, 1], way[:, 0])
-    turn = np.abs(np.remainder(np.diff(heading) + math.pi, 2.0 * math.pi) - math.pi)
-    number = np.floor(np.r_[0.0, np.cumsum(turn)] / BEND + np.arange(len(way)) / AT_ONCE)
-    cuts = np.r_[0, np.flatnonzero(np.diff(number) > 0.0) + 1, len(way)]
+    turn = np.abs(np.remainder(heading[1:] - heading[:-1] + math.pi, 2.0 * math.pi) - math.pi)
+    number = np.floor(running_sums(turn) / BEND + np.arange(len(way)) / AT_ONCE)
+    if number[-1] < 1.0:
+        return [line]
+    cuts = [0, *(np.flatnonzero(np.diff(number) > 0.0) + 1).tolist(), len(way)]
     return [line[a : b + 1] for a, b in zip(cuts, cuts[1:])]
 
 
@@ -534,8 +590,11 @@ def select_simplified(points: Array, tolerance: float) -> Index:
 
 
 def _buffered(shape: Any, distance: float, chord_error: float) -> Any:
-    quarter = math.ceil(turn_segments(abs(distance), chord_error, 2.0 * math.pi, LEAST_ARC) / 4)
-    return shape.buffer(distance, **{shapely().arcs: quarter})
+    return shape.buffer(distance, **{shapely().arcs: _quarter_segments(distance, chord_error)})
+
+
+def _quarter_segments(distance: float, chord_error: float) -> int:
+    return math.ceil(turn_segments(abs(distance), chord_error, 2.0 * math.pi, LEAST_ARC) / 4)
 
 
 def _distinct(loop: Array) -> Array:
@@ -640,12 +699,12 @@ def _ring(points: Array, sense: float) -> Array:
 
 
 def _parts(
-    shape: Any, least_area: float, sheet: float = 0.0, every_point: bool = False
+    polygons: Sequence[Any], least_area: float, sheet: float = 0.0, every_point: bool = False
 ) -> tuple[Region, ...]:
-    """The polygons of a shape in the order of their leftmost points."""
+    """The polygons larger than an area (mm^2), in the order of their leftmost points."""
     found = [
         Region(part if every_point else _plain(part), sheet)
-        for part in _polygons(shape)
+        for part in polygons
         if part.area > least_area
     ]
     if len(found) < 2:
@@ -655,14 +714,14 @@ def _parts(
     )
 
 
-def _cut_hairs(shape: Any, hair: float) -> Any:
-    """A shape whose polygons are cut where they hang together by no more than a hair (mm), as rounding errors make them."""
+def _cut_hairs(polygons: Sequence[Any], hair: float) -> list[Any]:
+    """Polygons cut where they hang together by no more than a hair (mm), as rounding errors make them."""
     corners = {"join_style": _MITRE, "mitre_limit": SHARPEST}
     pieces = []
-    for polygon in _polygons(shape):
+    for polygon in polygons:
         cores = _polygons(polygon.buffer(-hair, **corners))
         pieces += [core.buffer(hair, **corners) for core in cores] if len(cores) > 1 else [polygon]
-    return shapely().geometry.MultiPolygon([part for each in pieces for part in _polygons(each)])
+    return [part for each in pieces for part in _polygons(each)]
 
 
 def _plain(polygon: Any) -> Any:

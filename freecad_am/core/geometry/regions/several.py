@@ -107,7 +107,7 @@ def select_wider(regions: Sequence[Region], width: float, chord_error: float) ->
     list of Region
         In their order.
     """
-    return [region for region in regions if region.grown(-0.5 * width, chord_error)]
+    return [region for region in regions if region.has_room(width, chord_error)]
 
 
 def select_longer(regions: Sequence[Region], min_length: float) -> tuple[Region, ...]:

@@ -324,14 +324,14 @@ def _refine(
         added = added.select(bent)
         still_open = np.zeros(len(radii), dtype=bool)
         still_open[intervals[bent]] = True
-        edges = np.r_[places.edges, added.edges]
-        shares = np.r_[places.shares, added.shares]
-        fans = np.r_[places.fans, added.fans]
+        edges = np.concatenate([places.edges, added.edges])
+        shares = np.concatenate([places.shares, added.shares])
+        fans = np.concatenate([places.fans, added.fans])
         order = np.lexsort((fans, shares, edges))
         places = _Places(edges[order], shares[order], fans[order])
-        radii = np.r_[radii, added_radii[bent]][order]
-        opposite = np.r_[opposite, added_opposite[bent]][order]
-        open_ = np.r_[still_open, np.ones(len(added.edges), dtype=bool)][order]
+        radii = np.concatenate([radii, added_radii[bent]])[order]
+        opposite = np.concatenate([opposite, added_opposite[bent]])[order]
+        open_ = np.concatenate([still_open, np.ones(len(added.edges), dtype=bool)])[order]
     return places, radii, opposite
 
 

@@ -17,6 +17,7 @@ from ...geometry.curves.plane_curve import (
     divide_edges,
     fractions,
     nearest_among,
+    running_sums,
     sines,
     steps,
 )
@@ -160,7 +161,7 @@ def bead_of(
     points = base.to_part(points)
     if curve.closed:
         points[-1] = points[0]
-    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
+    arc = running_sums(np.linalg.norm(np.diff(points, axis=0), axis=1))
     bead = Bead(
         points,
         base.rotate_to_part(normals),
@@ -227,17 +228,15 @@ def _sparse(points: Array, speed: Array, min_step: float) -> Mask:
     """Mask of the points (n, k) of a polyline with at least `min_step` between them along it, lengths divided by the pace (n-1,) of
     its segments; both ends stay.
     """
-    arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1) / speed)]
-    is_kept: Mask = np.r_[True, np.diff(np.floor(arc / min_step)) > 0.0]
+    arc = running_sums(np.linalg.norm(np.diff(points, axis=0), axis=1) / speed)
+    is_kept: Mask = np.ones(len(arc), dtype=bool)
+    is_kept[1:] = np.diff(np.floor(arc / min_step)) > 0.0
     is_kept &= (arc < arc[-1] - min_step) | (arc == 0.0)
     is_kept[0] = is_kept[-1] = True
     rows = np.flatnonzero(is_kept)
-    is_near = np.r_[
-        False,
-        np.linalg.norm(np.diff(points[rows], axis=0), axis=1) / speed[rows[1:] - 1] < min_step,
-    ]
-    is_near[-1] = False  # neighbours across a step of the count: the first of the two is enough
-    is_kept[rows[is_near]] = False
+    between = np.linalg.norm(np.diff(points[rows], axis=0), axis=1) / speed[rows[1:] - 1]
+    # neighbours across a step of the count: the first of the two is enough
+    is_kept[rows[1:-1][between[:-1] < min_step]] = False
     return is_kept
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from itertools import product
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -34,6 +35,7 @@ Same = TypeVar("Same", bound=FilledParameters)
 TOLERANCE_MM = 1e-6  # mm; regions whose borders are no farther apart are equal
 DEFAULT_WIDTH_MM = ProcessParameters().bead_width  # mm; a width that is other than that was given
 AREA_STEP = 0.01  # mm^2; areas of regions equal within TOLERANCE_MM differ by less
+SIZE_STEP = 0.001  # mm; so do widths
 MOST_FED = 1.5  # of the room in a layer; beads that overlap by a third
 USUAL_SPACING = (
     0.738  # of a width, at which the surface between beads is flat (Ding, Pan, Cuiuri, Li 2015)
@@ -82,19 +84,36 @@ class _Picture(NamedTuple):
     cover: Cover
     bare: list[Bare]
 
+    def move(self, by: Array) -> _Picture:
+        """The picture of the region moved by (2,) mm."""
+        return self._replace(
+            curves=[replace(curve, points=curve.points + by) for curve in self.curves],
+            gaps=[(point + by, width) for point, width in self.gaps],
+            bare=[place._replace(point=place.point + by) for place in self.bare],
+        )
+
 
 class _Outline(NamedTuple):
-    """What equal regions have in common: the numbers of points of their borders, and their area, in
-    steps of AREA_STEP.
+    """What equal regions have in common wherever they are: the numbers of points of their borders; area in steps of AREA_STEP;
+    width and height in steps of SIZE_STEP.
     """
 
     point_counts: tuple[int, ...]
     area_steps: int
+    size_steps: tuple[int, int]
+
+    def similar(self) -> Iterator[_Outline]:
+        """Outlines of regions that are equal within TOLERANCE_MM: a size may be on either side of a step."""
+        for by, wider, higher in product((0, -1, 1), repeat=3):
+            wide, high = self.size_steps
+            yield _Outline(self.point_counts, self.area_steps + by, (wide + wider, high + higher))
 
 
 def _outline(region: Region) -> _Outline:
     counts = tuple(sorted(len(border) for border in region.borders()))
-    return _Outline(counts, round(region.area / AREA_STEP))
+    wide, high = np.ptp(region.borders()[0], axis=0).tolist()
+    steps = round(wide / SIZE_STEP), round(high / SIZE_STEP)
+    return _Outline(counts, round(region.area / AREA_STEP), steps)
 
 
 class Pictures:
@@ -242,14 +261,19 @@ class Pictures:
             )
         period, outline = layer.surface.period, _outline(region)
         has_direction = self._strategy.has_direction
-        for step in (0, -1, 1):  # equal regions may be on either side of a step of area
-            similar = outline._replace(area_steps=outline.area_steps + step)
+        may_move = flat and filling.infill.density == 1.0  # sparse patterns have fixed places
+        for similar in outline.similar():
             for picture in self._pictures.get((period, similar), ()):
                 assert isinstance(picture.region, Region)
-                if _same(picture.filling, filling, has_direction) and _equal(
-                    picture.region.borders(), region.borders()
-                ):
-                    return picture
+                if not _same(picture.filling, filling, has_direction):
+                    continue
+                by = region.middle - picture.region.middle
+                if np.abs(by).max() <= TOLERANCE_MM:
+                    by = np.zeros(2)
+                elif not may_move:
+                    continue
+                if _equal([border + by for border in picture.region.borders()], region.borders()):
+                    return picture.move(by) if by.any() else picture
         picture = self._fill_region(region, filling, flat)
         self._pictures[period, outline].append(picture)
         return picture
@@ -270,7 +294,7 @@ class Pictures:
             strategy.longest_link * filling.beads.spacing,
             infill,
         )
-        gaps = [] if sparse else open_places(region, curves, beads)
+        usual_curves = curves
         if isinstance(region, Region) and not sparse:
             curves = [*share_widths(region, curves, beads, share, min_share, max_share)]
         cover = measure_cover(region, curves, filling.beads, infill.density)
@@ -289,9 +313,13 @@ class Pictures:
                 curves, filling.beads, angle, strategy.narrowest
             )  # no wider than their room, and centred in it
             cover = measure_cover(region, curves, filling.beads)
+        adapted = None
         if strategy.adapts_widths and flat and isinstance(region, Region):
             adapted = _adapt_widths(region, curves, cover, filling.beads, strategy)
-            curves, cover, gaps = adapted or (curves, cover, gaps)
+        if adapted:
+            curves, cover, gaps = adapted
+        else:
+            gaps = [] if sparse else open_places(region, usual_curves, beads)
         bare = [] if sparse or not isinstance(region, Region) else bare_parts(region, curves, beads)
         bare_places = [
             Bare(bare_part.area, bare_part.width, bare_part.inside()) for bare_part, _ in bare
