@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..types import Array, Integers
+from ..types import Array, Index, Integers
 
 DISC_SIDES = 72
 
@@ -131,3 +131,33 @@ def enclosed_volume(around: Sequence[Body]) -> tuple[float, Array]:
             tetrahedra[:, None] * corners.sum(axis=1) / 4.0
         ).sum(axis=0)
     return volume, weighted / volume if volume > 0.0 else weighted
+
+
+def meeting_boxes(low: Array, high: Array) -> list[Index]:
+    """Find the boxes that overlap or touch, without comparing all pairs.
+
+    Parameters
+    ----------
+    low, high : (n, 3) array
+        Lowest and highest corners, mm.
+
+    Returns
+    -------
+    list of (k,) int array
+        For each box the numbers of the others that it meets, rising.
+    """
+    spread = np.ptp(low, axis=0) / np.maximum((high - low).mean(axis=0), 1e-300)
+    axis = int(np.argmax(spread))
+    order = np.argsort(low[:, axis], kind="stable")
+    low, high = low[order], high[order]
+    ends = np.searchsorted(low[:, axis], high[:, axis], side="right")
+    pairs = [np.zeros((0, 2), dtype=np.intp)]
+    for number, end in enumerate(ends.tolist()):
+        later = slice(number + 1, end)
+        meets = ((low[later] <= high[number]) & (low[number] <= high[later])).all(axis=1)
+        others = number + 1 + np.flatnonzero(meets)
+        pairs.append(np.stack([np.full(len(others), number), others], axis=1))
+    met = order[np.concatenate(pairs)]
+    met = np.concatenate([met, met[:, ::-1]])
+    met = met[np.lexsort(met.T[::-1])]
+    return np.split(met[:, 1], np.searchsorted(met[:, 0], np.arange(1, len(low))))

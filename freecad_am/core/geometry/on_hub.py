@@ -5,8 +5,8 @@ start.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -20,7 +20,7 @@ from .formatting import place
 from .frames import TURN
 from .mesh.coarsen import doubled_areas
 from .mesh.solid import SolidMesh
-from .obstacles import Body
+from .obstacles import Body, meeting_boxes
 
 
 @dataclass(frozen=True, eq=False)
@@ -352,7 +352,7 @@ def solids_beyond(solids: SolidsOnHub) -> float | None:
                 volume_beyond(surface, group.base.inside(body.vertices), body.triangles)
                 for body in group.bodies
             )
-        elif any(_may_meet(*pair) for pair in combinations(group.bodies, 2)):
+        elif _may_meet(group.bodies):
             return None
         else:
             volume += sum(
@@ -361,12 +361,15 @@ def solids_beyond(solids: SolidsOnHub) -> float | None:
     return volume
 
 
-def _may_meet(body_a: Body, body_b: Body) -> bool:
-    return bool(
-        (
-            (body_a.vertices.min(axis=0) < body_b.vertices.max(axis=0))
-            & (body_b.vertices.min(axis=0) < body_a.vertices.max(axis=0))
-        ).all()
+def _may_meet(bodies: Sequence[Body]) -> bool:
+    """Whether the boxes of any two bodies overlap."""
+    if len(bodies) < 2:
+        return False
+    low = np.array([body.vertices.min(axis=0) for body in bodies])
+    high = np.array([body.vertices.max(axis=0) for body in bodies])
+    return any(
+        bool(((low[others] < high[number]) & (low[number] < high[others])).all(axis=1).any())
+        for number, others in enumerate(meeting_boxes(low, high))
     )
 
 

@@ -20,7 +20,7 @@ from ...geometry.developable import Developable, Plane
 from ...geometry.formatting import place
 from ...geometry.mesh.coarsen import doubled_areas
 from ...geometry.mesh.solid import SolidMesh, connected_pieces
-from ...geometry.obstacles import Body
+from ...geometry.obstacles import Body, meeting_boxes
 from ...geometry.on_hub import Group, SolidsOnHub, solids_beyond
 from ...geometry.regions.region import Region
 from ...geometry.section import Section
@@ -81,20 +81,17 @@ def _union_volume(bodies: Sequence[Body], tolerance: float) -> float | None:
     longest = float(np.sqrt(surface / PLACES))
     total = sum(abs(volume) for volume in volumes)
     shared = 0.0
-    for number, corner in enumerate(corners):
-        other_bodies = [
-            (k, inside) for k, inside in enumerate(closed) if k != number and _meet(inside, corner)
-        ]
+    boxes = (
+        np.array([inside.low for inside in closed]),
+        np.array([inside.high for inside in closed]),
+    )
+    for number, (corner, met) in enumerate(zip(corners, meeting_boxes(*boxes))):
+        other_bodies = [(k, closed[k]) for k in met.tolist()]
         if other_bodies:
             shared += _hidden_volume(
                 corner - middle, longest, _hiding(number, other_bodies, tolerance, middle)
             )
     return total if shared < TOUCHING * total else total - shared
-
-
-def _meet(inside: Inside, corners: Array) -> bool:
-    low, high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
-    return bool(((low <= inside.high) & (inside.low <= high)).all())
 
 
 def _hidden_volume(corner: Array, longest: float, hidden: Callable[[Array, Array], Mask]) -> float:
