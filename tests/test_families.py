@@ -6,9 +6,12 @@ import functools
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from freecad_am.core.families.registry import AUTO, FAMILIES
+from freecad_am.core.families.registry import KINDS as KINDS_OF
+from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.filled import FILLS
 
 PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
@@ -19,7 +22,7 @@ FEATURE_CLASSES = {family.parameters.__name__ for family in FAMILIES} | {
 }
 WALL_CLASSES = {"RevolvedWall", "PatchWall", "SurfaceWall", "SolidsOnHub", "CladFaces"}
 # comparisons with a kind, and tests of the class of parameters, features and walls; only goes down
-MAX_SWITCHES = 14
+MAX_SWITCHES = 0
 MAX_FILES_OF_A_FAMILY = 12  # that have its kind as a string
 LAYERS = {"planes", "geodesic", "offset", "along", "PLANES", "GEODESIC", "OFFSET"}
 MAX_LAYER_SWITCHES = 9  # comparisons with a kind of layers
@@ -155,6 +158,35 @@ def test_the_files_of_a_family_are_complete(family):
         assert f"def {method}(" in window, method
     page = re.search(r'page = "([\w-]+)"', window)[1]
     assert (PACKAGE.parent / "docs" / "tools" / f"{page}.md").is_file()
+
+
+def test_families_are_asked_in_one_order():
+    """Solids come last, because they recognise every part."""
+    from freecad_am.objects.planned.proposed_family import planners
+
+    ranks = [planner.recognition_rank for planner in planners()]
+    assert len(set(ranks)) == len(ranks) > 0 and ranks == sorted(ranks)
+    assert planners()[-1].proxy[1] == "SolidFeature"
+
+
+def test_families_without_a_planned_surface_refuse_to_be_compared():
+    from freecad_am.core.inspection.planned import revolution_surface
+    from freecad_am.objects.families.registry import planner_of
+    from tests.core.inspection_parts import hemisphere
+
+    def surface(kind, value):
+        return planner_of(KINDS_OF[kind]).planned_surface(value, "Feature")
+
+    for kind in ("curves", "cladding"):
+        with pytest.raises(InputError, match="no planned surface") as caught:
+            surface(kind, None)
+        assert (caught.value.code, caught.value.where) == ("NOT_FOR_FAMILY", "Feature")
+    wall = hemisphere()
+    above = np.array([[0.0, 0.0, 60.0]])
+    found, expected = (
+        each.exact(above)[0] for each in (surface("revolution", wall), revolution_surface(wall))
+    )
+    assert found == pytest.approx(expected)
 
 
 def test_modes_are_those_of_the_parameter():

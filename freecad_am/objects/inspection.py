@@ -18,7 +18,7 @@ from ..core.issues import InputError, Text
 from ..core.parameters.inspection import InspectionParameters
 from ..core.parameters.process import ProcessParameters
 from .current import check_current
-from .families.registry import stage_family
+from .families.registry import planner_of, stage_family
 from .fields.properties import HIDDEN, OUTPUT
 from .results.fingerprints import fingerprint
 from .shapes.bodies import snapshot_of
@@ -180,12 +180,15 @@ def _digest(path: str, where: str) -> str:
 
 def _stage_surface(target: Any) -> Callable[[], Planned]:
     value, label = target.Proxy.value(target), target.Label
+    own_family = stage_family(target.Proxy)
+    if own_family is not None:
+        return lambda: planner_of(own_family).planned_surface(value, label)
     feature = getattr(target, "Feature", None)
     family = None if feature is None else stage_family(feature.Proxy)
     if family is not None and family.has_axis:  # circles of its beads are given along its meridian
         wall = feature.Proxy.value(feature)
-        return lambda: dataclasses.replace(surfaces.planned(value, label), wall=wall)
-    return lambda: surfaces.planned(value, label)
+        return lambda: dataclasses.replace(surfaces.toolpath_surface(value, label), wall=wall)
+    return lambda: surfaces.toolpath_surface(value, label)
 
 
 def _shape_surface(target: Any) -> Callable[[], Planned]:

@@ -8,7 +8,6 @@ from typing import Any
 
 from ..brep.shapes.part_depths import face_depths
 from ..brep.walls.wall_on import wall_on
-from ..core.geometry.walls.patch_wall import PatchWall
 from ..core.issues import InputError
 from ..core.parameters.build_direction import BuildDirectionParameters
 from ..core.parameters.strategy import FRONTS, SurfaceParameters
@@ -112,16 +111,8 @@ class SurfaceFeature(FeatureStage):
             wall = dataclasses.replace(
                 wall, surroundings=(*ground, *bodies(fixtures)), depths=depths
             )
-            kind = (
-                "mesh"
-                if source_body.shape is None
-                else "patches"
-                if isinstance(wall, PatchWall)
-                else wall.kind
-            )
-            return Outcome(
-                wall, (*wall.issues, *large), (("WallFaces", list(wall.faces)), ("WallKind", kind))
-            )
+            figures = (("WallFaces", list(wall.faces)), ("WallKind", wall.kind))
+            return Outcome(wall, (*wall.issues, *large), figures)
 
         return work
 

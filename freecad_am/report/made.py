@@ -9,7 +9,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from ..core.families.registry import family_of
-from ..core.geometry.on_hub import SolidsOnHub
 from ..core.kinematics.cell import Cell
 from ..core.motion import Motion
 from ..core.process.deposit import balance as deposit_balance
@@ -18,6 +17,7 @@ from ..core.simulation import timeline
 from ..core.simulation.achievable_feed import spread_to_deposit_rows
 from ..core.toolpath import Toolpath
 from ..core.types import Array
+from ..objects.families.registry import planner_for
 from . import figures
 from .figures import Job, Results
 from .of_feature import OfFeature
@@ -56,9 +56,11 @@ class Made:
             )
             source = replace(source, cell=self.cell, condition=condition, threshold=threshold)
         platform = self.job.cell.platform_diameter if self.job.cell else None
-        alone = len(self.job.features) == 1 and family_of(self.job.features[0].strategy).is_filled
-        shape = self.job.features[0].shape() if alone else None
-        solids = shape if isinstance(shape, SolidsOnHub) else None
+        solids = None
+        if len(self.job.features) == 1:
+            shape = self.job.features[0].shape()
+            planner = planner_for(self.job.features[0].strategy)
+            solids = None if planner.bodies_to_cover(shape) is None else shape
         return page.render(page.Content(self.content, source, self.features, platform, solids))
 
 

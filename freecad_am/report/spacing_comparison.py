@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from ..core.geometry.walls.surface_wall import SurfaceWall
 from ..core.issues import AmError
 from ..core.kinematics import cell as cells
 from ..core.kinematics.cell import Cell
@@ -54,7 +53,7 @@ _REASONS = {  # why a wall of several faces, an open or a trimmed one is not cut
 
 def compare(wall: Any, strategy: Any) -> tuple[Compared | Refused, ...]:
     """A wall cut by every method; walls without one closed parameter by none."""
-    if isinstance(wall, SurfaceWall):
+    if wall.closes_around:
         return wall_comparison.compare(wall, strategy)
     reasons = _REASONS if strategy.method != FRONTS else _REASONS | {ISO: _FRONTS, NORMAL: _FRONTS}
     return tuple(

@@ -1407,7 +1407,7 @@
         <translation>(vide : aucune)</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>(others are on the bend of {0}: as the substrate it shapes their layers)</source>
         <translation>(d&apos;autres sont sur la courbure de {0} : comme substrat il donne sa forme à leurs couches)</translation>
     </message>
@@ -8452,7 +8452,7 @@
         <translation>sens antihoraire</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/planned.py"/>
+        <location filename="../../freecad_am/objects/families/planner.py"/>
         <source>curves and cladding have no planned surface; compare the points with the part</source>
         <translation>les courbes et le rechargement ne planifient pas de surface ; comparez les points à la pièce</translation>
     </message>
@@ -8622,7 +8622,7 @@
         <translation>dépôt antérieur, à sa largeur réelle, ou pièce existante sous chaque court morceau de cordon, contre la direction de dépôt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/curves.py"/>
         <source>edges of {0} are selected, to be deposited as beads</source>
         <translation>des arêtes de {0} sont choisies, à déposer en cordons</translation>
     </message>
@@ -9510,6 +9510,11 @@
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it is a sliced file: it contains G-code ({0}) and no triangles; export the project with its meshes, or unpack the G-code and plan it as curves</source>
         <translation>c&apos;est un fichier tranché : il contient du G-code ({0}) et aucun triangle ; exportez le projet avec ses maillages, ou extrayez le G-code et planifiez-le comme courbes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/families/revolution.py"/>
+        <source>it is a solid of revolution, but a wall of one bead would leave out {0} of its {1} cm3</source>
+        <translation>c&apos;est un solide de révolution, mais une paroi d&apos;un cordon laisserait de côté {0} de ses {1} cm3</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
@@ -13507,22 +13512,22 @@
         <translation>le deuxième groupe de P[{0}] n&apos;est pas compris</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/cladding.py"/>
         <source>the selected faces of {0} share no axis of revolution, and the part is thicker there than a bead of {1} mm, so they are covered</source>
         <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe, et elle y est plus épaisse qu&apos;un cordon de {1} mm, elles sont donc recouvertes</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/surface.py"/>
         <source>the selected faces of {0} share no axis of revolution, so they are a wall that starts on the platform if nothing else supports it</source>
         <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi qui part du plateau là où rien ne la porte</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/surface.py"/>
         <source>the selected faces of {0} share no axis of revolution, so they are a wall; it needs a substrate, or start edges</source>
         <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi ; il lui faut un substrat, ou des arêtes d&apos;où partir</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/revolution.py"/>
         <source>the selected faces of {0} share one axis of revolution</source>
         <translation>les faces choisies de {0} tournent autour d&apos;un axe</translation>
     </message>
@@ -14125,6 +14130,11 @@
         <location filename="../../freecad_am/gui/plots/dock.py"/>
         <source>to</source>
         <translation>à</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/families/developable.py"/>
+        <source>to deposit on one, name it as the substrate</source>
+        <translation>pour déposer sur l&apos;un d&apos;eux, nommez-le comme substrat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
@@ -15072,7 +15082,7 @@
         <translation>{0} veut dire autre chose pour la commande ; utilisez un autre mot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/curves.py"/>
         <source>{0} has edges but no faces, to be deposited as beads</source>
         <translation>{0} a des arêtes mais pas de faces, à déposer en cordons</translation>
     </message>
@@ -15147,14 +15157,9 @@
         <translation>{0} a {1} points avec son approche, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0} holds {1} solids{2}</source>
         <translation>{0} contient {1} solides{2}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} holds {1} solids{2}; to deposit on one, name it as the substrate</source>
-        <translation>{0} contient {1} solides{2} ; pour déposer sur l&apos;un d&apos;eux, nommez-le comme substrat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
@@ -15217,12 +15222,12 @@
         <translation>{0} est une condition, une boucle ou une variable ; écrivez les déplacements</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/cladding.py"/>
         <source>{0} is a flat rather than upright open mesh, {1} at less than 45 deg to the platform, so it is a face to cover</source>
         <translation>{0} est un maillage ouvert couché plutôt que dressé, à {1} sous moins de 45 deg du plateau, donc une face à couvrir</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/cladding.py"/>
         <source>{0} is a flat rather than upright open surface, {1} at less than 45 deg to the platform, so it is a face to cover</source>
         <translation>{0} est une surface ouverte couchée plutôt que dressée, à {1} sous moins de 45 deg du plateau, donc une face à couvrir</translation>
     </message>
@@ -15237,7 +15242,7 @@
         <translation>{0} est un maillage, qui n&apos;a ni arêtes ni faces ; choisissez une forme</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0} is a mesh, to be filled</source>
         <translation>{0} est un maillage, qui est rempli</translation>
     </message>
@@ -15262,22 +15267,17 @@
         <translation>{0} est un robot ; utilisez {1}, ou choisissez une autre machine</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0} is a solid</source>
         <translation>{0} est un solide</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/revolution.py"/>
         <source>{0} is a solid of revolution, and its wall is one bead of {1} mm</source>
         <translation>{0} tourne autour d&apos;un axe, et sa paroi est un cordon de {1} mm</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
-        <source>{0} is a solid; it is a solid of revolution, but a wall of one bead would leave out {1} of its {2} cm3</source>
-        <translation>{0} est un solide ; c&apos;est un solide de révolution, mais une paroi d&apos;un cordon laisserait de côté {1} de ses {2} cm3</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/revolution.py"/>
         <source>{0} is a surface of revolution</source>
         <translation>{0} est une peau qui tourne autour d&apos;un axe</translation>
     </message>
@@ -15287,12 +15287,12 @@
         <translation>{0} est une surface : elle n&apos;a pas de paroi {1}, et est prise telle quelle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/surface.py"/>
         <source>{0} is a thin shell, one bead of {1} mm, on {2}</source>
         <translation>{0} est une coque mince, un cordon de {1} mm, sur {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/surface.py"/>
         <source>{0} is a thin wall that grows on {1}</source>
         <translation>{0} est une paroi mince qui croît sur {1}</translation>
     </message>
@@ -15322,27 +15322,27 @@
         <translation>{0} peut se lire de deux façons ; écrivez les décimales avec un point et une seule sorte de séparateur, comme dans 10.5 20.5</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0} is an open mesh that intersects itself at {1} pairs of triangles, as at {2}, so it is not a wall of one bead: it is filled, with its {3} holes of up to {4} mm closed</source>
         <translation>{0} est un maillage ouvert qui se coupe lui-même en {1} paires de ses triangles, par exemple en {2}, ce n&apos;est donc pas une paroi d&apos;un cordon : il est rempli, ses {3} trous jusqu&apos;à {4} mm étant fermés</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/surface.py"/>
         <source>{0} is an open mesh, so it is a thin wall that grows on {1}</source>
         <translation>{0} est un maillage ouvert, donc une paroi mince qui croît sur {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/surface.py"/>
         <source>{0} is an open mesh, so it is a thin wall that starts on the platform</source>
         <translation>{0} est un maillage ouvert, donc une paroi mince qui part du plateau</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/surface.py"/>
         <source>{0} is an open surface without an axis of revolution, and no other strategy applies; it needs a substrate or start edges, and regions that do not grow from there are omitted</source>
         <translation>{0} est une surface ouverte sans axe de révolution, et aucune autre stratégie ne convient ; il faut un substrat ou des arêtes de départ, et les régions qui n&apos;en partent pas sont omises</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/surface.py"/>
         <source>{0} is an open surface without an axis of revolution, so it is a thin wall, which starts on the platform if nothing else supports it</source>
         <translation>{0} est une peau ouverte qui n&apos;est pas de révolution, donc une paroi mince, qui part du plateau là où rien ne la porte</translation>
     </message>
@@ -15927,7 +15927,7 @@
         <translation>{0} n&apos;est pas {1} ; donnez plus de 0, ou null si elle n&apos;est pas connue</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/developable.py"/>
         <source>{0} is on a cylinder or cone of {1}</source>
         <translation>{0} est sur un cylindre ou cône de {1}</translation>
     </message>
@@ -16227,7 +16227,7 @@
         <translation>{0} désigne des faces ou des arêtes de plusieurs objets ({1}, {2}) ; choisissez celles d’un seul</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/surface.py"/>
         <source>{0} names its start edges</source>
         <translation>{0} nomme les arêtes d&apos;où elle part</translation>
     </message>
@@ -16347,12 +16347,12 @@
         <translation>{0} de {1} n’est pas la face choisie : celle-ci est maintenant {2}, car FreeCAD renumérote les faces quand une pièce change ; choisissez les faces à nouveau, ou confirmez-les : OK dans le panneau sans rien saisir d’autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/developable.py"/>
         <source>{0} of {1} is selected, the base of most of its solids</source>
         <translation>{0} de {1} est choisi, la base de la plupart de ses solides</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/developable.py"/>
         <source>{0} of {1} is selected, the base of the rest</source>
         <translation>{0} de {1} est choisi, la base du reste</translation>
     </message>
@@ -16662,17 +16662,17 @@
         <translation>{0} {1} ; donnez {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and layers follow the bend of {1} at its base</source>
         <translation>{0}, et les couches suivent la courbure de {1} à sa base</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and less than 1% of its surface overhangs by more than 45 deg</source>
         <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and less than 1% of its surface overhangs by more than 45 deg, stacked along {1}</source>
         <translation>{0}, et moins de 1 % de sa surface surplombe de plus de 45 deg, empilé suivant {1}</translation>
     </message>
@@ -16682,72 +16682,72 @@
         <translation>{0}, et {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}, which layers along the path through it support</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}, which layers along the path through it support; stacked along {3} it would be {4}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle ; empilé suivant {3}, ce serait {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; a machine that tilts can use layers: {3}, which need no support</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline peut utiliser layers: {3}, qui se passe de support</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; a machine that tilts can use layers: {3}, which need no support; stacked along {4} it would be {5}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline peut utiliser layers: {3}, qui se passe de support ; empilé suivant {4}, ce serait {5}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; curved layers need a flat base face, which it lacks</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; des couches courbes demandent une face de base plane, qui manque</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; curved layers need a flat base face, which it lacks; stacked along {3} it would be {4}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; des couches courbes demandent une face de base plane, qui manque ; empilé suivant {3}, ce serait {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg, which layers along the path through it support</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg, which layers along the path through it support; stacked along {2} it would be {3}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle ; empilé suivant {2}, ce serait {3}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg; a machine that tilts can use layers: {2}, which need no support</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline peut utiliser layers: {2}, qui se passe de support</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg; a machine that tilts can use layers: {2}, which need no support; stacked along {3} it would be {4}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline peut utiliser layers: {2}, qui se passe de support ; empilé suivant {3}, ce serait {4}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg; curved layers need a flat base face, which it lacks</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; des couches courbes demandent une face de base plane, qui manque</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/planned/proposed_family.py"/>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg; curved layers need a flat base face, which it lacks; stacked along {2} it would be {3}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; des couches courbes demandent une face de base plane, qui manque ; empilé suivant {2}, ce serait {3}</translation>
     </message>

@@ -34,7 +34,8 @@ MAKERS: dict[str, set[int]] = {
     "Curve": {0},
     "Entry": {0},
     "Promise": {0, 1},
-    "Proposal": {2},
+    "Proposal": {1},
+    "Refusal": {0},
     "carry_out": {2},
     "controller_checks": set(range(8)),
 }

@@ -14,10 +14,15 @@ from FreeCAD import Vector
 
 from freecad_am.batch.job import job as jobs
 from freecad_am.core.issues import InputError
-from freecad_am.objects.planned.proposed_family import proposed
+from freecad_am.objects.families.recognition import SelectedPart
+from freecad_am.objects.planned.proposed_family import propose_family
 from freecad_am.objects.shapes.bodies import Taken
 
 UP = Vector(0, 0, 1)
+
+
+def proposed_for(*given, **more):
+    return propose_family(SelectedPart(*given, **more))
 
 
 def tube(outer, inner, height):
@@ -32,7 +37,7 @@ def tee():
 
 def of(shape, substrate=None, *, faces=(), edges=False, width=8.0, tilts=True, **more):
     under = None if substrate is None else Taken("ground", substrate)
-    return proposed(Taken("part", shape), faces, under, edges, width, tilts, **more)
+    return proposed_for(Taken("part", shape), faces, under, edges, width, tilts, **more)
 
 
 @pytest.mark.parametrize(
@@ -272,7 +277,7 @@ def test_an_open_mesh_is_a_wall_and_one_with_a_small_hole_is_filled(turned):
         if turned:
             some = some.copy()
             some[: len(some) // 3] = some[: len(some) // 3, ::-1]
-        found = proposed(
+        found = proposed_for(
             Taken("scan", None, Mesh.Mesh(points[some].tolist()), np.eye(4)),
             (),
             None,
@@ -298,7 +303,7 @@ def test_an_open_mesh_that_lies_is_covered_and_one_that_stands_is_a_wall():
         mesh = Mesh.Mesh(face.tessellate(0.2))
         kinds.append(
             [
-                proposed(Taken("scan", None, mesh, np.eye(4)), (), under, edges, 8.0, True).kind
+                proposed_for(Taken("scan", None, mesh, np.eye(4)), (), under, edges, 8.0, True).kind
                 for under, edges in (
                     (None, False),
                     (None, True),
@@ -404,7 +409,7 @@ def test_an_open_mesh_that_cuts_itself_is_filled(workshop):
 
 
 def of_mesh(corners):
-    return proposed(
+    return proposed_for(
         Taken("scan", None, Mesh.Mesh(corners.tolist()), np.eye(4)), (), None, False, 8.0, True
     )
 
@@ -413,7 +418,7 @@ def test_a_mesh_is_filled():
     mesh = MeshPart.meshFromShape(
         Shape=Part.makeBox(20, 20, 20), LinearDeflection=1, AngularDeflection=1
     )
-    found = proposed(Taken("scan", None, mesh, np.eye(4)), (), None, False, 8.0, True)
+    found = proposed_for(Taken("scan", None, mesh, np.eye(4)), (), None, False, 8.0, True)
     assert (found.kind, found.layers) == ("solid", "planes") and "is a mesh" in found.reason
     assert isinstance(mesh, Mesh.Mesh)
 

@@ -10,8 +10,9 @@ import pytest
 from freecad_am import api
 from freecad_am.gui.registry import edit
 from freecad_am.gui.tools.commands import GROUPS
+from freecad_am.objects.families.recognition import SelectedPart
 from freecad_am.objects.job_group import is_group
-from freecad_am.objects.planned.proposed_family import proposed
+from freecad_am.objects.planned.proposed_family import propose_family
 from freecad_am.objects.shapes.bodies import snapshot_of
 from tests.gui.nested_cone import nested_cone
 
@@ -211,7 +212,7 @@ def test_what_is_proposed_is_what_jobs_of_kind_auto_get(person):
             f"a proposal for {name}",
             30,
         )
-        auto = proposed(snapshot_of(part), (), None, False, 8.0, True)
+        auto = propose_family(SelectedPart(snapshot_of(part), (), None, False, 8.0, True))
         assert auto.reason.split(" (")[0].split(";")[0] in person.field(panel, "reason").text()
         told[name] = person.field(panel, "Kind").currentText()
     assert told == {
@@ -438,7 +439,7 @@ def test_a_shape_the_kernel_fails_on_is_told(person, hemisphere, monkeypatch):
     def fail(*_, **__):
         raise RuntimeError("Bnd_Box is void")
 
-    monkeypatch.setattr("freecad_am.objects.planned.proposed_family.find_wall", fail)
+    monkeypatch.setattr("freecad_am.objects.families.recognition.find_wall", fail)
     person.select(hemisphere)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")

@@ -137,7 +137,7 @@ def test_walls_on_parts_are_exact_and_outside_is_a_plus(doc, root, wall, ground)
     feature = api.make_surface_feature(
         doc, part, (), api.open_part(doc, str(examples / ground)), layer_height=5
     )
-    of = surfaces.planned(api.result(feature), "wall")
+    of = surfaces.wall_surface(api.result(feature))
     inside, normal = of.exact(of.spread)
     feet = of.spread - inside[:, None] * normal
     off = np.random.default_rng(4).uniform(-1.5, 1.5, len(feet))

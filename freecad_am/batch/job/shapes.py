@@ -258,9 +258,8 @@ class Shapes:
         if self.of.sections is None:
             return None
         from freecad_am.core.parameters.filled import GEODESIC, PLANES
-        from freecad_am.objects.planned.proposed_family import (
-            proposed,  # its imports take long
-        )
+        from freecad_am.objects.families.recognition import SelectedPart  # its imports take long
+        from freecad_am.objects.planned.proposed_family import propose_family
 
         ground = (
             next(iter(self._touching_parts(earlier)), None)
@@ -269,7 +268,7 @@ class Shapes:
         )
         try:
             planes = planes_of(self.of)
-            proposal = proposed(
+            part = SelectedPart(
                 snapshot_of(self.part),
                 self.faces,
                 None if ground is None else snapshot_of(ground),
@@ -280,6 +279,7 @@ class Shapes:
                 direction=planes.direction,
                 layer_height=planes.layer_height,
             )
+            proposal = propose_family(part)
             if proposal.layers == GEODESIC and self.fails:
                 proposal = replace(
                     proposal, layers=PLANES, reason=proposal.reason + INSTEAD.format(self.fails)

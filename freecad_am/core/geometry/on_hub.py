@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -177,8 +177,10 @@ class SolidsOnHub:
     """The solids to deposit, group by group.
 
     surroundings: hub and fixtures. chord_error: mm between the triangles and the solids. own:
-    the hub, if it belongs to the part and is not deposited.
+    the hub, if it belongs to the part and is not deposited. depths: None, as beads fill them.
     """
+
+    depths: ClassVar[None] = None
 
     label: str
     groups: tuple[Group, ...]

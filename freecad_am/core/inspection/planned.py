@@ -496,32 +496,22 @@ PLAIN_LOOP = 0.2  # of normals away from the middle of a loop: with less, its ne
 FINE = 0.25  # mm between samples of beads
 
 
-def planned(source: object, name: str) -> Planned:
-    """The surface of a feature's wall or solids, or of a toolpath's beads.
-    Raises InputError NOT_FOR_FAMILY naming it."""
-    if isinstance(source, RevolvedWall):
-        return revolution_surface(source)
-    if isinstance(source, PatchWall):
-        return _patches_surface(source)
-    if isinstance(source, SurfaceWall):
-        return _wall_surface(source)
-    if isinstance(source, SolidsOnHub):
-        bodies = [body for group in source.groups for body in group.bodies]
-        counts = np.cumsum([0, *(len(body.vertices) for body in bodies)])
-        triangles = np.concatenate(
-            [body.triangles + start for body, start in zip(bodies, counts[:-1], strict=True)]
-        )
-        vertices = np.concatenate([body.vertices for body in bodies])
-        return triangle_surface(
-            source.label, vertices, triangles, source.groups[0].base.frame, chord=source.chord_error
-        )
-    if isinstance(source, Toolpath):
-        return _toolpath_surface(source, name)
-    raise InputError(
-        "NOT_FOR_FAMILY",
-        name,
-        "curves and cladding have no planned surface; compare the points with the part",
+def solids_surface(solids: SolidsOnHub) -> Planned:
+    """The surface of all solids, by their triangles."""
+    bodies = [body for group in solids.groups for body in group.bodies]
+    counts = np.cumsum([0, *(len(body.vertices) for body in bodies)])
+    triangles = np.concatenate(
+        [body.triangles + start for body, start in zip(bodies, counts[:-1], strict=True)]
     )
+    vertices = np.concatenate([body.vertices for body in bodies])
+    return triangle_surface(
+        solids.label, vertices, triangles, solids.groups[0].base.frame, chord=solids.chord_error
+    )
+
+
+def wall_surface(wall: SurfaceWall | PatchWall) -> Planned:
+    """The surface of a wall on a part."""
+    return _tube_surface(wall) if wall.closes_around else _patches_surface(wall)
 
 
 def _patches_surface(wall: PatchWall) -> Planned:
@@ -535,7 +525,7 @@ def _patches_surface(wall: PatchWall) -> Planned:
     )
 
 
-def _wall_surface(wall: SurfaceWall) -> Planned:
+def _tube_surface(wall: SurfaceWall) -> Planned:
     surface = wall.surface()
     period = surface.period or 2.0 * np.pi
     u, v = surface.inverse(wall.first)
@@ -579,8 +569,9 @@ def _outward(loop: Array, normals: Array) -> float:
     return 1.0 if float(dot(loop - loop.mean(axis=0), normals).sum()) >= 0.0 else -1.0
 
 
-def _toolpath_surface(toolpath: Toolpath, name: str) -> Planned:
-    """The wall formed by adjacent beads, in the plane of each bead and its build direction."""
+def toolpath_surface(toolpath: Toolpath, name: str) -> Planned:
+    """The wall formed by adjacent beads, in the plane of each bead and its build direction.
+    Raises InputError NOT_FOR_FAMILY naming it."""
     if toolpath.traits.is_filled:
         raise InputError(
             "NOT_FOR_FAMILY",

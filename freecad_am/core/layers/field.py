@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 from ..geometry.curves.guide import Guide
 from ..geometry.developable import Developable
 from ..geometry.on_hub import Group, SolidsOnHub
-from ..parameters.filled import DevelopableParameters, FilledParameters, SolidParameters
+from ..parameters.filled import FilledParameters, SolidParameters
 from ..slicing.solids.equidistant import Facets, cut
 from ..slicing.solids.plane_sections import PlaneCuts
 from ..types import Array
@@ -37,26 +37,32 @@ def stacks(solids: SolidsOnHub, strategy: FilledParameters) -> Iterator[Stack]:
     together on a plane.
     """
     for number, group in enumerate(solids.groups):
-        if isinstance(strategy, DevelopableParameters):
+        if isinstance(group.base.surface, Developable):
             for solid, body in enumerate(group.bodies):
                 yield Stack(body.name, rotary.slices(group.base, body, strategy), number, solid)
-            continue
-        assert isinstance(strategy, SolidParameters)
-        if strategy.has_curved_layers:
-            yield Stack(group.bodies[0].name, curved.slices(solids, group, strategy), number, 0)
-            continue
-        for solid, bodies in enumerate(
-            [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
-        ):
-            layers: Iterable[Slice]
-            if isinstance(group.base.surface, Guide):
-                layers = along.slices(group.base, bodies, strategy)
-            else:
-                layers = planes.slices(group.base, bodies, strategy)
-            name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
-            yield Stack(
-                name, mark_buried(report_overhangs(layers, strategy), strategy.thick), number, solid
-            )
+        else:  # only solids have other bases
+            yield from _stacks_of_group(solids, number, group, cast(SolidParameters, strategy))
+
+
+def _stacks_of_group(
+    solids: SolidsOnHub, number: int, group: Group, strategy: SolidParameters
+) -> Iterator[Stack]:
+    """Yield the solids of a group, by number, that is on a plane or at the start of a guide."""
+    if strategy.has_curved_layers:
+        yield Stack(group.bodies[0].name, curved.slices(solids, group, strategy), number, 0)
+        return
+    for solid, bodies in enumerate(
+        [group.bodies] if strategy.fuse == "auto" else [(body,) for body in group.bodies]
+    ):
+        layers: Iterable[Slice]
+        if isinstance(group.base.surface, Guide):
+            layers = along.slices(group.base, bodies, strategy)
+        else:
+            layers = planes.slices(group.base, bodies, strategy)
+        name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
+        yield Stack(
+            name, mark_buried(report_overhangs(layers, strategy), strategy.thick), number, solid
+        )
 
 
 def footprints(group: Group, chord_error: float) -> list[list[Array]]:

@@ -20,7 +20,7 @@ from ..geometry.regions.region import Region, regions
 from ..geometry.regions.several import grow_regions
 from ..geometry.regions.strip import Period, Strip, strips
 from ..issues import InputError
-from ..parameters.filled import DevelopableParameters
+from ..parameters.filled import FilledParameters
 from ..slicing.solids.equidistant import Facets, Loop, count, cut, unroll_layers
 from ..types import Array, Index
 from .margins import ARCS, regions_of, within_margin
@@ -122,7 +122,7 @@ def _unwrapped(flat: Array, surface: Developable) -> tuple[Array, Array]:
 CUT = 0.25  # share of the chord error, of cuts
 
 
-def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[Slice]:
+def slices(base: Base, body: Body, strategy: FilledParameters) -> Iterator[Slice]:
     """Yield the layers of a solid from the hub outwards.
 
     The layers are at 0, h, 2 h ... mm from the hub; layers without regions are left out.
@@ -133,7 +133,7 @@ def slices(base: Base, body: Body, strategy: DevelopableParameters) -> Iterator[
         The hub.
     body : Body
         The solid.
-    strategy : DevelopableParameters
+    strategy : FilledParameters
         Layer height, margin and chord error.
 
     Yields
@@ -241,7 +241,7 @@ def _apex(loops: Sequence[Loop], surface: Developable) -> Array:
 
 
 def _all_round(
-    lots: Sequence[tuple[float, list[Loop]]], surface: Developable, strategy: DevelopableParameters
+    lots: Sequence[tuple[float, list[Loop]]], surface: Developable, strategy: FilledParameters
 ) -> tuple[Region | Strip, ...]:
     """Return the strips and regions of a layer that goes all around the hub; above a surface
     that ends below it has no margin.

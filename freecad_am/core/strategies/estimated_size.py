@@ -112,11 +112,7 @@ def revolution_size(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
 
 def wall_size(wall: SurfaceWall | PatchWall, strategy: SurfaceParameters) -> Size:
     """The size of a wall on an existing part."""
-    from ..geometry.walls.patch_wall import (
-        PatchWall,  # imported late: parts of revolution do not need it, and its imports are slow
-    )
-
-    return fronts_size(wall, strategy) if isinstance(wall, PatchWall) else tube_size(wall, strategy)
+    return tube_size(wall, strategy) if wall.closes_around else fronts_size(wall, strategy)
 
 
 def tube_size(wall: SurfaceWall, strategy: SurfaceParameters) -> Size:

@@ -73,7 +73,7 @@ class DevelopableWindow(FeatureWindow):
     ) -> Balance | None:
         from ...core.process.deposit.balance import feature_balance
         from ...objects.developable_feature import found_in
-        from ...objects.planned.proposed_family import COARSE
+        from ...objects.families.developable import COARSE
 
         face_names = () if job.ground is None else job.ground.names
         base = None if under is None or not face_names else (under, face_names)

@@ -12,8 +12,8 @@ import FreeCADGui as Gui
 from PySide import QtCore
 
 from ...core.issues import AmError, InputError, has_errors
+from ...objects.families.developable import COARSE
 from ...objects.fields import rows
-from ...objects.planned.proposed_family import COARSE
 from ...objects.stage import Stage
 from ...objects.stage_parts import Outcome
 from ...objects.staleness import STALE

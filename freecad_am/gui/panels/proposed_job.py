@@ -24,9 +24,11 @@ from ...core.parameters.filled import GEODESIC, PLANES, FilledParameters
 from ...core.parameters.process import ProcessParameters
 from ...objects.checks import deposit
 from ...objects.checks.collisions import ARM_NEAR, LOW_MARGIN
+from ...objects.families.developable import stands_on_hub
+from ...objects.families.recognition import Proposal, SelectedPart
 from ...objects.fields import preferences, saved_cells
 from ...objects.fields.rows import Row, is_expression, name_for, refusal, rows
-from ...objects.planned.proposed_family import Proposal, proposed, stands_on_hub
+from ...objects.planned.proposed_family import propose_family
 from ...objects.results.findings import issues_of
 from ...objects.shapes.bodies import Taken, snapshot_of
 from ...objects.staleness import FAILED, INFEASIBLE, STALE, UP_TO_DATE
@@ -340,8 +342,16 @@ def taken_whole(job: JobProposal, picks: Sequence[Pick]) -> str:
 def _propose_for_one(pick: Pick, snapshot: Taken, width: float) -> JobProposal:
     target = _deposit_pick(pick, snapshot)
     clicked = picking.pick_of_faces(pick).names
-    result = proposed(
-        snapshot, target.names, None, False, width, True, clicked=() if target.names else clicked
+    result = propose_family(
+        SelectedPart(
+            snapshot,
+            target.names,
+            None,
+            False,
+            width,
+            True,
+            clicked=() if target.names else clicked,
+        )
     )
     if window_of(KINDS[result.kind]).face_is_base:  # hub and solids are of one object
         ground = (
@@ -364,7 +374,9 @@ def _propose_for_several(pairs: Sequence[tuple[Pick, Taken]], width: float) -> J
             not picking.pick_of_faces(pick).names and stands_on_hub(snapshot, hub, base)
             for pick, snapshot in solids
         ):
-            result = proposed(solids[0][1], (), hub, False, width, True, base=base)
+            result = propose_family(
+                SelectedPart(solids[0][1], (), hub, False, width, True, base=base)
+            )
             return _as_proposed(
                 result, tuple(Pick(pick.obj) for pick, _ in solids), picking.pick_of_faces(ground)
             )
@@ -384,9 +396,8 @@ def _propose_for_several(pairs: Sequence[tuple[Pick, Taken]], width: float) -> J
         next(look for pick, look in pairs if pick.obj == role.obj) for role in (wall, ground)
     )
     target = _deposit_pick(next(pick for pick in picks if pick.obj == wall.obj), snapshot)
-    return _as_proposed(
-        proposed(snapshot, target.names, under, False, width, True), (target,), Pick(ground.obj)
-    )
+    result = propose_family(SelectedPart(snapshot, target.names, under, False, width, True))
+    return _as_proposed(result, (target,), Pick(ground.obj))
 
 
 def _as_proposed(result: Proposal, picks: tuple[Pick, ...], ground: Pick | None) -> JobProposal:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
-from ...core.geometry.curves.profile import RevolvedWall
+from ...objects.families.registry import stage_family
 from .. import icons
 from ..nodes.lines import MeridianNodes
 from ..nodes.wall import WallNodes, first_curves
@@ -31,12 +31,12 @@ class FeatureView(StageView):
             root.addChild(node)
 
     def draw(self, obj: Any, value: Any) -> None:
-        if not isinstance(value, RevolvedWall):
-            self.revolved.clear()
-            self.wall.set_first(first_curves(value))
-            self.wall.set_faces(obj.Source[0], value.faces)
+        if stage_family(obj.Proxy).has_axis:
+            self.revolved.set_wall(value)
             return
-        self.revolved.set_wall(value)
+        self.revolved.clear()
+        self.wall.set_first(first_curves(value))
+        self.wall.set_faces(obj.Source[0], value.faces)
 
     def style(self, vobj: Any) -> None:
         self.wall.faces.show(getattr(vobj, "ShowFaces", False))

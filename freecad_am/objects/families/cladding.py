@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ...core.families.cladding import Cladding
 from ...core.geometry.obstacles import Body
+from ...core.issues import Text
 from ...core.process.deposit import on_part
 from ...core.toolpath import Toolpath
 from ..shapes.bodies import Taken
@@ -22,6 +24,7 @@ from .planner import (
     share_strategy,
     tilt_clear,
 )
+from .recognition import LYING, Proposal, Refusal, SelectedPart
 
 
 class CladdingPlanner(FeaturePlanner):
@@ -29,6 +32,48 @@ class CladdingPlanner(FeaturePlanner):
 
     proxy = ("cladding_feature", "CladdingFeature")
     allowance_remedy = "Add one layer, or use a smaller allowance"
+    recognition_rank = 40
+
+    def recognise(self, part: SelectedPart, remark: str) -> Proposal | Refusal:
+        """Propose faces of a part thicker than a bead, and open meshes and skins that lie flat."""
+        if part.substrate is not None or part.edges:
+            return Refusal()
+        if part.shape is None:
+            return self._recognise_mesh(part)
+        if part.is_skin and not part.names and part.lying_share >= LYING:
+            return Proposal(
+                Cladding.kind,
+                Text(
+                    "{} is a flat rather than upright open surface, {:.0%} at less than 45 deg to "
+                    "the platform, so it is a face to cover",
+                    part.label,
+                    part.lying_share,
+                ),
+            )
+        if part.names and part.solids and not part.is_one_bead_thick:
+            return Proposal(
+                Cladding.kind,
+                Text(
+                    "the selected faces of {} share no axis of revolution, and the part is thicker "
+                    "there than a bead of {:.4g} mm, so they are covered",
+                    part.label,
+                    part.width,
+                ),
+            )
+        return Refusal()
+
+    def _recognise_mesh(self, part: SelectedPart) -> Proposal | Refusal:
+        if not part.mesh.is_sheet or part.lying_share < LYING:
+            return Refusal()
+        return Proposal(
+            Cladding.kind,
+            Text(
+                "{} is a flat rather than upright open mesh, {:.0%} at less than 45 deg to the "
+                "platform, so it is a face to cover",
+                part.label,
+                part.lying_share,
+            ),
+        )
 
     def plan_layers(self, inputs: Given) -> Toolpath:
         from ...core.strategies import cladding

@@ -7,11 +7,14 @@ from collections.abc import Sequence
 from typing import Any
 
 from ...brep.shapes.off_part import off_edges
+from ...core.families.curves import Curves
+from ...core.issues import Text, Word
 from ...core.process.deposit import on_part
 from ...core.toolpath import Toolpath
 from ..shapes.bodies import Taken
 from .given import Given
 from .planner import FeaturePlanner, PartDistances, refuse_below, share_strategy
+from .recognition import Proposal, Refusal, SelectedPart
 
 
 class CurvesPlanner(FeaturePlanner):
@@ -19,6 +22,19 @@ class CurvesPlanner(FeaturePlanner):
 
     proxy = ("curves_feature", "CurvesFeature")
     has_faces = False
+    recognition_rank = 10
+
+    def recognise(self, part: SelectedPart, remark: str) -> Proposal | Refusal:
+        """Propose selected edges, and shapes without faces."""
+        selects_edges = any(name.startswith("Edge") for name in part.names)
+        if part.shape is None or (part.shape.Faces and not selects_edges):
+            return Refusal()
+        what = (
+            Text("edges of {} are selected", part.label)
+            if part.names
+            else Text("{} has edges but no faces", part.label)
+        )
+        return Proposal(Curves.kind, Text("{}, to be deposited as beads", Word(what)))
 
     def plan_layers(self, inputs: Given) -> Toolpath:
         from ...core.strategies import curves

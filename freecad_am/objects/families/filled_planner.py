@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,8 +14,16 @@ from ...core.strategies.revolution import clearance
 from ...core.toolpath import Toolpath
 from ..shapes.bodies import Taken
 from .given import Given
-from .planner import FeaturePlanner, PartDistances, share_strategy, tilt_clear
-from .solid_distances import distances_from_solids
+from .planner import (
+    FeaturePlanner,
+    PartDistances,
+    distances_from_solids,
+    share_strategy,
+    tilt_clear,
+)
+
+if TYPE_CHECKING:
+    from ...core.inspection.planned import Planned
 
 
 class FilledPlanner(FeaturePlanner):
@@ -35,6 +43,11 @@ class FilledPlanner(FeaturePlanner):
         return plan.plan(
             inputs.wall, inputs.strategy, inputs.build, inputs.process, inputs.model, share_strategy
         )
+
+    def planned_surface(self, value: Any, name: str) -> Planned:
+        from ...core.inspection.planned import solids_surface
+
+        return solids_surface(value)
 
     def keep_clear(
         self, toolpath: Toolpath, inputs: Given, bodies: Sequence[Body], feature: int | None

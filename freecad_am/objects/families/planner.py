@@ -9,13 +9,13 @@ planning a small part.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from ...brep.shapes.off_part import off_faces, off_facets
+from ...brep.shapes.off_part import off_faces, off_facets, off_mesh, off_solids
 from ...core.geometry.obstacles import Body
-from ...core.issues import Issue
+from ...core.issues import InputError, Issue
 from ...core.parameters.build_direction import BuildDirectionParameters
 from ...core.process.deposit import on_part
 from ...core.strategies.revolution import clearance
@@ -24,6 +24,10 @@ from ...core.types import Array
 from ..shapes.bodies import Taken
 from ..work import progress
 from .given import Given, platform_frame
+from .recognition import Proposal, Refusal, SelectedPart
+
+if TYPE_CHECKING:
+    from ...core.inspection.planned import Planned
 
 STRATEGY = 0.7  # share of the time for layers and beads, the rest keeps the nozzle clear
 CHECKED = 0.92  # the remaining share is for the final checks
@@ -43,14 +47,22 @@ class FeaturePlanner:
 
     proxy: module and class of its features in `objects`, a file format. allowance_remedy: how to
     deposit more where a deposit is too small, with {} for by how much. has_faces: whether its parts
-    have faces that a deposit can cover.
+    have faces that a deposit can cover. recognition_rank: of families that recognise a part, the one
+    with the lowest rank is proposed; None: a user chooses the family.
     """
 
     proxy: ClassVar[tuple[str, str]]
+    recognition_rank: ClassVar[int | None] = None
     allowance_remedy: ClassVar[str] = (
         "Make beads {} mm wider on either side (process.bead_width), or use a smaller allowance"
     )
     has_faces: ClassVar[bool] = True
+
+    def recognise(self, part: SelectedPart, remark: str) -> Proposal | Refusal:
+        """Return whether to propose this family for a part, and why. remark: of a family with a lower
+        rank, for the reason.
+        """
+        raise NotImplementedError
 
     def plan_layers(self, inputs: Given) -> Toolpath:
         """Return layers and beads. Raises the InputErrors of the family."""
@@ -78,6 +90,16 @@ class FeaturePlanner:
             places, distances_from_faces(inputs.wall, sources[0], places.points, limit), limit
         )
 
+    def planned_surface(self, value: Any, name: str) -> Planned:
+        """Return the surface of a feature's wall or solids to compare measured points with. Raises
+        InputError NOT_FOR_FAMILY naming it.
+        """
+        raise InputError(
+            "NOT_FOR_FAMILY",
+            name,
+            "curves and cladding have no planned surface; compare the points with the part",
+        )
+
     def bodies_to_cover(self, wall: Any) -> list[Body] | None:
         """Return the solids that a deposit is to enclose; None if it is to cover faces."""
         return None
@@ -93,6 +115,21 @@ def distances_from_faces(wall: Any, source: Taken, points: Array, limit: float) 
         return off_faces(source.shape, wall.faces, points, limit)
     body = source.body()
     return np.maximum(off_facets(body.vertices, body.triangles, points) - wall.smoothing, 0.0)
+
+
+def distances_from_solids(sources: Sequence[Taken], points: Array, limit: float) -> Array:
+    """Return the distances (n,) mm of points (n, 3) from the nearest solid, exact up to a limit."""
+    distances: Array = np.min(
+        [_distances_from_solid(source, points, limit) for source in sources], axis=0
+    )
+    return distances
+
+
+def _distances_from_solid(source: Taken, points: Array, limit: float) -> Array:
+    if source.shape is not None:
+        return off_solids(source.shape, points, limit)
+    body = source.body()
+    return off_mesh(body.vertices, body.triangles, points)
 
 
 def refuse_below(toolpath: Toolpath, inputs: Given, remedy: str = clearance.MOVE) -> None:

@@ -5,23 +5,72 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...brep.shapes import part_depths
+from ...core.families.revolution import Revolution
 from ...core.geometry.obstacles import Body
+from ...core.issues import Text
 from ...core.process.deposit import on_part
+from ...core.process.deposit.balance import MM3, NEGLIGIBLE, wall_balance
 from ...core.strategies.clearance import nozzle_check
 from ...core.toolpath import Toolpath
 from ..shapes.bodies import Taken
 from .given import Given
-from .planner import FeaturePlanner, PartDistances, share_strategy, tilt_clear
-from .solid_distances import distances_from_solids
+from .planner import (
+    FeaturePlanner,
+    PartDistances,
+    distances_from_solids,
+    share_strategy,
+    tilt_clear,
+)
+from .recognition import Proposal, Refusal, SelectedPart
+
+if TYPE_CHECKING:
+    from ...core.inspection.planned import Planned
 
 
 class RevolutionPlanner(FeaturePlanner):
     """Plans walls of parts of revolution."""
 
     proxy = ("feature", "RevolutionFeature")
+    recognition_rank = 30
+
+    def recognise(self, part: SelectedPart, remark: str) -> Proposal | Refusal:
+        """Propose parts without a substrate that have one axis, and whose solid is no thicker than a
+        bead.
+        """
+        if part.shape is None or part.substrate is not None or part.edges:
+            return Refusal()
+        if part.is_several_solids or part.revolved_wall is None:
+            return Refusal()
+        if part.names:
+            return Proposal(
+                Revolution.kind,
+                Text("the selected faces of {} share one axis of revolution", part.label),
+            )
+        if part.is_skin:
+            return Proposal(Revolution.kind, Text("{} is a surface of revolution", part.label))
+        depths = part_depths.revolved_depths(part.shape, part.revolved_wall, part.label)
+        balance = None if depths is None else wall_balance(depths, part.width)
+        omitted = 0.0 if balance is None else balance.left_out or 0.0
+        if balance is None or omitted <= NEGLIGIBLE * (balance.part_volume or 0.0):
+            why = Text(
+                "{} is a solid of revolution, and its wall is one bead of {:.4g} mm",
+                part.label,
+                part.width,
+            )
+            return Proposal(Revolution.kind, why)
+        return Refusal(
+            Text(
+                "it is a solid of revolution, but a wall of one bead would leave out {:.3g} of its "
+                "{:.3g} cm3",
+                omitted / MM3,
+                (balance.part_volume or 0.0) / MM3,
+            )
+        )
 
     def plan_layers(self, inputs: Given) -> Toolpath:
         from ...core.strategies.revolution import plan
@@ -40,6 +89,11 @@ class RevolutionPlanner(FeaturePlanner):
             share_strategy,
         )
         return dataclasses.replace(toolpath, surroundings=inputs.wall.surroundings)
+
+    def planned_surface(self, value: Any, name: str) -> Planned:
+        from ...core.inspection.planned import revolution_surface
+
+        return revolution_surface(value)
 
     def keep_clear(
         self, toolpath: Toolpath, inputs: Given, bodies: Sequence[Body], feature: int | None

@@ -5,37 +5,64 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ...brep.walls.patch_wall import stand
+from ...core.families.surface import Surface
 from ...core.geometry.obstacles import Body
+from ...core.issues import Text, Word
 from ...core.strategies.revolution import clearance
 from ...core.toolpath import Toolpath
+from ..shapes.bodies import Taken
 from .given import Given
 from .planner import FeaturePlanner, refuse_below, share_strategy, tilt_clear
+from .recognition import Proposal, Refusal, SelectedPart
+
+if TYPE_CHECKING:
+    from ...core.inspection.planned import Planned
 
 
 class SurfacePlanner(FeaturePlanner):
     """Plans walls, layer by layer along the surface or as fronts."""
 
     proxy = ("surface_feature", "SurfaceFeature")
+    recognition_rank = 50
+
+    def recognise(self, part: SelectedPart, remark: str) -> Proposal | Refusal:
+        """Propose open meshes, skins, selected faces, what names start edges, and thin shells on a
+        substrate.
+        """
+        if part.shape is None:
+            return _recognise_mesh(part)
+        if part.edges:
+            return Proposal(Surface.kind, Text("{} names its start edges", part.label))
+        if part.substrate is not None:
+            return _recognise_on_substrate(part, part.substrate)
+        if part.names:
+            return _propose_for_faces(part)
+        return _propose_for_skin(part) if part.is_skin else Refusal()
 
     def plan_layers(self, inputs: Given) -> Toolpath:
-        from ...core.geometry.walls.patch_wall import PatchWall
-
         on_another = getattr(inputs.wall, "ground", None) is None or inputs.stands is not None
         remedy = clearance.MOVE if on_another else clearance.MOUNT
-        if isinstance(inputs.wall, PatchWall):
+        if inputs.wall.closes_around:
+            from ...core.strategies.walls import plan as layers
+        else:
             from ...core.strategies.walls import fronts as layers
 
             _refuse_start_below(inputs, remedy)
-        else:
-            from ...core.strategies.walls import plan as layers
         toolpath = layers.plan(
             inputs.wall, inputs.strategy, inputs.build, inputs.process, share_strategy
         )
         refuse_below(toolpath, inputs, remedy)
         return dataclasses.replace(toolpath, surroundings=inputs.wall.surroundings)
+
+    def planned_surface(self, value: Any, name: str) -> Planned:
+        from ...core.inspection.planned import wall_surface
+
+        return wall_surface(value)
 
     def keep_clear(
         self, toolpath: Toolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
@@ -55,3 +82,79 @@ def _refuse_start_below(inputs: Given, remedy: str) -> None:
     begins = np.vstack([start_curve.curve().points for start_curve in inputs.wall.first])
     stands = np.eye(4) if inputs.stands is None else inputs.stands
     clearance.refuse_below(inputs.wall.label, begins, stands, inputs.cell.platform_diameter, remedy)
+
+
+def _recognise_mesh(part: SelectedPart) -> Proposal | Refusal:
+    if not part.mesh.is_sheet:
+        return Refusal()
+    where = (
+        "starts on the platform"
+        if part.substrate is None
+        else Text("grows on {}", part.substrate.label)
+    )
+    return Proposal(
+        Surface.kind,
+        Text("{} is an open mesh, so it is a thin wall that {}", part.label, Word(where)),
+    )
+
+
+def _recognise_on_substrate(part: SelectedPart, substrate: Taken) -> Proposal | Refusal:
+    if part.names or part.is_skin:
+        return Proposal(
+            Surface.kind,
+            Text("{} is a thin wall that grows on {}", part.label, substrate.label),
+        )
+    if part.is_several_solids or not part.is_one_bead_thick:
+        return Refusal()
+    return Proposal(
+        Surface.kind,
+        Text(
+            "{} is a thin shell, one bead of {:.4g} mm, on {}",
+            part.label,
+            part.width,
+            substrate.label,
+        ),
+    )
+
+
+def _propose_for_faces(part: SelectedPart) -> Proposal:
+    if stand([part.shape.getElement(name) for name in part.names]):
+        return Proposal(
+            Surface.kind,
+            Text(
+                "the selected faces of {} share no axis of revolution, so they are a wall that "
+                "starts on the platform if nothing else supports it",
+                part.label,
+            ),
+            stands=True,
+        )
+    return Proposal(
+        Surface.kind,
+        Text(
+            "the selected faces of {} share no axis of revolution, so they are a wall; it "
+            "needs a substrate, or start edges",
+            part.label,
+        ),
+    )
+
+
+def _propose_for_skin(part: SelectedPart) -> Proposal:
+    if stand(part.shape.Faces):
+        return Proposal(
+            Surface.kind,
+            Text(
+                "{} is an open surface without an axis of revolution, so it is a thin wall, "
+                "which starts on the platform if nothing else supports it",
+                part.label,
+            ),
+            stands=True,
+        )
+    return Proposal(
+        Surface.kind,
+        Text(
+            "{} is an open surface without an axis of revolution, and no other strategy applies; "
+            "it needs a substrate or start edges, and regions that do not grow from there are "
+            "omitted",
+            part.label,
+        ),
+    )

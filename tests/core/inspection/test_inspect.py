@@ -10,7 +10,7 @@ import pytest
 from freecad_am.core.inspection import bands, figures, point_file, table
 from freecad_am.core.inspection.figures import narrowest
 from freecad_am.core.inspection.inspect import inspect
-from freecad_am.core.inspection.planned import planned, triangle_surface
+from freecad_am.core.inspection.planned import revolution_surface, triangle_surface
 from freecad_am.core.issues import AmError, InputError
 from freecad_am.core.parameters.inspection import InspectionParameters
 from tests.core.inspection_parts import R0, away, funnel, hemisphere, moved, sampled, scan
@@ -34,7 +34,7 @@ def test_any_attitude_is_found_to_within_the_noise_over_the_root_of_the_points(s
     points, normal = sampled(wall, rng, count)
     by = away(rng, rng.uniform(0.5, 3.0), 400.0)
     found = inspected(
-        moved(points + normal * rng.normal(0.0, noise, (count, 1)), by), planned(wall, "funnel")
+        moved(points + normal * rng.normal(0.0, noise, (count, 1)), by), revolution_surface(wall)
     )
     whole = found.motion @ by
     axis = whole[:3, :3] @ wall.frame[:3, 2]
@@ -58,7 +58,7 @@ def test_a_few_turns_of_a_dome_tell_where_it_is_with_outliers_and_a_ball(seed):
     scanned = points + normal * (rng.normal(0.0, noise, count) + 1.5)[:, None]
     scanned[far] += rng.uniform(3.0, 12.0, (150, 1)) * normal[far]
     by = away(rng, 0.1, 6.0)
-    found = inspected(moved(scanned, by), planned(wall, "dome"), probe_radius=1.5, trim=0.08)
+    found = inspected(moved(scanned, by), revolution_surface(wall), probe_radius=1.5, trim=0.08)
     centre = moved(np.zeros((1, 3)), found.motion @ by)[0]
     assert np.abs(centre).max() < 12.0 * noise / np.sqrt(count)
     kept = np.setdiff1d(np.arange(count), far)
@@ -70,7 +70,7 @@ def test_a_few_turns_of_a_dome_tell_where_it_is_with_outliers_and_a_ball(seed):
 def test_what_deviations_do_not_feel_stays_as_it_was_measured():
     rng = np.random.default_rng(20)
     points, _ = sampled(hemisphere(), rng, 2000, 0.2, 0.7)
-    found = inspected(points + [3.0, -2.0, 1.0], planned(hemisphere(), "dome"))
+    found = inspected(points + [3.0, -2.0, 1.0], revolution_surface(hemisphere()))
     assert np.abs(found.motion[:3, :3] - np.eye(3)).max() < 1e-6
     assert found.motion[:3, 3] == pytest.approx([-3.0, 2.0, -1.0], abs=1e-6)
     assert [
@@ -131,7 +131,7 @@ def test_points_past_the_edge_count_nowhere():
     points, _ = sampled(hemisphere(), rng, 1500)
     angle = rng.uniform(0.0, 2.0 * np.pi, 300)
     plate = np.column_stack([60.0 * np.cos(angle), 60.0 * np.sin(angle), np.full(300, -1.0)])
-    found = inspected(np.concatenate([points, plate]), planned(hemisphere(), "dome"), trim=0.2)
+    found = inspected(np.concatenate([points, plate]), revolution_surface(hemisphere()), trim=0.2)
     assert found.counted[:1500].all() and not found.counted[1500:].any()
     assert found.spread.count == 1500 and np.abs(found.deviation[:1500]).max() < 1e-6
     assert "PAST_EDGES" in codes(found)
@@ -145,7 +145,7 @@ def test_circles_of_known_ovality_eccentricity_and_diameter():
         radius = wall.meridian.at(wall.meridian.s_at_height([height])[0])[0][0]
         rows.append(wall.points(radius + oval * np.cos(2.0 * angle), np.full(400, height), angle))
     points = np.concatenate(rows) + 0.05 * wall.frame[:3, 0]
-    found = inspected(points, planned(wall, "funnel"), fit="none", heights=("10", "25", "40"))
+    found = inspected(points, revolution_surface(wall), fit="none", heights=("10", "25", "40"))
     assert [one.zone.zone for one in found.circles] == pytest.approx([0.2, 0.0, 0.6], abs=2e-3)
     assert [one.eccentricity for one in found.circles] == pytest.approx([0.05] * 3, abs=1e-3)
     assert [one.fitted.radius for one in found.circles] == pytest.approx(
@@ -160,7 +160,7 @@ def test_points_of_a_band_are_slid_to_its_height(with_wall):
     """A perfect dome scanned all over has round circles at every height, whatever the band."""
     rng = np.random.default_rng(23)
     points, normal = sampled(hemisphere(), rng, 20000, 0.1, 0.8)
-    of = planned(hemisphere(), "dome")
+    of = revolution_surface(hemisphere())
     if not with_wall:
         of = type(of)(of.name, of.nearest, of.exact, of.past, of.spread, of.frame)
     for height in (15.0, 25.0, 35.0):
@@ -178,7 +178,7 @@ def test_thickness_where_both_sides_were_measured():
     outside = np.arange(6000) % 2 == 0
     scanned = points + np.where(outside, 1.6, -1.45)[:, None] * normal
     found = inspected(
-        scanned, planned(hemisphere(), "dome"), side="both", thickness=3.0, fit="none"
+        scanned, revolution_surface(hemisphere()), side="both", thickness=3.0, fit="none"
     )
     assert (
         found.thickness.mean == pytest.approx(3.05, abs=1e-6) and found.thickness.deviation < 1e-6
@@ -220,7 +220,7 @@ def test_the_example_gives_back_the_deviations_that_were_put_in():
     put_in = made.deviations(height, azimuth, np.random.default_rng(made.SEED))
     found = inspect(
         point_file.read(EXAMPLES / "inspection" / "hemisphere-synthetic.csv"),
-        planned(hemisphere(), "hemisphere"),
+        revolution_surface(hemisphere()),
         InspectionParameters(probe_radius=1.5, tolerance=0.1, heights=("15", "25", "35")),
         lambda *_: None,
     )
@@ -285,7 +285,7 @@ def test_bands_are_alike_on_both_sides_and_green_within():
 def test_the_table_has_a_column_for_each_part_and_their_spread():
     rng = np.random.default_rng(27)
     points, normal = sampled(hemisphere(), rng, 1500, 0.1, 0.7)
-    dome = planned(hemisphere(), "dome")
+    dome = revolution_surface(hemisphere())
     each = [
         inspected(points + normal * rng.normal(0.0, noise, (1500, 1)), dome) for noise in (0.1, 0.2)
     ]
@@ -327,13 +327,13 @@ def test_parameters_that_make_no_sense_are_refused_by_name(values, where):
 def test_points_of_something_else_are_refused_or_told():
     far = np.random.default_rng(28).uniform(-1.0, 1.0, (200, 3)) + [0.0, 0.0, -500.0]
     with pytest.raises(AmError) as caught:
-        inspected(far, planned(hemisphere(), "dome"), fit="none")
+        inspected(far, revolution_surface(hemisphere()), fit="none")
     assert caught.value.code == "NOT_ON_PART" and "hemisphere" in caught.value.message
     with pytest.raises(InputError) as caught:
-        inspected(np.zeros((3, 3)), planned(hemisphere(), "dome"))
+        inspected(np.zeros((3, 3)), revolution_surface(hemisphere()))
     assert caught.value.code in ("TOO_FEW_POINTS", "NOT_ON_PART")
     points, _ = sampled(hemisphere(), np.random.default_rng(29), 500, 0.3, 0.5)
-    found = inspected(points, planned(hemisphere(), "dome"), heights=("44",))
+    found = inspected(points, revolution_surface(hemisphere()), heights=("44",))
     assert "FEW_POINTS" in codes(found) and found.circles == ()
 
 
@@ -343,7 +343,7 @@ def test_points_in_another_unit_fit_anywhere_which_is_told(unit):
     """A cap of millimetres lies well on a dome of centimetres: the figures alone would look good."""
     wall = hemisphere()
     points, _ = sampled(wall, np.random.default_rng(3), 500)
-    found = inspected(points / unit, planned(wall, "dome"))
+    found = inspected(points / unit, revolution_surface(wall))
     assert ("SMALL" in codes(found)) == (unit > 1.0)
     told = [issue.message for issue in found.issues if issue.code == "SMALL"]
     assert all("check the unit of the file" in text for text in told)
@@ -351,5 +351,5 @@ def test_points_in_another_unit_fit_anywhere_which_is_told(unit):
 
 def test_three_points_are_told_to_be_too_few():
     with pytest.raises(InputError, match="3 points cannot locate a part") as caught:
-        inspected(np.eye(3) * R0, planned(hemisphere(), "dome"))
+        inspected(np.eye(3) * R0, revolution_surface(hemisphere()))
     assert caught.value.code == "TOO_FEW_POINTS"

@@ -5,7 +5,12 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall
-from freecad_am.core.inspection.planned import planned, sided, triangle_surface
+from freecad_am.core.inspection.planned import (
+    revolution_surface,
+    sided,
+    toolpath_surface,
+    triangle_surface,
+)
 from freecad_am.core.issues import InputError
 from freecad_am.core.toolpath import Bead, Layer, Toolpath
 from tests.core.inspection_parts import R0, funnel, hemisphere, sampled
@@ -16,7 +21,7 @@ def test_a_hemisphere_is_as_far_as_its_radius_tells():
     points = rng.normal(size=(4000, 3))
     points[:, 2] = np.abs(points[:, 2])
     points *= (rng.uniform(20.0, 80.0, 4000) / np.linalg.norm(points, axis=1))[:, None]
-    of = planned(hemisphere(), "hemisphere")
+    of = revolution_surface(hemisphere())
     radius = np.linalg.norm(points, axis=1)
     for surface in (of.exact, of.nearest):
         distance, normal = surface(points)
@@ -36,7 +41,7 @@ def test_walls_in_any_frame_keep_offsets_along_normals():
     wall = funnel()
     points, normal = sampled(wall, rng, 3000)
     offset = rng.uniform(-3.0, 3.0, 3000)
-    distance, found = planned(wall, "funnel").exact(points + offset[:, None] * normal)
+    distance, found = revolution_surface(wall).exact(points + offset[:, None] * normal)
     assert np.abs(distance - offset).max() < 1e-8
     assert np.abs(found - normal).max() < 1e-6
 
@@ -50,7 +55,7 @@ def test_a_corner_is_nearest_to_all_between_its_normals():
             (np.array([[20.0, 30.0], [0.0, 30.0]]), np.array([down, down])),
         ]
     )
-    of = planned(RevolvedWall(meridian, np.eye(4)), "can")
+    of = revolution_surface(RevolvedWall(meridian, np.eye(4)))
     rng = np.random.default_rng(3)
     angle, r, z = (
         rng.uniform(0, 2 * np.pi, 500),
@@ -68,7 +73,7 @@ def test_a_corner_is_nearest_to_all_between_its_normals():
 
 
 def test_past_the_sides_of_part_of_a_turn():
-    of = planned(hemisphere(0.0, np.pi, False), "half")
+    of = revolution_surface(hemisphere(0.0, np.pi, False))
     beside = np.array(
         [[40.0, -2.0, 10.0], [40.0, 2.0, 10.0], [-40.0, -5.0, 10.0], [0.0, -45.0, 0.0]]
     )
@@ -77,7 +82,7 @@ def test_past_the_sides_of_part_of_a_turn():
 
 
 def test_sides_of_a_wall_are_half_a_thickness_off():
-    of = planned(hemisphere(), "hemisphere")
+    of = revolution_surface(hemisphere())
     rng = np.random.default_rng(4)
     points, normal = sampled(hemisphere(), rng, 200)
     for side, at in (("outer", 2.0), ("inner", -2.0)):
@@ -120,7 +125,7 @@ def rings(layer_height, radius=30.0):
 
 def test_beads_of_a_pipe_are_its_surface_whichever_way_they_run():
     toolpath = Toolpath(tuple(rings(2.0)), np.eye(4), 2.0, 0.01)
-    of = planned(toolpath, "Toolpath")
+    of = toolpath_surface(toolpath, "Toolpath")
     rng = np.random.default_rng(6)
     angle, height, off = (
         rng.uniform(0, 2 * np.pi, 1000),
@@ -159,7 +164,7 @@ def test_normals_of_beads_are_those_of_the_wall_they_make(sense):
                 )
             )
         )
-    beads = planned(Toolpath(tuple(layers), wall.frame, 2.4, 0.01), "Toolpath")
+    beads = toolpath_surface(Toolpath(tuple(layers), wall.frame, 2.4, 0.01), "Toolpath")
     points, normal = sampled(wall, np.random.default_rng(7), 2000)
     off = np.random.default_rng(8).uniform(-2.0, 2.0, 2000)
     distance, found = beads.exact(points + off[:, None] * normal)
@@ -172,5 +177,5 @@ def test_normals_of_beads_are_those_of_the_wall_they_make(sense):
 def test_beads_that_fill_solids_are_no_surface():
     toolpath = Toolpath(tuple(rings(2.0)), np.eye(4), 2.0, 0.01, family="developable")
     with pytest.raises(InputError) as caught:
-        planned(toolpath, "Toolpath")
+        toolpath_surface(toolpath, "Toolpath")
     assert (caught.value.code, caught.value.where) == ("NOT_FOR_FAMILY", "Toolpath")

@@ -51,7 +51,7 @@ def turned(wall, **values):
 
 def on_part(wall, **values):
     strategy = SurfaceParameters(**values)
-    family = surface if hasattr(wall, "kind") else wall_fronts
+    family = surface if wall.closes_around else wall_fronts
     return estimated_size.wall_size(wall, strategy), family.plan(wall, strategy, FREE, PROCESS)
 
 

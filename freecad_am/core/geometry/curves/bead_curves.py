@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 
@@ -53,8 +53,10 @@ class Curves:
 
     surroundings: substrate and fixtures, as bodies. depths: None, a part of curves has no
     volume. edges: names of the chosen edges of a shape, empty if all are used; None for
-    curves that do not come from a shape.
+    curves that do not come from a shape. own: None, they have no hub.
     """
+
+    own: ClassVar[None] = None
 
     label: str
     curves: tuple[BeadCurve, ...]

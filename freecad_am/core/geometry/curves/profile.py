@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import ClassVar
 
 import numpy as np
 
@@ -257,8 +258,10 @@ class RevolvedWall:
     start, end: azimuths in rad about the axis, end > start; `full` when the wall closes on
     itself. issues: issues raised while building the wall. label: the user's name of the part.
     faces: names of the wall's faces, from the platform up. surroundings: fixtures. depths:
-    how the part is distributed about the wall, if it has faces.
+    how the part is distributed about the wall, if it has faces. own: None, a wall has no hub.
     """
+
+    own: ClassVar[None] = None
 
     meridian: Meridian
     frame: Array

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_matrix
@@ -209,6 +209,8 @@ REPORTED_FROM_MM = 0.02  # mm between mesh and smooth surface beyond which this 
 class MeshWall(PatchWall):
     """A wall whose one piece is the smooth surface through a mesh. samples (n, 3): where the vertices were on its facets.
     between: mm that the surface is off these, at most, in the middles of triangles."""
+
+    kind: ClassVar[str] = "mesh"
 
     samples: Array | None = None
     between: float = 0.0

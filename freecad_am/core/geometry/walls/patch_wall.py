@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import ClassVar, Literal, NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -80,8 +80,13 @@ class PatchWall:
     on the substrate's side of the start curves, which are not deposited. surroundings: bodies
     to keep the nozzle clear of, the substrate first. depths: how the part is distributed
     about the wall. ground: mm along Z of the plane through the lowest point of the wall,
-    where only the platform carries it.
+    where only the platform carries it. closes_around: a parameter of one surface closes around
+    the wall. own: None, a wall has no hub.
     """
+
+    kind: ClassVar[str] = "patches"
+    closes_around: ClassVar[Literal[False]] = False
+    own: ClassVar[None] = None
 
     vertices: Array
     triangles: Index
@@ -340,8 +345,10 @@ class CladFaces:
 
     label: of the part. faces: their names. sheets: smoothly connected faces, each group as
     one sheet; none of them starts or ends anywhere. surroundings: the part itself if it is a
-    solid, substrate and fixtures. depths: None, a face has no volume.
+    solid, substrate and fixtures. depths: None, a face has no volume. own: None, they have no hub.
     """
+
+    own: ClassVar[None] = None
 
     label: str
     faces: tuple[str, ...]

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar, Literal
 
 import numpy as np
 from scipy.interpolate import RectBivariateSpline
@@ -112,8 +113,12 @@ class SurfaceWall:
     surface's own frame in the part. end: u of the upper edge; layers rise from the substrate
     to it. first: (m, 3) closed chain of points in part coordinates in which the wall leaves
     the substrate, the first not repeated. faces: names of the wall's faces. surroundings: the
-    substrate, then fixtures. depths: how the part is distributed about the wall.
+    substrate, then fixtures. depths: how the part is distributed about the wall. closes_around: a
+    parameter of one surface closes around the wall. own: None, a wall has no hub.
     """
+
+    closes_around: ClassVar[Literal[True]] = True
+    own: ClassVar[None] = None
 
     kind: str
     sizes: tuple[float, ...]

@@ -8,7 +8,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from ...geometry.on_hub import SolidsOnHub
 from ...geometry.walls.part_depths import PartDepths
 from ...issues import NOTE, WARNING, Issue, Text, Word
 from ...toolpath import Toolpath
@@ -51,8 +50,8 @@ class Balance:
 
 def feature_balance(value: Any, width: float) -> Balance | None:
     """The balance of a feature's wall or solids with beads of a width, mm; None if nothing is known."""
-    if isinstance(value, SolidsOnHub):
-        return _solids_balance(value)
+    if value.own is not None:  # everything except the hub is deposited
+        return Balance(value.label, value.own.volume, value.own.hub, solids=value.own.apart)
     return None if value.depths is None else wall_balance(value.depths, width)
 
 
@@ -78,7 +77,7 @@ def toolpath_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | 
     if toolpath.checks.volumes is None:
         return _beads_balance(value, toolpath, width)
     part_volume, left_out, outside = toolpath.checks.volumes
-    own_hub = value.own if isinstance(value, SolidsOnHub) else None
+    own_hub = value.own
     hub = own_hub.hub if own_hub else 0.0
     if own_hub:  # the rest of the part within the surface under the solids
         left_out += max(own_hub.volume - hub - part_volume, 0.0)
@@ -167,14 +166,6 @@ def wall_balance(depths: PartDepths, width: float) -> Balance:
     return Balance(
         depths.label, depths.volume, left_out, beads, outside, faces, depths.aside, width, thick
     )
-
-
-def _solids_balance(solids: SolidsOnHub) -> Balance | None:
-    """The balance of solids that are filled: everything except the hub is deposited."""
-    if solids.own is None:
-        return None
-    own_hub = solids.own
-    return Balance(solids.label, own_hub.volume, own_hub.hub, solids=own_hub.apart)
 
 
 def issues(balance: Balance | None) -> tuple[Issue, ...]:
