@@ -196,63 +196,59 @@ def check_value(spec: Spec, value: Any, key: str) -> None:
     InputError
         BAD_VALUE with the key.
     """
-    if (
-        spec.kind == GROUP
-        or (value is None and spec.optional)
-        or (isinstance(value, str) and value in spec.words)
-    ):
+    is_word = isinstance(value, str) and value in spec.words
+    if is_word or (value is None and spec.optional) or spec.kind in _CHECKED_ELSEWHERE:
         return
-    if spec.kind == CHOICE:
-        if value not in spec.choices:
-            raise unknown_choice(key, value, spec.choices)
-    elif spec.kind == FLAG:
-        if not isinstance(value, bool):
-            raise InputError(
-                "BAD_VALUE", key, "{!r} is not true or false; use true or false", value
-            )
-    elif spec.kind in (RECORDS, VECTOR):
-        return  # their constructors check them
-    elif spec.kind == TEXT:
-        if not isinstance(value, str):
-            raise InputError("BAD_VALUE", key, "{!r} is not a text; put it in quotes", value)
-    elif spec.kind == POSE:
-        if (
-            isinstance(value, str)
-            or len(value) != 6
-            or not all(math.isfinite(number) for number in value)
-        ):
-            also = Text.joined(" or ", ("", *spec.words))
-            raise InputError(
-                "BAD_VALUE",
-                key,
-                "{!r} is not a pose; give six numbers x y z RX RY RZ{}",
-                value,
-                also,
-            )
-    elif spec.kind == ANGLE_RANGE:
-        if len(value) != 2 or not value[0] < value[1]:
-            raise InputError(
-                "BAD_VALUE", key, "{!r} is not a range; give two angles, the smaller first", value
-            )
-    elif spec.kind == RATIO_RANGE:
-        if isinstance(value, (int, float, str)) or len(value) != 2:
-            raise InputError(
-                "BAD_VALUE",
-                key,
-                "{!r} is not a range; give two percentages, the smaller first",
-                value,
-            )
-        for end in value:
-            _check_number(dataclasses.replace(spec, kind=RATIO), end, key)
-        if value[0] > value[1]:
-            ends = Text.joined(
-                " to ", (outer_text(dataclasses.replace(spec, kind=RATIO), end) for end in value)
-            )
-            raise InputError(
-                "BAD_VALUE", key, "{} is not a range; give the smaller percentage first", ends
-            )
-    else:
-        _check_number(spec, value, key)
+    _CHECKS.get(spec.kind, _check_number)(spec, value, key)
+
+
+def _check_choice(spec: Spec, value: Any, key: str) -> None:
+    if value not in spec.choices:
+        raise unknown_choice(key, value, spec.choices)
+
+
+def _check_flag(spec: Spec, value: Any, key: str) -> None:
+    if not isinstance(value, bool):
+        raise InputError("BAD_VALUE", key, "{!r} is not true or false; use true or false", value)
+
+
+def _check_text(spec: Spec, value: Any, key: str) -> None:
+    if not isinstance(value, str):
+        raise InputError("BAD_VALUE", key, "{!r} is not a text; put it in quotes", value)
+
+
+def _check_pose(spec: Spec, value: Any, key: str) -> None:
+    if (
+        isinstance(value, str)
+        or len(value) != 6
+        or not all(math.isfinite(number) for number in value)
+    ):
+        also = Text.joined(" or ", ("", *spec.words))
+        raise InputError(
+            "BAD_VALUE", key, "{!r} is not a pose; give six numbers x y z RX RY RZ{}", value, also
+        )
+
+
+def _check_angle_range(spec: Spec, value: Any, key: str) -> None:
+    if len(value) != 2 or not value[0] < value[1]:
+        raise InputError(
+            "BAD_VALUE", key, "{!r} is not a range; give two angles, the smaller first", value
+        )
+
+
+def _check_ratio_range(spec: Spec, value: Any, key: str) -> None:
+    if isinstance(value, (int, float, str)) or len(value) != 2:
+        raise InputError(
+            "BAD_VALUE", key, "{!r} is not a range; give two percentages, the smaller first", value
+        )
+    ratio = dataclasses.replace(spec, kind=RATIO)
+    for end in value:
+        _check_number(ratio, end, key)
+    if value[0] > value[1]:
+        ends = Text.joined(" to ", (outer_text(ratio, end) for end in value))
+        raise InputError(
+            "BAD_VALUE", key, "{} is not a range; give the smaller percentage first", ends
+        )
 
 
 def _check_number(spec: Spec, value: Any, key: str) -> None:
@@ -275,6 +271,17 @@ def _check_number(spec: Spec, value: Any, key: str) -> None:
             outer_text(spec, value),
             range_text(spec),
         )
+
+
+_CHECKED_ELSEWHERE = (GROUP, RECORDS, VECTOR)  # by their constructors
+_CHECKS = {  # of kinds whose values are not single numbers
+    CHOICE: _check_choice,
+    FLAG: _check_flag,
+    TEXT: _check_text,
+    POSE: _check_pose,
+    ANGLE_RANGE: _check_angle_range,
+    RATIO_RANGE: _check_ratio_range,
+}
 
 
 def range_text(spec: Spec) -> str:

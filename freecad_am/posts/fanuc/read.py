@@ -10,6 +10,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from array import array
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
@@ -386,40 +387,26 @@ def _follow(
     for position, (number, statement, begin, end) in enumerate(listing.instructions):
         if end > begin:
             _move(listing, slice(begin, end), statement, run)
-        elif output := _OUTPUT.match(statement):
-            _switch(output, f"{listing.file} line {number}", run)
-        elif group := _GROUP.match(statement):
-            run.happens("schedule", float(group[1]), float(group[2]))
-        elif arc := _ARC.match(statement):
-            _arc(arc, f"{listing.file} line {number}", run)
-        elif weave := _WEAVE.match(statement):
-            run.happens("weave", float(weave[1] or 0))
         elif call := _CALL.match(statement):
             if call[1].upper() in files:
                 run.take(listing)
                 _follow(call[1].upper(), files, run, (*callers, name))
             else:
                 run.happens("call", call[1].upper())
-        elif cool := _COOL.match(statement):
-            run.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
-        elif wait := _WAIT.match(statement):
-            run.happens("wait", float(wait[1]), digits=0.5 * 10.0 ** -len(wait[2]))
-        elif input_wait := _INPUT.match(statement):
-            run.happens("input", float(input_wait[1]))
-        elif layer := _LAYER.match(statement):
-            run.happens("layer", float(layer[1]))
-        elif track := _TRACK.match(statement):
-            run.track = int(track[1]), run.track[1]
-        elif frame := _FRAME.match(statement):
-            _frame(frame, f"{listing.file} line {number}", run)
         elif statement == "END" and position == len(listing.instructions) - 1:
             break
-        elif not _HARMLESS.match(statement):
-            raise unreadable(
-                f"{listing.file} line {number}",
-                Text("the instruction {!r} is not understood", statement),
-            )
+        else:
+            _carry_out(statement, f"{listing.file} line {number}", run)
     run.take(listing)
+
+
+def _carry_out(statement: str, where: str, run: Run) -> None:
+    for form, instruction in _INSTRUCTIONS.items():
+        if match := form.match(statement):
+            instruction(match, where, run)
+            return
+    if not _HARMLESS.match(statement):
+        raise unreadable(where, Text("the instruction {!r} is not understood", statement))
 
 
 def _switch(
@@ -460,6 +447,48 @@ def _arc(arc: re.Match[str], where: str, run: Run) -> None:
         )
     run.output, run.on = ARC, arc[1] == "Start"
     run.happens("on" if run.on else "off", float(arc[2]), ARC)
+
+
+def _weave(weave: re.Match[str], where: str, run: Run) -> None:
+    run.happens("weave", float(weave[1] or 0))
+
+
+def _schedule(group: re.Match[str], where: str, run: Run) -> None:
+    run.happens("schedule", float(group[1]), float(group[2]))
+
+
+def _wait_below(cool: re.Match[str], where: str, run: Run) -> None:
+    run.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
+
+
+def _wait(wait: re.Match[str], where: str, run: Run) -> None:
+    run.happens("wait", float(wait[1]), digits=0.5 * 10.0 ** -len(wait[2]))
+
+
+def _wait_input(wait: re.Match[str], where: str, run: Run) -> None:
+    run.happens("input", float(wait[1]))
+
+
+def _layer(layer: re.Match[str], where: str, run: Run) -> None:
+    run.happens("layer", float(layer[1]))
+
+
+def _track(track: re.Match[str], where: str, run: Run) -> None:
+    run.track = int(track[1]), run.track[1]
+
+
+_INSTRUCTIONS: dict[re.Pattern[str], Callable[[re.Match[str], str, Run], None]] = {
+    _OUTPUT: _switch,
+    _GROUP: _schedule,
+    _ARC: _arc,
+    _WEAVE: _weave,
+    _COOL: _wait_below,
+    _WAIT: _wait,
+    _INPUT: _wait_input,
+    _LAYER: _layer,
+    _TRACK: _track,
+    _FRAME: _frame,
+}
 
 
 def _move(listing: Listing, rows_moved: slice, option: str, run: Run) -> None:

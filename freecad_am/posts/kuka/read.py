@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from array import array
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -309,24 +310,23 @@ def _go(name: str, run: Run) -> None:
             _follow_move(line, run, where)
         elif is_arc_line(line):
             _arc(line, run, where)
-        elif trigger := _TRIGGER.match(line):
-            _trigger(trigger, run, where)
         elif declared := _DECLARED.match(line):
             _declare(declared, lines[3 : number - 1], run, where)
         elif (set_to := _NUMBERED.match(line)) and set_to[1] in run.signals:
             _set(run.signals[set_to[1]], int(set_to[2]), run, where)
-        elif coupled := _COUPLED.match(line):
-            _couple(coupled, run, where)
-        elif _setting(line, run):
-            pass
-        elif layer := _LAYERED.match(line):
-            run.happens("layer", float(layer[1]))
-        elif track := _TRACK.match(line):
-            run.slides += (int(track[1]),)
-        elif not line.startswith(";"):
-            _follow_instruction(line, run, where)
+        elif not _setting(line, run):
+            _carry_out(line, run, where)
     if not run.standing or run.arc.is_open or run.trigger:
         raise not_read(file, "it ends before its last move")
+
+
+def _carry_out(line: str, run: Run, where: str) -> None:
+    for form, instruction in _INSTRUCTIONS.items():
+        if match := form.match(line):
+            instruction(match, run, where)
+            return
+    if not line.startswith(";"):
+        _follow_instruction(line, run, where)
 
 
 def _setting(line: str, run: Run) -> bool:
@@ -417,6 +417,22 @@ def _one_output(number: str, run: Run, where: str) -> None:
     if run.output not in ("", number) or any(ARC in event.value for event in run.events):
         raise not_read(where, "it switches a second output")
     run.output = number
+
+
+def _layer(layer: re.Match[str], run: Run, where: str) -> None:
+    run.happens("layer", float(layer[1]))
+
+
+def _track(track: re.Match[str], run: Run, where: str) -> None:
+    run.slides += (int(track[1]),)
+
+
+_INSTRUCTIONS: dict[re.Pattern[str], Callable[[re.Match[str], Run, str], None]] = {
+    _TRIGGER: _trigger,
+    _COUPLED: _couple,
+    _LAYERED: _layer,
+    _TRACK: _track,
+}
 
 
 def _follow_instruction(line: str, run: Run, where: str) -> None:

@@ -8,6 +8,7 @@ that unknown text cannot hide motion.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from ...core.issues import Text
@@ -157,24 +158,8 @@ def _follow(
             if sub[2] != "CALL":
                 raise unreadable(where, Text("{!r} is not understood here", text))
             _call(where, sub[1], state, (*callers, name))
-        elif _ZERO.match(text):
-            state.zeroed = {word[0] for word in text.split()[3:]}
-        elif (schedule := _SCHEDULE.match(text)) and _tells_schedule(schedule, state):
-            state.track.happens("schedule", float(schedule[2]) + 1.0, float(schedule[3]))
-        elif wire := _WIRE.match(text):
-            if wire[1] == "8" and state.track.on:
-                raise unreadable(where, "the analogue output stops the machine within a bead")
-            state.track.set_wire(int(wire[2]) + 1, wire[3], where)
-            if wire[1] == "8":
-                state.track.rests()
-        elif layer := _LAYER.match(text):
-            state.track.happens("layer", float(layer[1]))
-        elif _sets_mode(text, state):
-            continue
-        elif output := _OUTPUT.match(text):
-            _switch(where, text, output, state)
-        elif not _HARMLESS.match(text):
-            _line(where, text, state)
+        else:
+            _carry_out(where, text, state)
 
 
 def _tells_schedule(schedule: re.Match[str], state: _State) -> bool:
@@ -188,27 +173,58 @@ def _tells_schedule(schedule: re.Match[str], state: _State) -> bool:
     return schedule[1] == "7" and state.track.on and schedule[2] in state.schedules
 
 
-def _sets_mode(text: str, state: _State) -> bool:
-    """Execute a line that sets corner rounding or the tool, or waits; return whether it is one."""
-    if corners := _CORNERS.match(text):
-        state.track.exact = text == "G61.1"
-        # G61 stops only where needed; we never write a point tolerance that differs from
-        # the corner tolerance
-        is_known = corners[2] and corners[2] == corners[3]
-        state.track.rounding = (
-            float(corners[2]) if is_known else 0.0 if corners[1] else float("inf")
-        )
-    elif tool := _TOOL.match(text):
-        state.track.tool = float(tool[1])
-    elif input_wait := _INPUT.match(text):
+def _carry_out(where: str, text: str, state: _State) -> None:
+    for form, instruction in _INSTRUCTIONS.items():
+        if match := form.match(text):
+            instruction(match, where, state)
+            return
+    if not _HARMLESS.match(text):
+        _line(where, text, state)
+
+
+def _zero(zero: re.Match[str], where: str, state: _State) -> None:
+    """Set the offsets of axes to zero."""
+    state.zeroed = {word[0] for word in zero.string.split()[3:]}
+
+
+def _analogue(output: re.Match[str], where: str, state: _State) -> None:
+    """Set an analogue output, which selects a schedule or the speed of the wire."""
+    schedule = _SCHEDULE.match(output.string)
+    if schedule and _tells_schedule(schedule, state):
+        state.track.happens("schedule", float(schedule[2]) + 1.0, float(schedule[3]))
+        return
+    if output[1] == "8" and state.track.on:
+        raise unreadable(where, "the analogue output stops the machine within a bead")
+    state.track.set_wire(int(output[2]) + 1, output[3], where)
+    if output[1] == "8":
         state.track.rests()
-        state.track.happens("input", float(input_wait[1]) + 1.0)
-    elif dwell := _DWELL.match(text):
-        state.track.rests()
-        state.track.waits(dwell[1])
-    else:
-        return False
-    return True
+
+
+def _layer(layer: re.Match[str], where: str, state: _State) -> None:
+    state.track.happens("layer", float(layer[1]))
+
+
+def _corners(corners: re.Match[str], where: str, state: _State) -> None:
+    """Set how corners are rounded."""
+    state.track.exact = corners[0] == "G61.1"
+    # G61 stops only where needed; we never write a point tolerance that differs from the corner
+    # tolerance
+    is_known = corners[2] and corners[2] == corners[3]
+    state.track.rounding = float(corners[2]) if is_known else 0.0 if corners[1] else float("inf")
+
+
+def _tool(tool: re.Match[str], where: str, state: _State) -> None:
+    state.track.tool = float(tool[1])
+
+
+def _wait_input(wait: re.Match[str], where: str, state: _State) -> None:
+    state.track.rests()
+    state.track.happens("input", float(wait[1]) + 1.0)
+
+
+def _dwell(dwell: re.Match[str], where: str, state: _State) -> None:
+    state.track.rests()
+    state.track.waits(dwell[1])
 
 
 def _cooled(where: str, text: str, state: _State) -> bool:
@@ -300,10 +316,11 @@ def _move(where: str, words: dict[str, str], state: _State) -> None:
     state.track.add(TIME if state.feed == "G93" else AXES, words, where)
 
 
-def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None:
+def _switch(output: re.Match[str], where: str, state: _State) -> None:
     """Switch the kinematics or the deposit: by the number of an output, or by two M words, the
     first for on.
     """
+    text = output.string
     if text in (_TIP_ON, _TIP_OFF):
         if state.track.on:
             raise unreadable(where, "the kinematics changes while the deposit is on")
@@ -329,3 +346,15 @@ def _switch(where: str, text: str, output: re.Match[str], state: _State) -> None
     if output[1] not in ("62", "63"):  # these take effect with the next move instead
         state.track.rests()
     state.track.happens("on" if on else "off", float(output[2]) + 1.0 if output[1] else 0.0, text)
+
+
+_INSTRUCTIONS: dict[re.Pattern[str], Callable[[re.Match[str], str, _State], None]] = {
+    _ZERO: _zero,
+    _WIRE: _analogue,
+    _LAYER: _layer,
+    _CORNERS: _corners,
+    _TOOL: _tool,
+    _INPUT: _wait_input,
+    _DWELL: _dwell,
+    _OUTPUT: _switch,
+}

@@ -8,6 +8,7 @@ so that unknown text cannot hide motion.
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from ...core.issues import Text, Word
@@ -128,18 +129,6 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
                 state.waiting = False
             elif not _DWELL.match(text):
                 raise unreadable(where, Text("{!r} in a loop that waits for an input", text))
-        elif wait := _WAIT.match(text):
-            state.waiting = True
-            state.track.happens("input", float(wait[1]))
-        elif cool := _COOL.match(text):
-            if state.track.on:
-                raise unreadable(where, "it waits for an analogue input within a bead")
-            state.waiting = True
-            state.track.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
-        elif dwell := _DWELL.match(text):
-            state.track.waits(dwell[1])
-        elif layer := _LAYER.match(text):
-            state.track.happens("layer", float(layer[1]))
         else:
             _block(where, text, state, (*callers, name))
     if state.waiting:
@@ -147,13 +136,52 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
 
 
 def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> None:
-    if wire := _WIRE.match(text):
-        if state.compress or (not wire[1] and state.track.on):
-            raise unreadable(
-                where, "the analogue output stops the machine or its compressor within a bead"
-            )
-        state.track.set_wire(int(wire[2]), wire[3], where)
-        return
+    for form, instruction in _INSTRUCTIONS.items():
+        if match := form.match(text):
+            instruction(match, where, state)
+            return
+    _words(where, text, state, callers)
+
+
+def _wait_input(wait: re.Match[str], where: str, state: _State) -> None:
+    state.waiting = True
+    state.track.happens("input", float(wait[1]))
+
+
+def _wait_below(cool: re.Match[str], where: str, state: _State) -> None:
+    if state.track.on:
+        raise unreadable(where, "it waits for an analogue input within a bead")
+    state.waiting = True
+    state.track.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
+
+
+def _dwell(dwell: re.Match[str], where: str, state: _State) -> None:
+    state.track.waits(dwell[1])
+
+
+def _layer(layer: re.Match[str], where: str, state: _State) -> None:
+    state.track.happens("layer", float(layer[1]))
+
+
+def _wire(wire: re.Match[str], where: str, state: _State) -> None:
+    if state.compress or (not wire[1] and state.track.on):
+        raise unreadable(
+            where, "the analogue output stops the machine or its compressor within a bead"
+        )
+    state.track.set_wire(int(wire[2]), wire[3], where)
+
+
+_INSTRUCTIONS: dict[re.Pattern[str], Callable[[re.Match[str], str, _State], None]] = {
+    _WAIT: _wait_input,
+    _COOL: _wait_below,
+    _DWELL: _dwell,
+    _LAYER: _layer,
+    _WIRE: _wire,
+}
+
+
+def _words(where: str, text: str, state: _State, callers: tuple[str, ...]) -> None:
+    """Execute a block of words: a move, modes, or one other instruction."""
     words: dict[str, str] = {}
     other_tokens = []
     for token in text.split():

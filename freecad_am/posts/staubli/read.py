@@ -517,9 +517,7 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
         elif _MOVE.match(line):
             _move(app, line, np.zeros(0, np.int64), run, where)
         elif line == "waitEndMove()":
-            run.moving = False
-            if run.steps:
-                run.steps[-1] = dataclasses.replace(run.steps[-1], stops=True)
+            _wait_for_moves(run)
         elif layer := _LAYER.match(line):
             run.happens("layer", float(layer[1]))
         elif not any(form.match(line) for form in (_LOAD, _CALL, _OUTPUT, _DELAY, _WAIT)):
@@ -529,15 +527,31 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
         elif load := _LOAD.match(line):
             _load(app, load[1], load[2], statements, run, where)
         elif call := _CALL.match(line):
-            called = app if call[1] is None else _library(app, call[1], run, where)
-            if called is not None:
-                _follow(called, call[2], run, (*callers, caller))
-            else:
-                run.happens(
-                    "call", str(call[1]).upper() if call[2] == "start" else f"{call[1]}:{call[2]}"
-                )
+            _call(app, call[1], call[2], run, where, (*callers, caller))
         else:
             _other(app, line, run, where)
+
+
+def _call(
+    app: Application,
+    alias: str | None,
+    name: str,
+    run: _Run,
+    where: str,
+    callers: tuple[tuple[str, str], ...],
+) -> None:
+    """Follow a program of the application or of a library; note one elsewhere on the controller."""
+    called = app if alias is None else _library(app, alias, run, where)
+    if called is not None:
+        _follow(called, name, run, callers)
+    else:
+        run.happens("call", str(alias).upper() if name == "start" else f"{alias}:{name}")
+
+
+def _wait_for_moves(run: _Run) -> None:
+    run.moving = False
+    if run.steps:
+        run.steps[-1] = dataclasses.replace(run.steps[-1], stops=True)
 
 
 def _load(

@@ -10,7 +10,7 @@ from __future__ import annotations
 import dataclasses
 import re
 from array import array
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -181,17 +181,7 @@ def _follow(
         where, text = f"{run.file} line {line.number}", line.text
         if _move(text, run, where):
             continue
-        if output := _OUTPUT.match(text):
-            number = _FIRST_PIN[output[1]] + float(output[2])
-            if run.output not in (None, number):
-                raise unreadable(where, "it switches a second output")
-            run.output, run.on = number, output[3] == "True"
-            run.happens("on" if run.on else "off", number, f"{output[1]}_digital_out")
-        elif register := _REGISTER.match(text):
-            run.happens("schedule", float(register[1]), float(register[2]))
-        elif sleep := _SLEEP.match(text):
-            run.happens("wait", float(sleep[1]), digits=0.5 * 10.0 ** -len(sleep[2]))
-        elif wait := _INPUT.match(text):
+        if wait := _INPUT.match(text):
             _loop(lines, where)
             run.happens("input", _FIRST_PIN[wait[1]] + float(wait[2]))
         elif below := _BELOW.match(text):
@@ -208,10 +198,46 @@ def _follow(
                 _follow(call[1], functions[call[1]], functions, run, (*callers, name))
             else:
                 run.happens("call", call[1].upper())
-        elif layer := _LAYER.match(text):
-            run.happens("layer", float(layer[1]))
-        elif not text.startswith("# "):
-            raise unreadable(where, Text("the instruction {!r} is not understood", text))
+        else:
+            _carry_out(text, run, where)
+
+
+def _carry_out(text: str, run: _Run, where: str) -> None:
+    for form, instruction in _INSTRUCTIONS.items():
+        if match := form.match(text):
+            instruction(match, run, where)
+            return
+    if not text.startswith("# "):
+        raise unreadable(where, Text("the instruction {!r} is not understood", text))
+
+
+def _switch(output: re.Match[str], run: _Run, where: str) -> None:
+    """Switch the deposit by an output."""
+    number = _FIRST_PIN[output[1]] + float(output[2])
+    if run.output not in (None, number):
+        raise unreadable(where, "it switches a second output")
+    run.output, run.on = number, output[3] == "True"
+    run.happens("on" if run.on else "off", number, f"{output[1]}_digital_out")
+
+
+def _schedule(register: re.Match[str], run: _Run, where: str) -> None:
+    run.happens("schedule", float(register[1]), float(register[2]))
+
+
+def _wait(sleep: re.Match[str], run: _Run, where: str) -> None:
+    run.happens("wait", float(sleep[1]), digits=0.5 * 10.0 ** -len(sleep[2]))
+
+
+def _layer(layer: re.Match[str], run: _Run, where: str) -> None:
+    run.happens("layer", float(layer[1]))
+
+
+_INSTRUCTIONS: dict[re.Pattern[str], Callable[[re.Match[str], _Run, str], None]] = {
+    _OUTPUT: _switch,
+    _REGISTER: _schedule,
+    _SLEEP: _wait,
+    _LAYER: _layer,
+}
 
 
 def _loop(lines: Iterator[_Line], where: str) -> None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from array import array
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -267,6 +268,24 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
     job = jobs[name]
     if name in callers:
         raise unreadable(job.file, "it calls itself")
+    _check_units(job)
+    for number, text in enumerate(job.lines, job.first_line):
+        where = f"{job.file} line {number}"
+        if text.startswith("MOV"):
+            _move(job, text, run, where)
+        elif call := _CALL.match(text):
+            if call[1] in jobs:
+                _follow(call[1], jobs, run, (*callers, name))
+            else:
+                run.happens("call", call[1])
+        elif text.startswith("'") and len(text) < _LINE:
+            _remark(text, run, where)
+        else:
+            _carry_out(text, run, where)
+
+
+def _check_units(job: _Job) -> None:
+    """Check that a job says what its numbers mean. Raises InputError UNREADABLE_PROGRAM."""
     units = [ratio[1].split() for line in job.lines if (ratio := _PER_UNIT.match(line))]
     named = sorted(axis for _, axis in units)
     slides = [axis for unit, axis in units if unit == "mm"]
@@ -281,34 +300,34 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
         _UNIT.match(line) for line in job.lines
     ):
         raise unreadable(job.file, "the unit of V is missing or unknown")
-    for number, text in enumerate(job.lines, job.first_line):
-        where = f"{job.file} line {number}"
-        if text.startswith("MOV"):
-            _move(job, text, run, where)
-        elif output := _OUTPUT.match(text):
-            if run.output not in ("", output[1]):
-                raise unreadable(where, "it switches a second output")
-            run.output, run.on = output[1], output[2] == "ON"
-            run.happens("on" if run.on else "off", float(output[1]), "OT")
-        elif group := _OUTPUTS.match(text):
-            run.happens("schedule", float(group[1]), float(group[2]))
-        elif arc := _ARC.match(text):
-            _arc(arc, run, where)
-        elif weave := _WEAVE.match(text):
-            _weave(weave, run, where)
-        elif timer := _TIMER.match(text):
-            run.happens("wait", float(timer[1]), digits=0.5 * 10.0 ** -len(timer[2]))
-        elif wait := _INPUT.match(text):
-            run.happens("input", float(wait[1]))
-        elif call := _CALL.match(text):
-            if call[1] in jobs:
-                _follow(call[1], jobs, run, (*callers, name))
-            else:
-                run.happens("call", call[1])
-        elif not text.startswith("'") or len(text) >= _LINE:
-            raise unreadable(where, Text("the instruction {!r} is not understood", text))
-        else:
-            _remark(text, run, where)
+
+
+def _carry_out(text: str, run: _Run, where: str) -> None:
+    for form, instruction in _INSTRUCTIONS.items():
+        if match := form.match(text):
+            instruction(match, run, where)
+            return
+    raise unreadable(where, Text("the instruction {!r} is not understood", text))
+
+
+def _switch(output: re.Match[str], run: _Run, where: str) -> None:
+    """Switch the deposit by an output."""
+    if run.output not in ("", output[1]):
+        raise unreadable(where, "it switches a second output")
+    run.output, run.on = output[1], output[2] == "ON"
+    run.happens("on" if run.on else "off", float(output[1]), "OT")
+
+
+def _schedule(group: re.Match[str], run: _Run, where: str) -> None:
+    run.happens("schedule", float(group[1]), float(group[2]))
+
+
+def _wait(timer: re.Match[str], run: _Run, where: str) -> None:
+    run.happens("wait", float(timer[1]), digits=0.5 * 10.0 ** -len(timer[2]))
+
+
+def _wait_input(wait: re.Match[str], run: _Run, where: str) -> None:
+    run.happens("input", float(wait[1]))
 
 
 def _arc(arc: re.Match[str], run: _Run, where: str) -> None:
@@ -327,6 +346,16 @@ def _weave(weave: re.Match[str], run: _Run, where: str) -> None:
         raise unreadable(where, "weaving is already on, or not on yet")
     run.weaves = where if weave[1] else ""
     run.happens("weave", float(weave[1] or 0))
+
+
+_INSTRUCTIONS: dict[re.Pattern[str], Callable[[re.Match[str], _Run, str], None]] = {
+    _OUTPUT: _switch,
+    _OUTPUTS: _schedule,
+    _ARC: _arc,
+    _WEAVE: _weave,
+    _TIMER: _wait,
+    _INPUT: _wait_input,
+}
 
 
 def _remark(text: str, run: _Run, where: str) -> None:
