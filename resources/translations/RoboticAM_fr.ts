@@ -9877,6 +9877,11 @@
         <translation>il doit commencer par {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>it names several files of data, expected one</source>
+        <translation>il nomme plusieurs fichiers de données, un seul est attendu</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>it needs an unsupported extension ({0}); export plain triangles</source>
         <translation>il demande une extension qui n&apos;est pas prise en charge ({0}) ; exportez des triangles simples</translation>

@@ -264,6 +264,8 @@ def test_random_programs_come_back(random_application, seed, motion, setup):
     ("layer_0001.pgx", "layer_2.pgx", "hand/layer_2.pgx", "missing"),
     ('name="start"', 'name="begin"', "hand/start.pgx", "start"),
     ("</Datas>", "", "hand/hand.dtx", "well-formed"),
+    ('encoding="utf-8"', 'encoding="utf-9"', "hand/hand.pjx", "UTF-8"),
+    ('<Data file="hand.dtx" />', '<Data file="hand.dtx" /><Data file="hand.dtx" />', "hand/hand.pjx", "several files of data"),
     ("<Datas>", "<Datas><!-- -->", "", ""),
     ("begin\n  // by", "// by", "hand/start.pgx", "begin to end"),
 ])  # fmt: skip

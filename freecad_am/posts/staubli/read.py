@@ -77,14 +77,16 @@ def _application(file: str, files: dict[str, bytes]) -> Application:
     for element in root.iterfind(f"{PROJECT}Programs/{PROJECT}Program"):
         name = str(element.get("file")).removesuffix(".pgx")
         programs[name] = _statements(name, f"{folder}/{name}.pgx", files)
-    (data,) = [
+    data_files = [
         str(element.get("file")) for element in root.iterfind(f"{PROJECT}Database/{PROJECT}Data")
-    ] or [""]
+    ]
+    if len(data_files) > 1:
+        raise unreadable(file, "it names several files of data, expected one")
     libraries = {
         str(element.get("alias")): str(element.get("path"))
         for element in root.iterfind(f"{PROJECT}Libraries/{PROJECT}Library")
     }
-    return Application(folder, programs, _data(f"{folder}/{data}", files), libraries)
+    return Application(folder, programs, _data(f"{folder}/{''.join(data_files)}", files), libraries)
 
 
 def _parsed(file: str, files: dict[str, bytes]) -> ElementTree.Element:
@@ -98,6 +100,8 @@ def _parsed(file: str, files: dict[str, bytes]) -> ElementTree.Element:
         return ElementTree.fromstring(files[file])
     except ElementTree.ParseError as error:
         raise unreadable(file, Text("it is not well-formed XML ({})", error)) from None
+    except (LookupError, ValueError):  # another encoding is declared
+        raise unreadable(file, "it is not text in UTF-8") from None
 
 
 def _statements(name: str, file: str, files: dict[str, bytes]) -> list[tuple[int, str]]:
