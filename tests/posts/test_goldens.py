@@ -111,6 +111,8 @@ def column(of, name):
 def test_all_that_is_written_has_golden_files_and_the_rest_is_refused():
     cells = set(itertools.product(OF_ROBOTS, ("joint", "cartesian"), SETUPS))
     cells |= set(itertools.product(ON_TABLES, ("joint", "cartesian"), (TABLE,)))
+    missing = cells - set(GOLDENS) - set(REFUSED)
+    assert not missing, f"{missing} are neither in GOLDENS nor in REFUSED of test_matrix.py"
     assert set(GOLDENS) | set(REFUSED) == cells and not set(GOLDENS) & set(REFUSED)
 
 
