@@ -57,7 +57,7 @@ _WITH_POSITIONER = Arrangement(
     named_axes=False,
     planned=False,
 )
-# its chain is seen from the torch, so that the part hangs on its flange wherever its axes are
+# its chain begins at the torch, so the part is on its flange wherever its axes are
 _FIVE_AXIS = Arrangement(
     "rotary-table",
     carries_part=True,
@@ -66,7 +66,7 @@ _FIVE_AXIS = Arrangement(
     links_known=False,
     named_axes=True,
 )
-OF_ROBOTS = (_HOLDING_PART, _HOLDING_TOOL, _WITH_POSITIONER)  # the usual one first
+OF_ROBOTS = (_HOLDING_PART, _HOLDING_TOOL, _WITH_POSITIONER)  # the most usual set-up first
 OF_FIVE_AXES = (_FIVE_AXIS,)
 _ALL = {one.setup: one for one in (*OF_ROBOTS, *OF_FIVE_AXES)}
 
@@ -77,7 +77,9 @@ def arrangement_of(setup: str) -> Arrangement:
 
 
 def planned_of(setup: str) -> Arrangement:
-    """The same; raises InputError NOT_YET for what jobs cannot have yet."""
+    """The record of a value of `cell.setup`; raises InputError NOT_YET for set-ups that jobs cannot
+    use yet.
+    """
     arrangement = _ALL.get(setup)
     if arrangement is None or not arrangement.planned:
         *other_setups, last_setup = (

@@ -36,8 +36,8 @@ from .torch import Torch
 
 CODE = "TOUCHED"
 MIN_POINTS = 3
-LINE = 0.05  # of their spread that points are off a line at least
-SAME_SIZE = 0.01  # of the distances between points
+LINE = 0.05  # minimum distance of points from a line, as a share of their spread
+SAME_SIZE = 0.01  # allowed error of the distances between points, as a share
 _UNITS = (
     (25.4, "inches"),
     (1000.0, "m"),
@@ -51,8 +51,8 @@ _UNITS = (
 @dataclass(frozen=True, eq=False)
 class WorkOffset:
     """pose: (4, 4) of the part's coordinates in the manufacturer's base frame. residual: (n,) mm,
-    how far each point is from where
-    it was touched."""
+    the distance of each point from its touched position.
+    """
 
     pose: Array
     residual: Array
@@ -140,7 +140,7 @@ def work_offset(points: Sequence[TouchedPoint], tolerance: float) -> WorkOffset:
 
 
 def _refuse_other_size(ratio: float) -> None:
-    """Reject touched points of another size than the planned part."""
+    """Reject touched points at another scale than the planned part."""
     if abs(ratio - 1.0) <= SAME_SIZE:
         return
     unit = next((name for factor, name in _UNITS if abs(ratio * factor - 1.0) <= SAME_SIZE), "")
@@ -165,7 +165,7 @@ _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 
 @dataclass(frozen=True, eq=False)
 class CellShapes:
-    """The shapes of a cell beside robot and part.
+    """The shapes in a cell besides robot and part.
 
     obstacles: obstacles in the world, the manufacturer's base frame. torch: the holder of the
     nozzle, in the frame of its tip, Z into it. external_links: the known links of positioner
@@ -274,13 +274,13 @@ class CellPoses:
 
 @dataclass(frozen=True, eq=False)
 class Cell:
-    """A resolved cell: a machine with its limits, and what it must know of its surroundings.
+    """A resolved cell: a machine with its limits and its surroundings.
 
     poses: of deposition point, platform, nozzle and part. branch: index of the branch
     (spherical_wrist.branch_index), or None to search all. external: external axes; the machine is then
     the robot together with them, and base_link of its chain is the face that carries the
     part, or the world if only the robot is carried. up: (3,) against gravity in the world,
-    the manufacturer's base frame. shapes: what stands in the cell beside robot and part.
+    the manufacturer's base frame. shapes: the bodies in the cell besides robot and part.
     """
 
     machine: Machine
@@ -297,7 +297,7 @@ class Cell:
 
     @property
     def robot(self) -> Machine:
-        """The machine without external axes, whose inverse there is."""
+        """The machine without external axes, for which an inverse exists."""
         return self.machine if self.external is None else self.external.robot
 
     def external_of(self, joints: Array) -> Array | None:
@@ -456,7 +456,7 @@ class Cell:
         if self.external is not None:
             assert (
                 external is not None
-            )  # callers must give the values of the external axes of such a cell
+            )  # callers must pass the values of external axes for such a cell
             stands = frames.inverse(self.external.base(external)) @ stands
         return PoseFrames(stands, -1.0, (_TURNED @ frames.inverse(self.poses.carried))[None])
 
@@ -655,7 +655,7 @@ def resolve(
         (0.0, 0.0, platform, 0.0, 0.0, 0.0) if isinstance(platform, (int, float)) else platform
     )
     limits, external = machine.limits(parameters.limits), None
-    # the torch of a machine that leaves nothing free is where its chain begins
+    # the chain of a five-axis machine begins at its torch
     station = frames.bryant(parameters.deposition_point) if arrangement.free else np.eye(4)
     mount = mounted(parameters, feature_frame, family)
     offset = offset_of_cell(parameters, arrangement)
@@ -688,8 +688,9 @@ def resolve(
 
 
 def _refuse_otherwise(machine: Machine, arrangement: Arrangement, has_external: bool) -> None:
-    """InputError WRONG_SETUP for what the machine, or external axes, do not do, NO_CLOSED_FORM for an arm whose inverse is
-    not known."""
+    """Raise InputError WRONG_SETUP for a set-up that the machine or external axes do not support,
+    NO_CLOSED_FORM for an arm without a known inverse.
+    """
     if arrangement not in machine.arrangements:
         kind = "is a robot" if machine.free else "has prismatic axes"
         setups = Text.joined(

@@ -23,8 +23,9 @@ PIECE = 4096
 
 
 class JointFrames(NamedTuple):
-    """Where the axes of a chain are: unit `directions` (..., axes, 3), a point `origins` (..., axes, 3) on each
-    axis, and the `flange` (..., 4, 4); all in base_link, mm."""
+    """The axes of a chain: unit `directions` (..., axes, 3), a point `origins` (..., axes, 3) on
+    each axis, and the `flange` (..., 4, 4); all in base_link, mm.
+    """
 
     directions: Array
     origins: Array
@@ -55,7 +56,8 @@ class Chain:
             object.__setattr__(self, "sliding", np.zeros(len(self.directions), dtype=bool))
         if not len(self.order):
             object.__setattr__(self, "order", np.arange(len(self.directions)))
-        # each joint is turned into one about its own Z, which leaves constant poses between the rotations
+        # each joint is converted to a rotation about its Z, with constant poses between
+        # the rotations
         to_axis = frames.pose(
             frames.smallest_rotation((0.0, 0.0, 1.0), self.directions), np.zeros(3)
         )
@@ -172,7 +174,7 @@ class Chain:
         return self._transform_point(q, point, range(self.axes), frames.inverse(self._links), -1.0)
 
     def point_position(self, q: ArrayLike, point: Array) -> Array:
-        """Return where a point of the flange is.
+        """Return the position of a point of the flange.
 
         Parameters
         ----------
@@ -215,7 +217,7 @@ class Chain:
             link_frame = result[..., joint, :, :]
             still = (link_frame.reshape(-1, 4) @ self.origins[joint]).reshape(
                 link_frame.shape
-            )  # one product, not one each
+            )  # one product for all, not one for each
             result[..., joint + 1, :, :] = still @ frames.pose(*moved)
         return result
 
@@ -253,7 +255,7 @@ class Chain:
 
     @property
     def _is_mixed(self) -> bool:
-        """Whether joints take values other than the one of their own index."""
+        """Whether the joint values have another order than the joints."""
         return bool((self.order[1:] < self.order[:-1]).any())
 
     def _by_joint(self, angles: Array) -> Array:
@@ -262,7 +264,7 @@ class Chain:
         return by_value[self.order] if self._is_mixed else by_value
 
     def reversed(self) -> Chain:
-        """The same joints seen from the flange: its flange is this one's base."""
+        """The same joints seen from the flange: its flange is the base of this chain."""
         back = frames.inverse(np.concatenate((self.origins, self.flange[None])))[::-1]
         return Chain(
             back[:-1], -self.directions[::-1], back[-1], self.sliding, self.order[::-1].copy()
@@ -276,7 +278,8 @@ class Chain:
         """
         sines, cosines = np.sin(angles), np.cos(angles)
         count = angles.shape[1]
-        # one row per column of the rotation, each holding x, y, z of all poses; the first link is equal in all
+        # one row per column of the rotation, each with x, y, z of all poses; the first
+        # link is the same in all
         moved = np.empty((4, 3, count))
         moved[:] = self._links[0, :3].T[:, :, None]
         columns, position = moved[:3].reshape(3, 3 * count), moved[3].ravel()
@@ -322,8 +325,10 @@ def _turn(columns: Array, sine: Array, cosine: Array) -> None:
 
 
 class Piece(NamedTuple):
-    """Part of a longer chain: `chain`, which begins at the pose `start` (4, 4) seen from the flange of the piece before, and
-    the places `values` (its axes,) that its joint values have among those of the whole."""
+    """Part of a longer chain: `chain`, which begins at the pose `start` (4, 4) in the flange frame
+    of the previous piece, and the indices `values` (its axes,) of its joint values among those
+    of the whole chain.
+    """
 
     start: Array
     chain: Chain

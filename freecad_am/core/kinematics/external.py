@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""ExternalMechanism axes: a robot and its mechanisms as one machine.
+"""External axes: a robot and its mechanisms as one machine.
 
 Seen from the part, robot and mechanisms are one chain: from the face of the last
 mechanism that carries the part backwards through the positioner to the floor, or from the
@@ -232,7 +232,7 @@ def coupled(
 
 
 def _check(loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> None:
-    """Refuse what cannot be planned."""
+    """Reject mechanisms that cannot be planned."""
     tracks = [machine for named_axis, machine in loaded if named_axis.carries == ROBOT]
     for machine in tracks:
         if machine.chain.axes != 1 or not machine.chain.sliding.all():
@@ -264,7 +264,7 @@ def _check(loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> None:
 
 
 def _check_names(robot: Machine, loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> None:
-    """Refuse mechanisms that are the robot itself, or each other."""
+    """Reject mechanisms that are the robot itself, or that are listed twice."""
     for k, (named_axis, machine) in enumerate(loaded):
         if machine.id == robot.id or (_alike(machine, robot) and named_axis.carries == ROBOT):
             raise InputError(
@@ -308,7 +308,7 @@ def load(name: str, folders: Sequence[str] = ()) -> Machine:
     description = reference(name)
     if description is not None:
         urdf_chain = urdf_machine.chain_of(description)
-        called = f"{urdf_chain.name} {' - '.join(urdf_chain.joints)}"  # a file may describe several
+        called = f"{urdf_chain.name} {' - '.join(urdf_chain.joints)}"  # a file may describe several mechanisms
         return dataclasses.replace(
             machines.machine_of_description(name, urdf_chain, None), id=called, title=called
         )
@@ -367,7 +367,9 @@ def _chain(loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> tuple[Chain, 
 def _mechanisms(
     loaded: Sequence[tuple[ExternalMechanism, Machine]], values: Sequence[Index]
 ) -> tuple[Mechanism, ...]:
-    """Return the mechanisms with their frames: those that carry the part are on one another."""
+    """Return the mechanisms with their frames; each one that carries the part stands on the
+    previous one.
+    """
     adjacent: list[Mechanism] = []
     under: int | None = None
     face = np.eye(4)
@@ -517,8 +519,8 @@ def _rank(robot: Machine, machine: Machine) -> tuple[bool, bool, float, str]:
 
 
 def _known(folders: Sequence[str]) -> list[Machine]:
-    """Return all mechanisms in the user's folders and built in; files that are wrong or hold no
-    mechanism are left out.
+    """Return all mechanisms in the user's folders and built in, without files that are invalid or
+    describe no mechanism.
     """
     mechanisms: dict[str, Machine] = {}
     for folder in [MECHANISMS, *map(Path, folders)]:

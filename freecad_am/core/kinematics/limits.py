@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Joint limits: of each axis, of sums of axes coupled by a linkage or a controller, and the
-reserve beside them."""
+"""Joint limits: of each axis, and of sums of axes coupled by a linkage or a controller; and the
+reserve kept from them.
+"""
 
 from __future__ import annotations
 
@@ -69,7 +70,7 @@ class PoseFrames:
                     poses[row, column] = self.right[:, row, column]
             return _moved_by(self.left[0], np.moveaxis(poses, (0, 1), (-2, -1)))
         rotated = np.empty((*phi.shape, 4, 4))
-        # entry by entry too: along axes of four it takes twice as long
+        # entry by entry: along axes of length four it takes twice as long
         for row in range(4):
             entry_a, entry_b = np.ascontiguousarray(self.left[:, row, :2].T)
             rotated[..., row, 0] = cos * entry_a + sin * entry_b
@@ -89,7 +90,7 @@ def _moved_by(frame: Array, poses: Array) -> Array:
 
 
 class Smallest(NamedTuple):
-    """The smallest margin of each joint vector, rad, and which limit it is to, as an index into `Limits.labels`."""
+    """The smallest margin of each joint vector, rad, and the index of its limit in `Limits.labels`."""
 
     margin: Array
     label: Index
@@ -285,5 +286,6 @@ class Payload:
 
 # ---- The margin kept free at every limit (docs/decisions/0009)
 
-# rad, and as many mm of axes that slide: the program's last digit, of a degree or a mm, must not take an axis past its limit
+# rad, and mm of prismatic axes: the last digit of a program, of a degree or mm, must not move an
+# axis past its limit
 RESERVE = math.radians(0.05)

@@ -37,12 +37,12 @@ from .machines import machine as machines
 # result for the default cell, so that most jobs need no search
 USUAL_POINT, USUAL_BRANCH = (1562.0, 0.0, 691.0, 0.0, 0.0, 0.0), ("front", "down", "noflip")
 
-TILTS = np.radians([0.0, 30.0, 60.0, 85.0])  # of the tool axis on the part
+TILTS = np.radians([0.0, 30.0, 60.0, 85.0])  # tilts of the tool axis on the part
 BALL = 50.0  # mm, radius of the deposit held
 TURNS = 36  # rotations about the tool axis that are tried
 # number of directions from which a fixed ball is approached
 LEANING, ROUND = np.radians([0.0, 15.0, 30.0, 45.0, 60.0, 85.0]), 12
-AHEAD = np.linspace(0.4, 0.85, 8)  # of the reach, from axis 2 on
+AHEAD = np.linspace(0.4, 0.85, 8)  # shares of the reach, from axis 2
 ABOVE = np.linspace(-0.5, 0.7, 9)
 
 
@@ -177,7 +177,9 @@ def _directions(tilts: Array, count: int) -> Array:
 
 
 class _Place(NamedTuple):
-    """Where the deposition point may be: the room of the worst pose there, in a branch; the lowest number has most."""
+    """A possible deposition point with the room of its worst pose in a branch; the lowest number
+    has the most room.
+    """
 
     lack: float  # of room, 1 - room
     number: int
@@ -212,7 +214,7 @@ def _places(cell: Cell, axes: Array, branches: Sequence[int]) -> Iterator[_Place
     assert arm is not None
     shoulder, height = arm.shoulder
     heights = height + ABOVE * arm.reach
-    if not cell.torch_stands:  # no platform in the floor
+    if not cell.torch_stands:  # a platform must not be in the floor
         heights = np.unique(np.maximum(heights, 0.0))
     for number, (ahead, above) in enumerate(itertools.product(AHEAD, heights)):
         x, z = np.round([shoulder + ahead * arm.reach, above])
@@ -225,7 +227,7 @@ def _places(cell: Cell, axes: Array, branches: Sequence[int]) -> Iterator[_Place
 
 
 def _stood(cell: Cell, point: Pose) -> Cell:
-    """The cell with the deposition point, or the platform, at a point of the manufacturer's base frame."""
+    """The cell with deposition point or platform at a point of the manufacturer's base frame."""
     station = cell.machine.base @ frames.bryant(point)
     return replace(cell, poses=replace(cell.poses, station=station))
 

@@ -22,7 +22,7 @@ from ..types import Array, Integers
 Piece = tuple[Array, Integers]
 
 CODE, WHERE = "TORCH", "cell.nozzle.shape"
-MAX_TIP_DISTANCE_MM = 50.0  # mm from the tip to the torch, which a wire is not longer; a file that is farther off has another origin
+MAX_TIP_DISTANCE_MM = 50.0  # mm; maximum distance from the tip to the torch: wires are not longer, so beyond it the file has another origin
 MAX_BEYOND_TIP_MM = (
     0.5  # mm; allowed reach beyond the tip: anything there would be inside the deposit
 )
@@ -30,8 +30,8 @@ MAX_EXCESS_MM = 0.05  # mm; allowed excess over the cone, the error of triangles
 MAX_CYLINDERS, MIN_SAVED_SHARE = (
     16,
     0.02,
-)  # cylinders, and the share of their volume that one more has to save
-# files have Z out of the nozzle, we have the tip's Z into it
+)  # maximum number of cylinders, and the share of their volume that another one must save
+# in files Z points out of the nozzle, in our tip frame into it
 _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
@@ -225,7 +225,7 @@ def _refuse_wider(torch_body: Body, nozzle: NozzleParameters) -> None:
 
 
 def _from_origin(corners: Array) -> Array:
-    """(m,) squares of the distances of triangles (m, 3, 3) from the origin, mm2."""
+    """Squared distances (m,), mm2, of triangles (m, 3, 3) from the origin."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     normal = np.cross(b - a, c - a)
     square = np.einsum("ij,ij->i", normal, normal)

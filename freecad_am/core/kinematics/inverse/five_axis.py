@@ -52,7 +52,7 @@ class Solutions(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class FiveAxis:
-    """A chain of three sliding and two turning joints. ValueError for any other."""
+    """A chain of three prismatic and two revolute joints. Raises ValueError for any other chain."""
 
     chain: Chain
     turning: tuple[int, int] = field(init=False)
@@ -67,7 +67,7 @@ class FiveAxis:
 
     @property
     def pole(self) -> Array:
-        """Return the axis of the turning joint next to the flange.
+        """Return the axis of the revolute joint next to the flange.
 
         Returns
         -------
@@ -79,7 +79,9 @@ class FiveAxis:
         return np.asarray(source @ second)
 
     def turns(self, tools: Array, torch: Array) -> rotary_pair.Turns:
-        """The turns that bring unit vectors tools (n, 3) on the flange to the unit vector torch (3,) in base_link."""
+        """The turns that bring tool directions (n, 3) on the flange to the direction of the torch
+        (3,) in base_link, unit vectors.
+        """
         first_axis, second_axis, source, target = self._pair(tools, torch)
         return rotary_pair.solve_turns(first_axis, second_axis, source, target)
 
@@ -195,7 +197,8 @@ class FiveAxis:
         return axes
 
     def _pair(self, tools: Array, torch: Array) -> tuple[Array, Array, Array, Array]:
-        """Axes, sources (n, 3) and target (3,) as `rotary_pair` wants them, all in the first turning joint's frame.
+        """Axes, sources (n, 3) and target (3,) for `rotary_pair`, all in the frame of the first
+        revolute joint.
 
         With A, B, C the rotations at zero before, between and after the joints, A Rot(d1) B Rot(d2) C tool = torch is
         Rot(d1) Rot(B d2) (B C tool) = A^T torch.

@@ -28,11 +28,12 @@ from .shoulder_loops import TINY, Curves, geometry
 # ---- Solutions of arms with an offset wrist whose point of axes 4 and 5 is on axis 1, or next to
 # it
 
-# of the length of the stretched arm: how near to axis 1 the point passes where this is done, how far from it solutions are
-# taken, and within what no others are, for their planes have too few digits
+# shares of the length of the stretched arm: distance from axis 1 below which this applies,
+# distance up to which solutions are taken from here, and distance within which no others are,
+# because their planes lack digits
 PASS_SHARE, SOLVED_SHARE, NOISE_SHARE = 2e-5, 1e-3, 1e-7
 SAME_RAD, SAME_SINE = 1e-7, 1e-3
-MISMATCH = 1e-8  # of the cosine between axes 4 and 5: a sign that only changes with the plane's half turn is not a solution
+MISMATCH = 1e-8  # cosine between axes 4 and 5: a change of sign due to a half turn of the plane is no solution
 SAMPLES, ROUNDS = 128, 40
 AXIS_STEP_RAD = 1e-2
 PLANE_SHARE = 1e-13  # of the length of the stretched arm
@@ -117,9 +118,10 @@ def _point(curves: Curves, pose: Index, angle: Array) -> tuple[Array, Array, Arr
 
 
 def _passes(curves: Curves, length: float) -> tuple[Index, Array]:
-    """The pose (k,) and angle of axis 6 (k,) wherever the point passes close to axis 1."""
+    """Poses (k,) and angles of axis 6 (k,) at which the point passes close to axis 1."""
     centre, cos, sin = curves.point[:, :2]
-    # the point is on axis 1 where the centre is the ellipse's affine map of a unit vector; its distance bounds from below
+    # the point is on axis 1 if the ellipse maps a unit vector to its centre; the distance is
+    # a lower bound
     size = np.abs(cos[0] * sin[1] - cos[1] * sin[0])
     mapped = np.hypot(
         sin[1] * centre[0] - sin[0] * centre[1], cos[0] * centre[1] - cos[1] * centre[0]
@@ -139,7 +141,7 @@ def _passes(curves: Curves, length: float) -> tuple[Index, Array]:
     for _ in range(ROUNDS):
         (x, y, _), (u, v, _), (du, dv, _) = _point(curves, pose, angle)
         curved = u * u + v * v + x * du + y * dv
-        # only the Gauss part where the whole is not convex
+        # only the Gauss-Newton part if the whole is not convex
         curved = np.where(curved > 0.0, curved, u * u + v * v + TINY)
         angle = angle - np.clip((x * u + y * v) / curved, -AXIS_STEP_RAD, AXIS_STEP_RAD)
     x, y, _ = _point(curves, pose, angle)[0]
@@ -160,7 +162,7 @@ def _solved(
         )
         ahead = x * plane[1] + y * plane[0]
         off, slope = x * plane[0] - y * plane[1], u * plane[0] - v * plane[1]
-        # the plane turns with the angle too: a secant method, once the steps allow it
+        # the plane turns with the angle too: use a secant method once the steps are small enough
         moved = angle - previous[0]
         with np.errstate(invalid="ignore", divide="ignore"):
             secant = (off - previous[1]) / moved
@@ -218,7 +220,7 @@ def _plane_of_meeting(
 
 CHUNK = 2048
 MAX_SOLUTIONS = 16  # solutions of six revolute joints
-STEP_RAD = 1e-5  # of axis 6, by which the slope is taken
+STEP_RAD = 1e-5  # rad of axis 6: step for the slope
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -280,7 +282,9 @@ class OffsetWristArm:
         return self.solutions(poses)[0]
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
-        """Joint angles (n, 6) of one configuration, of several solutions the least singular one; else as `inverse`."""
+        """Joint angles (n, 6) of one configuration, the least singular of several solutions;
+        otherwise as `inverse`.
+        """
         result: Array = self.inverse(poses)[branch]
         return result
 
@@ -323,7 +327,9 @@ class OffsetWristArm:
         return configurations.reshape(angles.shape[:-1])
 
     def bend(self, q: ArrayLike) -> Array:
-        """(...) how far angles `q` (..., 6) are from where elbow or wrist is stretched: 0 there, 1 square to it."""
+        """Distance (...) of angles `q` (..., 6) from a stretched elbow or wrist: 0 where stretched,
+        1 at a right angle.
+        """
         angles = np.asarray(q, float)
         two, three = self._plane(angles)
         bent: Array = np.minimum(np.abs(np.sin(three - two)), np.abs(np.sin(angles[..., 4])))
@@ -335,7 +341,7 @@ class OffsetWristArm:
         return two, two - self.turns[1] + self.turns[2] + q[..., 2] * self.signs[2]
 
     def _sides(self, q: Array) -> tuple[Mask, Mask]:
-        """Whether the arm (n,) is at the back, and its elbow on the left of the way to the wrist."""
+        """Whether the arm (n,) is at the back, and its elbow on the left of the line to the wrist."""
         two, three = self._plane(q)
         back = self.ahead + self.upper * np.sin(two) + self.fore * np.sin(three) < 0.0
         return np.asarray(back), np.asarray(np.sin(three - two) >= 0.0)
@@ -347,7 +353,7 @@ class OffsetWristArm:
         return result
 
     def _curves(self, poses: Array) -> Curves:
-        """Where the point of axes 4 and 5, and axis 5, are for each angle of axis 6."""
+        """The point of axes 4 and 5, and axis 5, for each angle of axis 6."""
         at_rest = self.chain.frames(np.zeros(6))
         axis, through = at_rest.directions[5], at_rest.origins[5]
         back = frames.inverse(at_rest.flange)
@@ -387,7 +393,7 @@ class OffsetWristArm:
             return
         q = self._angles(poses, curves, zeros, plane)
         words = self._words(zeros.side < 0.0, zeros.elbow > 0.0, zeros.slope > 0.0)
-        # the least singular of each configuration first, all others after the eight
+        # the least singular solution of each configuration first, the others after these eight
         order = np.lexsort((-np.abs(zeros.slope), words, zeros.pose))
         pose, words = zeros.pose[order], words[order]
         is_first = np.ones(len(order), dtype=bool)
@@ -419,7 +425,7 @@ class OffsetWristArm:
         q[1] = (two - self.turns[1]) * self.signs[1]
         q[2] = (three - two - (self.turns[2] - self.turns[1])) * self.signs[2]
         six = (poses[:, :3, :3] @ (at_rest.flange[:3, :3].T @ z[5])).T[:, zeros.pose]
-        # axes 5 and 6 as the arm with axes 1 to 3 at zero would have them
+        # axes 5 and 6 of the arm with axes 1 to 3 at zero
         plane = _subtract_angle(plane, self.turns[0])
         turned = _subtract_angle(fore / np.hypot(*fore), self.turns[2])
         normal = z[1] * self.signs[1]

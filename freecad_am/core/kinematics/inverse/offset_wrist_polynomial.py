@@ -42,11 +42,13 @@ from . import trigonometric_zeros as trigonometric
 from .offset_wrist_search import SAME_RAD, Zeros
 from .shoulder_loops import EDGE, TINY, Curves, whole_turns
 
-NEWTON, NEWTON_RAD = 12, 5e-10  # turns of the flange that follow are off by as much
-SAME_AS_SEARCHED_RAD = 1e-6  # nearer zeros that the search finds are those found here
-TWICE_RAD = 4e-6  # as near to others are zeros at which the polynomial only touches zero
-MEETS = 2e-10  # of the cosine between axes 4 and 5, which is wrong where a touch belongs to another side or elbow
-NEAR_AXIS = 3e-4  # of the length of the stretched arm: nearer to axis 1 the search has more digits
+NEWTON, NEWTON_RAD = 12, 5e-10  # error of the flange rotations
+SAME_AS_SEARCHED_RAD = 1e-6  # zeros of the search that are closer to one found here are the same
+TWICE_RAD = 4e-6  # distance to other zeros within which the polynomial only touches zero
+MEETS = 2e-10  # cosine between axes 4 and 5: it is off if a touch belongs to another side or elbow
+NEAR_AXIS = (
+    3e-4  # share of the length of the stretched arm: closer to axis 1 the search is more accurate
+)
 SQUARE = 1e-13  # sine of the angles that must be square or straight
 
 
@@ -74,7 +76,7 @@ class _Terms(NamedTuple):
 
 
 def is_even(curves: Curves) -> bool:
-    """Whether the arm's solutions in front and at the back are at the same angles of axis 6."""
+    """Whether solutions in front and at the back have the same angles of axis 6."""
     return not curves.ahead and abs(curves.lean[1]) < SQUARE and abs(curves.square) < SQUARE
 
 
@@ -98,7 +100,7 @@ def zeros(curves: Curves) -> Zeros:
     angle, sure, distance = _roots(arm, of_zero, side, low, high, bounds_near)
     close[number[~sure | (distance < NEAR_AXIS)]] = True
     if not sure.all():
-        # where three meet, rounding moves a zero by more than is asked for
+        # where three zeros meet, rounding moves them by more than the tolerance
         moved = np.flatnonzero(~sure)
         touching = (
             np.concatenate([touching[0], number[moved]]),
@@ -314,7 +316,9 @@ def _terms(arm: _Lengths, harmonics: Array, angle: Array, side: Array) -> _Terms
 def _roots(
     arm: _Lengths, harmonics: Array, side: Array, low: Array, high: Array, first_guess: Array
 ) -> tuple[Array, Mask, Array]:
-    """The zero (k,) in each step, whether it was found, and how far from axis 1: Newton's method, kept in the step."""
+    """The zero (k,) in each step, whether it was found, and its distance from axis 1, by Newton's
+    method bounded to the step.
+    """
     angle = first_guess.copy()
     step = np.full(len(first_guess), np.inf)
     radii = np.zeros(len(first_guess))
@@ -344,7 +348,7 @@ def _solutions(arm: _Lengths, harmonics: Array, pose: Index, angle: Array, side:
     target = arm.square * terms.squared * terms.radius
     level = terms.common * terms.level
     turn = (target - level) / np.where(terms.across == 0.0, TINY, terms.across)
-    # far from the stretched arm its height in the triangle has the more digits of the two
+    # far from the stretched arm its height in the triangle is the more accurate of the two
     height = np.sqrt(np.maximum(terms.squared - terms.common * terms.common, 0.0))
     turn = np.where(
         np.abs(terms.radius) * height > np.abs(terms.across), np.copysign(height, turn), turn
@@ -373,7 +377,7 @@ def _both_sides(front: Zeros) -> Zeros:
 # where more than one of them is small. The condition of a single side and elbow keeps them, and
 # is sampled: `search` covers a whole turn and misses features narrow at that scale.
 
-SAMPLES = 24  # of a span, finer where the condition is nearly zero
+SAMPLES = 24  # samples of a span, finer where the condition is nearly zero
 SEARCH_LEVEL = 1  # level of the search from which steps are divided: samples of a span are as close as those of its first pieces
 
 
@@ -412,7 +416,7 @@ def zeros_without_digits(curves: Curves, pose: Index, low: Array, high: Array) -
 
 
 def _merge_spans(pose: Index, low: Array, high: Array) -> tuple[Index, Array, Array]:
-    """Spans of a pose that meet as one."""
+    """Merge spans of a pose that meet."""
     order = np.lexsort((low, pose))
     pose, low, high = pose[order], low[order], high[order]
     is_first = np.ones(len(pose), dtype=bool)

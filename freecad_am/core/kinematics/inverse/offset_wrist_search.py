@@ -59,7 +59,7 @@ class Zeros(NamedTuple):
 
 
 def zeros(curves: Curves) -> Zeros:
-    """All zeros, in no order."""
+    """All zeros, unordered."""
     loops = loops_of(curves)
     t = (np.arange(-1, SAMPLES + 2) + SAMPLE_SHIFT) * (2.0 * math.pi / SAMPLES)
     return find_zeros_along(
@@ -111,7 +111,9 @@ def find_zeros_along(
 
 
 def _once(zeros: Zeros) -> Index:
-    """Which zeros are left when those found twice, in a step and in one of its pieces, count once."""
+    """Which zeros remain when a zero that was found twice, in a step and in one of its pieces,
+    counts once.
+    """
     angle = zeros.angle - 2.0 * math.pi * np.round(zeros.angle / (2.0 * math.pi))
     order = np.lexsort((angle, zeros.elbow, zeros.side, zeros.pose))
     twice = np.abs(np.diff(angle[order])) < SAME_RAD
@@ -198,7 +200,7 @@ def _steps(
     if level < LEVELS:
         fast = _turn_cosine(spot.cosine, spot.sine) < SWING
         fast |= _turn_cosine(*spot.along) < SWING
-        # steps next to fast ones are not even either, and where the function is flat it may pass zero more than once
+        # steps next to fast ones are uneven too, and a flat function may pass zero more than once
         fast[:, 1:] |= fast[:, :-1]
         fast[:, :-1] |= fast[:, 1:]
         size = np.abs(value)
@@ -210,7 +212,7 @@ def _steps(
         if len(row):
             share = np.arange(-1, PIECES + 2) / PIECES
             finer = t[row, column][:, None] + share * (t[row, column + 1] - t[row, column])[:, None]
-            finer[:, -2] = t[row, column + 1]  # to its last digit, as in the adjacent step
+            finer[:, -2] = t[row, column + 1]  # bit for bit as in the adjacent step
             steps.append(_steps(curves, loops, rows[row], finer, level + 1))
     change[:, [0, -1]] = False
     row, column = np.nonzero(change)
@@ -226,7 +228,9 @@ def _turn_cosine(cosine: Array, sine: Array) -> Array:
 def _touching(
     curves: Curves, loops: Loops, rows: Index, t: Array, value: Array
 ) -> list[tuple[Index, Array, Array]]:
-    """Steps about extremes between samples of one sign that reach zero: two with a zero each, or one without length."""
+    """Steps around extremes that reach zero between samples of one sign: two with a zero each, or
+    one of zero length.
+    """
     size = np.abs(value)
     same = (value[:, 1:-1] >= 0.0) == (value[:, :-2] >= 0.0)
     same &= (value[:, 1:-1] >= 0.0) == (value[:, 2:] >= 0.0)
@@ -268,13 +272,14 @@ def _touching(
 
 
 def _refined(curves: Curves, loops: Loops, low: Array, high: Array) -> Array:
-    """The zero t (k,) in each step: Chandrupatla's method, which does not leave the step."""
+    """The zero t (k,) in each step, by Chandrupatla's method, which stays in the step."""
     a, b = high.copy(), low.copy()
     fa, fb = _evaluate(curves, loops, a).value, _evaluate(curves, loops, b).value
     c, fc = a.copy(), fa.copy()
     share = np.full(len(a), 0.5)
     best = np.where(np.abs(fa) < np.abs(fb), a, b)
-    # samples are less exact: a step with one sign at both ends is zero to their digits at one of them
+    # samples are less exact: in a step with one sign at both ends, one end is zero within
+    # their accuracy
     active = np.flatnonzero((a != b) & (fa != 0.0) & (fb != 0.0) & ((fa >= 0.0) != (fb >= 0.0)))
     for _ in range(ROUNDS):
         if not len(active):

@@ -24,7 +24,7 @@ from .spherical_wrist import OpwArm
 # tolerances of directions (rad) and lines (mm), and maximum error of the closed form: those of machine files
 PARALLEL_TOLERANCE, NEAR_MM = 1e-8, 1e-5
 POSITION, ROTATION = 1e-6, 1e-9
-ROBOT = 6  # axes of one
+ROBOT = 6  # number of axes of a robot
 FLANGE = "flange"  # location of errors that concern only the flange
 TOOL_FRAME = "take the frame tool0 of a URDF, or move the flange"
 OTHER_GEOMETRY = "correct its geometry, or choose another machine"
@@ -220,7 +220,7 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
             "take another link of a URDF, such as tool0 or fanuc_flange, or turn the flange",
             FLANGE,
         )
-    # axis 5 within the forearm: about its own y, turned about it by turn4 of at most a right angle
+    # axis 5 in the forearm: along its y, rotated about the forearm by turn4, at most a right angle
     turn4 = math.atan2(-float(z[4] @ across), float(z[4] @ y))
     sign5 = 1
     if turn4 <= -math.pi / 2.0 + PARALLEL_TOLERANCE or turn4 > math.pi / 2.0 + PARALLEL_TOLERANCE:

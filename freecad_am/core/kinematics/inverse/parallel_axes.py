@@ -21,11 +21,12 @@ from ...geometry.frames import TURN
 from ...types import Array, ArrayLike, Index
 
 CHUNK = 2048
-# how far rounding may take a pose that is reached past a stretched arm (as 1 - cos^2 of the elbow), and past `beside` (mm)
+# tolerance for poses that rounding puts just out of reach: beyond a stretched arm (1 - cos^2 of
+# the elbow), and beyond `beside` (mm)
 STRETCH, TOUCH = 4e-12, 1e-9
-# added where a direction may vanish: gives an angle and is lost in any other number
+# added to directions that may vanish: defines an angle there and is lost in rounding elsewhere
 HINT = 1e-150
-PARALLEL = 1e-10  # rad: nearer to the normal of the arm's plane, the direction of axis 6 says nothing of axis 5
+PARALLEL = 1e-10  # rad: closer to the normal of the arm's plane, axis 6 does not determine axis 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,7 +88,7 @@ class ParallelAxesArm:
         return self._solved(poses, tuple(range(8)))
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
-        """Joint angles (n, 6) of one configuration; else as `inverse`."""
+        """Joint angles (n, 6) of one configuration; otherwise as `inverse`."""
         result: Array = self._solved(poses, (branch,))[0]
         return result
 
@@ -97,7 +98,7 @@ class ParallelAxesArm:
         return angles, np.where(np.isnan(angles[..., 0]), -1, np.arange(8)[:, None])
 
     def branch_of(self, q: ArrayLike) -> Index:
-        """The configuration (...) that joint angles `q` (..., 6) are in."""
+        """The configuration (...) of joint angles `q` (..., 6)."""
         angles = np.asarray(q, float)
         theta = columns(angles * np.array(self.signs, float) + np.array(self.zeros))
         four = theta[1] + theta[2] + theta[3]
@@ -110,7 +111,9 @@ class ParallelAxesArm:
         return result
 
     def bend(self, q: ArrayLike) -> Array:
-        """(...) how far angles `q` (..., 6) are from where wrist or elbow is stretched: 0 there, 1 square to it."""
+        """Distance (...) of angles `q` (..., 6) from a stretched wrist or elbow: 0 where stretched,
+        1 at a right angle.
+        """
         theta = np.asarray(q, float) * np.array(self.signs, float) + np.array(self.zeros)
         bent: Array = np.minimum(np.abs(np.sin(theta[..., 4])), np.abs(np.sin(theta[..., 2])))
         return bent
@@ -152,7 +155,7 @@ class ParallelAxesArm:
                 rows[2, 2],
             )
             off = np.hypot(axis_6[0], axis_6[2])
-            # axis 5 is square to the normal and to axis 6; where these are parallel, it is free
+            # axis 5 is normal to the plane's normal and to axis 6; it is free if these are parallel
             five_x, five_z = axis_6[2] / off, -axis_6[0] / off
             free = off < PARALLEL
             if free.any():
@@ -165,7 +168,7 @@ class ParallelAxesArm:
             ]
             theta_6 = np.arctan2(-axis_5[1], axis_5[0])
             for turned in (0, 1):
-                # the solution with theta 5 > 0 has axis 5 the way found
+                # the solution with theta 5 > 0 has this direction of axis 5
                 flip = turned if self.signs[4] > 0 else 1 - turned
                 pair = [
                     (down, of_side[2 * down + flip])
@@ -198,7 +201,7 @@ class ParallelAxesArm:
                     angles[:, np.isnan(theta_2) | np.isnan(theta_1)] = np.nan
 
     def _chosen(self, ahead: Array, above: Array) -> tuple[Array, Array]:
-        """The direction (x, z) of axis 5, where it is free, with which the elbow is as square as it can be."""
+        """The direction (x, z) of a free axis 5 that brings the elbow closest to a right angle."""
         length = math.hypot(*self.wrist)
         distance = np.hypot(ahead, above) + HINT
         elbow_distance = np.clip(
@@ -236,7 +239,7 @@ class ParallelAxesArm:
         return np.arctan2(sine, cosine), upper + fore * cosine, fore * sine
 
     def _to_machine(self, axis: int, theta: Array) -> Array:
-        """The machine's angle in [-pi, pi] of the arm's."""
+        """The machine's angle in [-pi, pi] for an angle of the arm."""
         angle = theta - self.zeros[axis] if self.zeros[axis] else theta
         turns = np.rint(angle * (1.0 / TURN))
         turns *= TURN

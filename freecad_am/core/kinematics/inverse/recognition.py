@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The inverse kinematics of a chain of joint frames, found from where its axes are."""
+"""The inverse kinematics of a chain of joint frames, recognised from its axes."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from .serial_arm import SerialArm
 
 CHUNK = 2048
 WORDS = 8  # configurations
-STEPS, AGAIN = 16, 4  # steps at most, and after how many the Jacobian is found again
+STEPS, AGAIN = 16, 4  # maximum number of steps, and steps after which the Jacobian is recomputed
 START_SHIFT_MM = 5.0  # mm
 TINY = 1e-9
 LENGTH = 500.0  # mm that count as one rad
-CONVERGED = 1e-11  # of the error as an angle, 5e-9 mm; one more step is not worth its time
+CONVERGED = 1e-11  # error as an angle, 5e-9 mm, below which another step is not worth its time
 SINGULAR = 2e-10  # rounding error near a singularity
 DAMPING = 1e-14
 
@@ -47,7 +47,7 @@ class CalibratedArm:
 
     @property
     def followed(self) -> bool:
-        """Whether several solutions may bear the same words; as of the closed form."""
+        """Whether several solutions may have the same words, as in the closed form."""
         return self.nominal.followed
 
     @property
@@ -77,7 +77,7 @@ class CalibratedArm:
         return self.solutions(poses)[0]
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
-        """Joint angles (n, 6) of one configuration; else as `inverse`."""
+        """Joint angles (n, 6) of one configuration; otherwise as `inverse`."""
         targets = np.ascontiguousarray(poses, float)
         return self._solve_words(targets, branch)
 
@@ -105,11 +105,13 @@ class CalibratedArm:
         return solved, np.where(np.isnan(solved[..., 0]), -1, words)
 
     def branch_of(self, q: ArrayLike) -> Index:
-        """The configuration (...) that joint angles `q` (..., 6) are in."""
+        """The configuration (...) of joint angles `q` (..., 6)."""
         return self.nominal.branch_of(q)
 
     def bend(self, q: ArrayLike) -> Array:
-        """(...) how far angles `q` (..., 6) are from where wrist or elbow is stretched: 0 there, 1 square to it."""
+        """Distance (...) of angles `q` (..., 6) from a stretched wrist or elbow: 0 where stretched,
+        1 at a right angle.
+        """
         return self.nominal.bend(q)
 
     def _solve_words(self, poses: Array, words: int) -> Array:
@@ -169,7 +171,7 @@ class CalibratedArm:
             rates = np.einsum("nij,nj->ni", back[open_], error)
             q[open_] += rates / np.maximum(
                 1.0, np.abs(rates).max(axis=1, keepdims=True)
-            )  # no more than 1 rad at a time
+            )  # at most 1 rad at a time
         q[~(off < SINGULAR)] = np.nan
         return q
 
@@ -189,14 +191,14 @@ class CalibratedArm:
 QUARTER = 0.5 * math.pi
 NEARLY_SQUARE = math.radians(
     0.25
-)  # a rounded or measured right angle; no maker leans an axis by so little
-EXACT = 1e-12  # rad; what rounding of a float leaves
+)  # tolerance of a rounded or measured right angle; manufacturers do not tilt axes by so little
+EXACT = 1e-12  # rad; rounding error of a float
 ROUNDING_MM = (
     0.0,
     0.001,
     0.01,
     0.1,
-)  # of lengths, tried in this order: leaning frames shift what should meet
+)  # mm to which lengths are rounded, tried in this order: tilted frames shift axes that should meet
 LOCKED = 0.02  # cosine of the pitch, below which roll and yaw are not distinguished
 MAX_LOST_SHARE = 0.1  # share of poses near singularities that only one of an arm and its nominal closed form reaches
 
@@ -246,7 +248,7 @@ def _nearest(chain: Chain) -> SerialArm:
     reason: InputError | None = None
     for step in ROUNDING_MM:
         nominal = square_up(chain, step)
-        assert nominal is not None  # by the caller
+        assert nominal is not None  # checked by the caller
         try:
             return _exact(nominal)
         except InputError as error:
@@ -306,7 +308,7 @@ def _angle(rotation: Array, reference: Array) -> float:
 
 
 def _exact(chain: Chain) -> SerialArm:
-    """The closed form of a chain as it is. Raises InputError NO_CLOSED_FORM."""
+    """The closed form of an unchanged chain. Raises InputError NO_CLOSED_FORM."""
     try:
         return opw_recognition.recognise(chain)
     except InputError as error:
@@ -372,8 +374,7 @@ def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
 
 def offset_wrist(chain: Chain) -> OffsetWristArm:
     """The inverse of a chain of six revolute joints with a wrist that is not spherical.
-    Raises InputError NO_CLOSED_FORM with what
-    does not hold."""
+    Raises InputError NO_CLOSED_FORM with the violated condition."""
     at_rest = chain.frames(np.zeros(6))
     z, p = at_rest.directions, at_rest.origins
     if not _upright(z, p):
@@ -428,7 +429,7 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
 
 
 def _flips(arm: OffsetWristArm) -> tuple[bool, bool, bool, bool]:
-    """For each shoulder and elbow whether solutions with q5 < 0 mostly pass zero upwards."""
+    """Whether solutions with q5 < 0 mostly pass zero upwards, for each shoulder and elbow."""
     q = np.random.default_rng(7).uniform(-math.pi, math.pi, (512, 6))
     words = arm.branch_of(q)
     back, elbow_left = words >> 2, (words >> 1 & 1) == words >> 2
@@ -467,7 +468,9 @@ def _upright(z: Array, p: Array) -> bool:
 
 
 def _normal(axis: Array, wrist: Array) -> Array:
-    """The normal of the arm's plane along an axis, turned such that the wrist is ahead; as the axis where it is neither."""
+    """The normal of the arm's plane along an axis, with the wrist ahead; with the sense of the axis
+    if the wrist is on axis 1.
+    """
     flat: Array = np.array([axis[0], axis[1], 0.0]) / np.hypot(axis[0], axis[1])
     ahead = float(np.cross(flat, (0.0, 0.0, 1.0)) @ wrist)
     return -flat if ahead < -NEAR_MM else flat

@@ -115,7 +115,9 @@ def by_vertical(source: Array, target: Array) -> ByVertical:
 
 
 class Locked(NamedTuple):
-    """The angle (n,) rad of the axis left, and the angle (n,) rad by which the directions then miss each other."""
+    """The angle (n,), rad, of the other axis, and the residual angle (n,), rad, between the
+    directions.
+    """
 
     angle: Array
     residual: Array

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What planning asks of the inverse kinematics of a serial arm, whichever its wrist."""
+"""The interface of the inverse kinematics of a serial arm that planning uses, for every kind of
+wrist.
+"""
 
 from __future__ import annotations
 
@@ -24,7 +26,7 @@ class SerialArm(Protocol):
 
     @property
     def shoulder(self) -> tuple[float, float]:
-        """Return where axis 2 is.
+        """Return the position of axis 2.
 
         Returns
         -------

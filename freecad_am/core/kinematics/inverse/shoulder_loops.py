@@ -141,7 +141,8 @@ def spot_of(curves: Curves, plane: Plane, bent: Array | tuple[Array, Array]) -> 
         Arm and function value.
     """
     sine, cosine, ahead, above, five = plane
-    # the forearm from the point: turned from the way to the shoulder by sine and cosine of the triangle
+    # the forearm from the point: the direction to the shoulder, rotated by the angle of the
+    # triangle
     squared = ahead * ahead + above * above + TINY
     common = (curves.fore + curves.upper * bent[1]) / squared
     turn = curves.upper * bent[0] / squared
@@ -157,7 +158,7 @@ def spot_of(curves: Curves, plane: Plane, bent: Array | tuple[Array, Array]) -> 
 
 NEWTON = 3
 LONGEST_STEP_RAD = 1e-3
-ENDS = 1e-12  # of the squared length; a position this close to stretched or folded is an end
+ENDS = 1e-12  # share of the squared length; a position this close to stretched or folded is an end
 SHORTEST_RAD = 1e-12
 
 
@@ -315,7 +316,9 @@ def _closes(squared: Array, lengths: Array) -> Mask:
 
 
 def _angles(curves: Curves, squared: float) -> Array:
-    """The angles (n, 4) in [0, 2 pi) at which the squared distance may be `squared`, on either side; too many are given."""
+    """The angles (n, 4) in [0, 2 pi) at which the squared distance may be `squared`, on either
+    side; some are no solutions.
+    """
     constant, cos, sin = curves.point
     mean = (constant**2).sum(axis=0) + 0.5 * ((cos**2).sum(axis=0) + (sin**2).sum(axis=0))
     # (p p + k)^2 - (2 a)^2 (p p - z z), by constant, cosine, sine, cosine and sine of twice the angle
@@ -365,7 +368,7 @@ def _square(constant: Array, cos: Array, sin: Array) -> Array:
     )
 
 
-EDGE = 1e-12  # of the cosine of axis 6: by how much rounding may take a stretched arm out of reach
+EDGE = 1e-12  # cosine of axis 6: error by which rounding may put a stretched arm out of reach
 
 
 class Loops(NamedTuple):
@@ -545,7 +548,7 @@ def angle_along(curves: Curves, loops: Loops, t: Array) -> tuple[Array, Array]:
         elbow = np.where(
             full_circle, loops.elbow, np.where(sine_half * cosine_half >= 0.0, 1.0, -1.0)
         )
-        # half the way from the nearer end, and whether the arm is stretched there
+        # half the distance from the nearer end, and whether the arm is stretched there
         first_half = course <= 0.5
         since = np.where(first_half, loops.half * course, -loops.half * cosine_half * cosine_half)
         ends = np.where(first_half, loops.near_angle, loops.far_angle)

@@ -21,9 +21,10 @@ from ...types import Array, ArrayLike, Index, Mask
 # ---- The inverse of an arm with a spherical wrist, as in `opw`: the arithmetic
 
 CHUNK = 4096
-# how far rounding may take a pose that is reached past a stretched arm (as 1 - cos^2 of the elbow), and past b (mm)
+# tolerance for poses that rounding puts just out of reach: beyond a stretched arm (1 - cos^2 of
+# the elbow), and beyond b (mm)
 STRETCH, TOUCH = 4e-12, 1e-9
-# added where a direction may vanish: gives the angle 0 and is lost in any other number
+# added to directions that may vanish: gives the angle 0 there and is lost in rounding elsewhere
 HINT = 1e-150
 
 
@@ -98,13 +99,14 @@ def _solve_piece(arm: OpwArm, rows: Array, branches: tuple[int, ...], out: Array
         flange = _about_axis_1(side, rows)
         for down in (0, 1):
             pair = (slots.get(2 * down), slots.get(2 * down + 1))
-            # the wrist solution with opw's q5 >= 0; whether that is a flip is the sign's matter
+            # the wrist solution with opw's q5 >= 0; the sign decides whether that is a flip
             plain, flipped = pair if arm.signs[4] > 0 else pair[::-1]
             angles = flipped if plain is None else plain
             if angles is None:
                 continue
             angles[0] = base
-            # seen with q1's direction to the right, a wrist centre at the back has the upper elbow on the right
+            # with the direction of q1 to the right, a wrist centre at the back has
+            # the upper elbow on the right
             direction = _arm(arm, side, triangle, elbow_left=back == down, angles=angles)
             _wrist(arm, rows[2], flange, direction, angles)
             if flipped is not None:
@@ -143,7 +145,7 @@ def _side(arm: OpwArm, centre: Array, distance: tuple[Array, Array], back: int) 
 
 
 def _triangle(arm: OpwArm, side: _Side) -> tuple[_Triangle, Mask | None]:
-    """The triangle of a side, and where it does not close (None: everywhere it does)."""
+    """The triangle of a side, and the poses at which it does not close; None if it always closes."""
     upper, fore = arm.c2, arm.forearm
     squared = side.ahead * side.ahead
     squared += side.above * side.above
@@ -291,7 +293,9 @@ BRANCHES = tuple(itertools.product(SHOULDERS, ELBOWS, WRISTS))
 
 
 def branch_index(words: Sequence[str]) -> int:
-    """The index 4 back + 2 down + flip of a branch given by its three words; ValueError if they are none."""
+    """The index 4 back + 2 down + flip of a branch, given by its three words; raises ValueError for
+    other words.
+    """
     return BRANCHES.index((words[0], words[1], words[2]))
 
 
@@ -410,12 +414,14 @@ class OpwArm:
         return solve(self, poses, tuple(range(8)))
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
-        """Joint angles (n, 6) of one branch (an index of `branch_name`); else as `inverse`."""
+        """Joint angles (n, 6) of one branch (an index of `branch_name`); otherwise as `inverse`."""
         result: Array = solve(self, poses, (branch,))[0]
         return result
 
     def bend(self, q: ArrayLike) -> Array:
-        """(...) how far angles `q` (..., 6) are from where wrist or elbow is stretched: 0 there, 1 square to it."""
+        """Distance (...) of angles `q` (..., 6) from a stretched wrist or elbow: 0 where stretched,
+        1 at a right angle.
+        """
         turned = np.asarray(q, float) * np.array(self.signs, float) - np.array(self.offsets)
         bent: Array = np.minimum(
             np.abs(np.sin(turned[..., 4])),
@@ -429,7 +435,7 @@ class OpwArm:
         return angles, np.where(np.isnan(angles[..., 0]), -1, np.arange(8)[:, None])
 
     def branch_of(self, q: ArrayLike) -> Index:
-        """The branch index (...) that joint angles `q` (..., 6) are in."""
+        """The branch index (...) of joint angles `q` (..., 6)."""
         angles = np.asarray(q, float)
         turned = columns(angles * np.array(self.signs, float) - np.array(self.offsets))
         forearm = turned[2] + math.atan2(self.a2, self.c3)

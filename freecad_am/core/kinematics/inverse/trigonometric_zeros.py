@@ -27,18 +27,18 @@ PIECES, LEVELS = (
     {4: 10, 8: 7},
 )  # into which undecided steps are cut, and how often: for the higher degree while it decides
 SURE_LEVELS = (
-    7  # levels: zeros parted by later ones are so near to each other that they have few digits
+    7  # levels: zeros that only later levels separate are so close that they have few digits
 )
 VALUE_SHARE, SLOPE_SHARE = 1.0 / 384.0, math.sqrt(3.0) / 216.0
 # of the sum of all coefficients, by degree: error of a value, and maximum of an extreme that is a double zero
-# from zero by the rounding of the pose; the higher one is a difference of products of two
+# error of a value due to rounding of the pose; the higher degree is a difference of products
 ROUNDING, TOUCHING = {4: 5e-17, 8: 4e-15}, {4: 1e-13, 8: 1e-13}
 EXTREME_STEPS, MAX_STEP_RAD = (
     8,
     1e-4,
 )  # steps to an extreme that is next to zero, and rad of one at most
-UNTOLD = 2.0  # times that an extreme is which may as well be zero
-DROWNED = 8.0  # times that a step's values and slopes are, at most, that rounding leaves nothing of
+UNTOLD = 2.0  # multiple of that error within which an extreme may be zero
+DROWNED = 8.0  # multiple of that error below which rounding hides the values and slopes of a step
 
 
 class Parted(NamedTuple):
@@ -195,7 +195,7 @@ def _touching(
             derivative(1) / np.where(bend == 0.0, 1.0, bend), -MAX_STEP_RAD, MAX_STEP_RAD
         )
     value, bend, noise = derivative(0), derivative(2), UNTOLD * rounding[number]
-    # through zero to where the steps are too wide to part both zeros
+    # up to the distance at which the steps separate both zeros
     through = (value * bend < 0.0) & (np.abs(value) < 0.5 * MAX_STEP_RAD**2 * np.abs(bend))
     valid = np.flatnonzero(((np.abs(value) <= max_value[number]) | through) & (bend != 0.0))
     number, angle, value, bend, noise = (
@@ -206,7 +206,7 @@ def _touching(
         noise[valid],
     )
     unsure = np.sqrt(2.0 * noise / np.abs(bend))
-    # the same one found from several steps
+    # the same zero, found from several steps
     order = np.lexsort((angle, number))
     number, angle, value, bend, noise, unsure = (
         column[order] for column in (number, angle, value, bend, noise, unsure)
@@ -307,7 +307,7 @@ def _cut(waves: Array, steps: _Steps, width: float) -> _Steps:
         value += wave
     slope *= turn
     values, slopes = np.empty((2, PIECES + 1, len(steps.number)))
-    # at the ends to the last digit as in the adjacent steps
+    # bit for bit equal at the ends of adjacent steps
     values[0], values[-1] = steps.value
     slopes[0], slopes[-1] = steps.slope / PIECES
     values[1:-1], slopes[1:-1] = value.real, slope.imag * (-width / 3.0)
@@ -331,6 +331,6 @@ def _places(steps: _Steps, width: float) -> tuple[Index, Array, Array, Array]:
         along = share * (
             share * (3.0 - 2.0 * share) + remainder * (remainder * begin_share - share * end_share)
         )
-    # a slope near zero at an end is no slope of the angle: as between straight lines there
+    # a slope near zero at an end is useless here: use straight lines instead
     along = np.where((begin_share < 4.0) & (end_share < 4.0), np.clip(along, 0.0, 1.0), share)
     return steps.number, steps.begin, steps.begin + width, steps.begin + along * width

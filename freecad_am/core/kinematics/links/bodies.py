@@ -20,8 +20,10 @@ FORMATS = (".step", ".stp", ".iges", ".igs", ".brep", ".stl", ".obj")
 
 @dataclass(frozen=True, eq=False)
 class LinkShape:
-    """A file of a link. `pose` (4, 4) places its content in the frame of the link's joint, mm; `scale` is what one of the
-    file's units amounts to in mm; `colour` 0..1 each. `where` names file and key in messages."""
+    """A file of a link. `pose` (4, 4) places its content in the frame of the link's joint, mm;
+    `scale` is the size of a file unit in mm; `colour` 0..1 each. `where` names file and key in
+    messages.
+    """
 
     path: Path
     pose: Array
@@ -92,7 +94,9 @@ Pieces = tuple[LinkShape | Solid, ...]
 
 @dataclass(frozen=True, eq=False)
 class Primitive(Solid):
-    """A box or cylinder (`kind`) with its `size` as a machine file has them, mm, and where its middle is: pose (4, 4)."""
+    """A box or cylinder (`kind`) of a machine file with its `size`, mm, and the pose (4, 4) of its
+    middle.
+    """
 
     kind: str = ""
     size: tuple[float, ...] = ()
@@ -178,7 +182,7 @@ def box(size: Array, tone: str = BODY) -> Primitive:
 
 
 def cylinder(size: Array, tone: str = BODY) -> Primitive:
-    """Return a cylinder along Z about the origin, as a polygon that holds it.
+    """Return a cylinder along Z about the origin, as a prism that contains it.
 
     Parameters
     ----------

@@ -36,11 +36,11 @@ from .robot import flange_radius
 from .self_collision import NONE, Solid, place_cylinder, round_solid
 
 PENETRATION = 0.5  # mm; faces are triangles, and a shallower overlap is contact, not collision
-CORE = 1.0 / 3.0  # of the radius of a link
-DEEP = 0.5  # of the radius of a link
+CORE = 1.0 / 3.0  # share of the radius of a link
+DEEP = 0.5  # share of the radius of a link
 CERTAIN = 4  # the first link from the elbow on, which follows its drawn line
 PLATFORM_DEPTH = 5.0  # minimum thickness of a fixed platform, mm
-FACE = 0.1  # mm, how thick the face of a flange is
+FACE = 0.1  # mm, thickness of the face of a flange
 WRIST_STEP = np.radians(
     2.0
 )  # step of the positions at which a flange is tested against the forearm

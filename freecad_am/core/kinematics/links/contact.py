@@ -85,7 +85,7 @@ BASE, PLATFORM, DEPOSIT, PART, TORCH = "base", "platform", "deposit", "part", "t
 WORLD = "world"
 OWN_PREFIX = "link "  # before the axis of a link, as it is touched
 LINKS_MORE = 4  # number of `links` besides the axes, before the external links
-PIECE = 4096  # joint vectors done together
+PIECE = 4096  # joint vectors in one batch
 LINK_PIECE, SHARE = (
     50.0,
     0.01,
@@ -107,7 +107,7 @@ class Touches:
 
     @property
     def any(self) -> Mask:
-        """(k,) whether there is one."""
+        """Whether there is a contact, (k,)."""
         return np.asarray(self.link != NONE)
 
 

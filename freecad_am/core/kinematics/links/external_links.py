@@ -45,7 +45,7 @@ def solid_cylinders(link: Sequence[Solid]) -> list[Cylinder]:
 
 Read = Callable[[LinkShape], Mesh | None]
 EDGE = 50.0  # mm, longest edge of a triangle against which nozzles are tested
-STANDS = -1  # in place of the axis of a link fixed to the floor
+STANDS = -1  # value of `axis` for a link fixed to the floor
 
 
 @dataclass(frozen=True, eq=False)

@@ -27,8 +27,8 @@ from .self_collision import Solid, place_cylinder
 OFF_RADIUS, OFF_END = (
     0.9,
     0.4,
-)  # shares by which a reduced link is smaller in radius, and in length at an end
-SHARES = (0.2, 1.0)  # shares of these, tried in turn
+)  # shares by which the radius, and the length at each end, of a reduced link are smaller
+SHARES = (0.2, 1.0)  # fractions of these shares, tried in turn
 MIN_DEPTH = 1e-3  # mm; minimum depth by which two touching solids intersect
 
 

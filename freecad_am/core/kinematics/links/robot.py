@@ -23,19 +23,21 @@ THICK, THIN = 0.068, 0.016
 FLANGE = 1.045  # radius of the flange, relative to the last joint
 # half the length of a drum, in radii
 DRUM = 0.85
-# runs shorter than this share of the arm are none
+# runs shorter than this share of the arm are ignored
 LEAST_SHARE = 0.03
-# how much of a run is still part of the link before
+# share of a run that belongs to the previous link
 STILL = 0.45
-_NONE = 1e-6  # and shorter than this there is nothing to draw
-# axes that are parallel within this, rad
+_NONE = 1e-6  # shorter runs are not drawn
+# tolerance of parallel axes, rad
 _PARALLEL = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
-    """Per axis of a chain at zero: unit `directions`, where the link before meets it (`enter`) and where its own link
-    leaves it (`leave`), all (axes, 3) in base_link; the `flange` point and `size`, the length of the whole, mm."""
+    """Per axis of a chain at zero: unit `directions`, the point at which the previous link meets it
+    (`enter`) and the point at which its link leaves it (`leave`), all (axes, 3) in base_link;
+    the `flange` point and `size`, the total length, mm.
+    """
 
     directions: Array
     enter: Array
@@ -188,7 +190,7 @@ def _flange(bones: Skeleton, last_link: list[Solid]) -> None:
 
 
 def flange_radius(chain: Chain) -> float:
-    """The radius (mm) of the flange as it is drawn."""
+    """The radius, mm, of the drawn flange."""
     return FLANGE * skeleton(chain).radius(chain.axes - 1)
 
 

@@ -202,7 +202,7 @@ class OwnLinks:
         return len(rows) > max_count
 
     def _middles(self, links: Array) -> list[Array]:
-        """(k, 3) where the middles of the balls are, of each link."""
+        """Positions (k, 3) of the middles of the balls of each link."""
         return [
             frames.transform_point(links[:, k], middle) for k, (middle, _) in enumerate(self.balls)
         ]

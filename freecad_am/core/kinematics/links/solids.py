@@ -200,7 +200,7 @@ def strut(
     length = float(np.linalg.norm(chord))
     along = chord / length
     across = np.cross(normal, along)
-    # where the common tangents of both discs touch
+    # points at which the common tangents touch the discs
     lean = float(np.arccos(np.clip((start_radius - end_radius) / length, -1.0, 1.0)))
     low, high = np.linspace(lean, 2.0 * np.pi - lean, 24), np.linspace(-lean, lean, 24)
     outline = np.concatenate(

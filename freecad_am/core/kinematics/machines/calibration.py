@@ -25,7 +25,7 @@ from ..chain import Chain
 MAX_FILE_MB = 1  # MB
 JOINTS = ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")
 NUMBERS = ("x", "y", "z", "roll", "pitch", "yaw")
-# farther than this from the machine file it belongs to another robot: mm and rad
+# mm and rad: a calibration that is farther from the machine file belongs to another robot
 FAR_MM, FAR_RAD = 30.0, math.radians(3.0)
 _NAMED = re.compile(r"(?P<machine>.+?)\s+calibration=(?P<file>.+)")
 _ENTRY = re.compile(r"(?P<indent> *)(?P<key>[^\s:#]+):(?:\s+(?P<value>.*))?")

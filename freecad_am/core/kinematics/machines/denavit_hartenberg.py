@@ -20,7 +20,7 @@ from ...issues import InputError, Text
 from ...types import Array
 from ..chain import Chain
 
-# two axes closer to parallel than this, rad, count as parallel: their common normal would be nowhere
+# rad; axes closer to parallel count as parallel, because their common normal would be undefined
 PARALLEL = 1e-10
 
 

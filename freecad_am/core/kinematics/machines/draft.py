@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A machine while it is made: from a URDF, a table, the figures of the closed form or another machine, to a machine file."""
+"""A machine being made: from a URDF, a table, closed-form dimensions or another machine to a
+machine file.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,7 @@ from .machine import Machine
 from .pendant import Shown
 
 NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
-# what the deviations of check poses are rounded up to, mm and deg, for the machine file
+# mm and deg to which the deviations of check poses are rounded up in the machine file
 _ROUNDINGS = ((0.01, 0.001), (0.05, 0.01), (0.1, 0.05), file.MOST_ROUNDING)
 
 
@@ -173,8 +175,8 @@ def closed_form(draft: Draft) -> SerialArm | None:
 def text(draft: Draft) -> str:
     """Return the machine file.
 
-    Raises InputError: BAD_NAME; NO_CLOSED_FORM; BAD_MACHINE naming the wrong key, such as
-    check poses that are missing or not met.
+    Raises InputError BAD_NAME, NO_CLOSED_FORM, or BAD_MACHINE naming the wrong key, such as missing
+    or unmatched check poses.
     """
     if not NAME.fullmatch(draft.id):
         raise InputError(
@@ -356,7 +358,7 @@ def _check_poses(draft: Draft) -> list[dict[str, Any]]:
 
 
 def _pose(pose: Array) -> dict[str, Any]:
-    # + 0.0 leaves no -0.0
+    # + 0.0 turns -0.0 into 0.0
     return {
         "origin": _figures(pose[:3, 3]),
         "rpy": _figures(np.degrees(-frames.to_bryant(pose[:3, :3].T))),
@@ -368,7 +370,7 @@ def _figures(values: Any) -> list[float]:
 
 
 def _figure(value: float) -> float:
-    """A number without the noise of its computation, whole ones without a point."""
+    """A number without numerical noise; whole numbers have no decimal point."""
     rounded = round(value, 9)
     value = rounded + 0.0 if abs(rounded - value) < 1e-11 else value
     return int(value) if value == int(value) else value
@@ -388,11 +390,11 @@ def _compact(text: str) -> str:
     )
 
 
-# ---- Poses as pendants write them: the place in mm, and a rotation in degrees in the way of each
-# maker, or as a quaternion
+# ---- Poses as pendants show them: the position in mm, and the rotation in degrees by each
+# manufacturer's convention, or as a quaternion
 
 FANUC, KUKA, STAUBLI, ZYZ, QUATERNION = "W P R", "A B C", "RX RY RZ", "O A T", "q1 q2 q3 q4"
-# how a pose's rotation is written -> its figures, and who writes it so
+# convention of a rotation -> its figures, and the manufacturers that use it
 CONVENTIONS = {
     FANUC: ("W P R", "FANUC, Yaskawa (Rx Ry Rz): about X, Y, Z of the base"),
     KUKA: ("A B C", "KUKA: about Z, Y, X, each as the one before turned it"),
@@ -530,7 +532,7 @@ def _to_zyz(turned: Array) -> Array:
     locked = np.hypot(turned[:, 0, 2], turned[:, 1, 2]) < 1e-12
     angle_o = np.where(locked, 0.0, np.arctan2(turned[:, 1, 2], turned[:, 0, 2]))
     angle_a = np.arctan2(np.hypot(turned[:, 0, 2], turned[:, 1, 2]), turned[:, 2, 2])
-    # the frame's Y as O turned it
+    # the Y of the frame after the rotation by O
     across = np.column_stack((-np.sin(angle_o), np.cos(angle_o), np.zeros_like(angle_o)))
     angle_t = np.arctan2(
         np.einsum("ni,ni->n", across, turned[:, :, 0]),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Typed access to the JSON of a machine file: every error names file, key and value.
+"""Typed access to the JSON of a machine file; every error names file, key and value.
 
 docs/machines.md explains the keys.
 """
@@ -36,7 +36,7 @@ class Node:
         self.value, self.path, self.key = value, path, key
 
     def bad(self, message: str) -> InputError:
-        """The error about this part."""
+        """The error for this part."""
         return InputError(
             "BAD_MACHINE", f"{self.path}{': ' if self.key else ''}{self.key}", message
         )
@@ -57,7 +57,7 @@ class Node:
         return self
 
     def has(self, key: str) -> bool:
-        """Whether a key of an object is there and not null."""
+        """Whether an object has a key that is not null."""
         return isinstance(self.value, dict) and self.value.get(key) is not None
 
     def __getitem__(self, key: str) -> Node:
@@ -66,7 +66,7 @@ class Node:
         return Node(self.value[key], self.path, f"{self.key}.{key}".lstrip("."))
 
     def items(self, length: int | None = None) -> list[Node]:
-        """The parts of a list, of `length` where given."""
+        """The parts of a list, of the given `length` if any."""
         if not isinstance(self.value, list) or (length is not None and len(self.value) != length):
             raise self.bad(
                 Text(
@@ -133,7 +133,7 @@ class Node:
             and all(abs(value) <= LARGEST_NUMBER for value in self.value)
         ):
             return np.array(self.value, float)
-        # something is wrong: find which
+        # something is wrong: find out what
         return np.array([item.number() for item in self.items(length)])
 
     def span(self, unit: float = math.radians(1.0)) -> tuple[float, float]:
@@ -245,9 +245,9 @@ def _short(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-# what rounding of the check poses may leave: mm, and entries of a rotation
+# error due to rounding of check poses: mm, and entries of a rotation
 POSITION_TOLERANCE, ROTATION_TOLERANCE = 1e-6, 1e-9
-MOST_ROUNDING = (0.5, 0.1)  # that may be claimed for a check pose, mm and deg
+MOST_ROUNDING = (0.5, 0.1)  # largest tolerance that a check pose may state, mm and deg
 
 
 def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:

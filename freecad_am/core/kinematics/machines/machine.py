@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machines: their geometry, limits and controller conventions, from data files that prove themselves.
+"""Machines: their geometry, limits and controller conventions, from data files with check poses.
 
-A machine file holds joint vectors with the flange poses they give. They are computed again each time a file is read,
-by the joint frames and by the closed form, and a file that does not give them is refused.
+A machine file has joint vectors with their flange poses. Each time a file is read, they are
+computed by the joint frames and by the closed form; a file that does not reproduce them is
+rejected.
 """
 
 from __future__ import annotations
@@ -38,7 +39,7 @@ from .file import Node, read
 
 
 def unknown(name: str, names: Sequence[str]) -> InputError:
-    """UNKNOWN_MACHINE, of the names that there are."""
+    """The error UNKNOWN_MACHINE, with known names that are similar."""
     return InputError(
         "UNKNOWN_MACHINE", "cell.machine", "unknown name {!r}; {}", name, _near(name, names)
     )
@@ -64,7 +65,7 @@ def _near(name: str, names: Sequence[str]) -> str:
 
 BUILT_IN = Path(__file__).resolve().parents[3] / "machines"
 MAKER = "maker"
-# a remark of machine files that were written before they had warnings
+# a remark in old machine files, which had no warnings
 BASE_NOT_KNOWN = "The maker's own base frame is not known: base_link is used in its place."
 UNKNOWN_REMARK = "a URDF does not say what the controller shows"
 REFUSED = (
@@ -339,7 +340,7 @@ def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
     """
     for folder in (*folders, BUILT_IN):
         path = Path(folder).expanduser() / f"{name}.json"
-        if path.stem == name and is_there(path):  # a name may be too long for a file
+        if path.stem == name and is_there(path):  # a name may be too long for the file system
             return path
 
     raise unknown(name, sorted(_files(folders)))

@@ -18,11 +18,11 @@ from ...geometry import frames
 from ...types import Array
 from ..chain import Chain
 
-NONE, HORIZONTAL = "none", "horizontal"  # what axis 3 is shown against: link 2, or the base
+NONE, HORIZONTAL = "none", "horizontal"  # reference of the displayed axis 3: link 2, or the base
 TOLERANCE_MM, TOLERANCE_DEG = (
     0.5,
     0.1,
-)  # error at the end of a long arm with joints displayed to 0.01 deg
+)  # error at the end of a long arm whose joints are displayed to 0.01 deg
 _QUARTERS = (90.0, -90.0, 180.0)
 
 
@@ -39,7 +39,7 @@ class Shown:
 
 @dataclass(frozen=True)
 class Deviation:
-    """How far a pose is from the machine's: mm, deg."""
+    """Deviation of a pose from that of the machine: mm, deg."""
 
     position: float
     angle: float
@@ -129,8 +129,9 @@ def _serial(displays: Sequence[Shown], chain: Chain, values: Array) -> Array:
 
 
 def _sense(chain: Chain) -> float:
-    """Against the horizontal axis 3 shows the sum of the turns of axes 2 and 3, which is a difference, -1, where they turn
-    against each other."""
+    """Relative to the horizontal, axis 3 shows the sum of the turns of axes 2 and 3, or their
+    difference (-1) if they turn in opposite senses.
+    """
     directions = chain.frames(np.zeros(chain.axes)).directions
     return 1.0 if float(directions[1] @ directions[2]) > 0.0 else -1.0
 
@@ -242,7 +243,7 @@ def _suspect_joints(
                     )
     trials = [trial_entry for trial_entry in trials if trial_entry[1]]
     trial_poses = _poses_of_trials(chain, [trial for _, _, trial in trials], values)
-    # in the base frame that meets the first pose, or in the existing one
+    # in the base frame that reproduces the first pose, or in the existing one
     bases = (
         trial_poses[:, 0] @ frames.inverse(poses[0])
         if any_base

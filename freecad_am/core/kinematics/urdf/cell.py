@@ -28,7 +28,7 @@ from .read import ROBOT as AXES
 from .reference import Reference, reference
 
 TURNING, SLIDING = ("revolute", "continuous"), "prismatic"
-Way = tuple[str, ...]  # the joints that move a link, from the floor on
+Way = tuple[str, ...]  # the joints that move a link, starting at the floor
 
 
 class UrdfCell:

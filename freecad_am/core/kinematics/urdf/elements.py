@@ -21,12 +21,12 @@ from ...types import Array
 CODE = "BAD_URDF"
 MAX_FILE_MB = 64  # MB
 QUARTER = 0.5 * math.pi
-FINE_DECIMALS = 5  # from this number of digits on the last digit of a right angle may be off by 5
+FINE_DECIMALS = 5  # number of digits from which the last digit of a right angle may be off by 5
 
 
 @dataclass
 class Element:
-    """An element of the file. Getters raise InputError 'BAD_URDF' naming file and line."""
+    """An element of the file. Getters raise InputError BAD_URDF with file and line."""
 
     tag: str
     attributes: dict[str, str]
@@ -35,7 +35,7 @@ class Element:
     children: list[Element] = field(default_factory=list)
 
     def bad(self, message: str) -> InputError:
-        """The error about this element."""
+        """The error for this element."""
         return InputError(CODE, f"{self.path.name}: line {self.line}", message)
 
     def all(self, tag: str) -> Iterator[Element]:
@@ -217,7 +217,8 @@ def unrounded(word: str) -> float:
 
 
 def nearest(word: str, step: float) -> float:
-    """The multiple of `step` that a number of two decimals or more is the rounding of, else the number. Half or a quarter of a
+    """The multiple of `step` whose rounding a number with two or more decimals is, else the number.
+    Half or a quarter of a
     rounded number counts as rounded (1.570796325), and so does one that is cut off (1.57079, 3.14)."""
     value = float(word)
     decimals = len(word.partition(".")[2]) if "e" not in word.lower() else 17

@@ -26,8 +26,8 @@ from .elements import Element
 from .read import FIXED, Description, Urdf
 from .reference import Reference
 
-# ---- What the links of a mechanism are made of, from the <collision> elements of a URDF, or its
-# <visual> ones without any
+# ---- Bodies of the links of a mechanism, from the <collision> elements of a URDF, or from
+# <visual> without any
 
 NOT_LOOKED_AT = "nothing is kept clear of it"
 
@@ -104,7 +104,9 @@ def _pieces(urdf: Urdf, link: str, pose: Array, notes: list[str]) -> Iterator[Li
 
 
 def _solid(element: Element) -> Solid | None:
-    """The box, cylinder or ball of an element, about its origin; a ball as the cylinder about it."""
+    """The box, cylinder or ball of an element, about its origin; a ball becomes the cylinder around
+    it.
+    """
     geometry = element.first("geometry")
     if geometry is None:
         return None
@@ -186,7 +188,7 @@ def describe(machine_reference: Reference) -> tuple[Description, SerialArm | Non
 
 
 def _note_deviation(arm: SerialArm) -> list[str]:
-    """A note about an arm whose axes are not quite at right angles."""
+    """A note on an arm whose axes are not exactly at right angles."""
     if not isinstance(arm, CalibratedArm):
         return []
     return [
@@ -266,9 +268,9 @@ def _ends(chain_reference: Reference, where: str) -> tuple[Urdf, str, str]:
 
 
 def closed_form(chain: Chain) -> SerialArm | None:
-    """The inverse of a robot, None of a machine with three sliding and two turning axes.
-    Raises InputError NO_CLOSED_FORM, with
-    the reason, for any other."""
+    """The inverse of a robot; None for a machine with three prismatic and two revolute axes. Raises
+    InputError NO_CLOSED_FORM with the reason for any other machine.
+    """
     return None if is_five_axis(chain.sliding) else recognition.arm_of(chain)
 
 

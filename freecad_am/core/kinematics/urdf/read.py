@@ -25,7 +25,7 @@ from .elements import CODE, Element
 
 MOVING = ("revolute", "continuous", "prismatic")
 FIXED = "fixed"
-# names of these links in files of ROS-Industrial and FANUC
+# names of flange links in files of ROS-Industrial and FANUC
 BASES, TIPS = ("base_link",), ("tool0", "flange", "fanuc_flange")
 ROBOT = 6  # number of joints of a robot
 PARALLEL_TOLERANCE_RAD, BEHIND_MM = (
@@ -33,13 +33,13 @@ PARALLEL_TOLERANCE_RAD, BEHIND_MM = (
     1e-3,
 )  # tolerances of a tip: angle of its Z from the axis in rad, distance behind in mm
 DEGREE = math.radians(1.0)
-MOST_RAD, FARTHEST_M = 50.0, 50.0  # more are degrees, or mm
-# children of a joint, and those of which it may have only one
+MOST_RAD, FARTHEST_M = 50.0, 50.0  # larger values are degrees, or mm
+# children of a joint, and those that may occur only once
 SINGLE_TAGS = ("parent", "child", "origin", "axis", "limit", "mimic")
 JOINT_TAGS = (*SINGLE_TAGS, "dynamics", "calibration", "safety_controller", "physics", "gazebo")
 ATTRIBUTES = {
     "origin": {"xyz", "rpy"},
-    "axis": {"xyz", "rpy"},  # rpy of old exporters, of zeros
+    "axis": {"xyz", "rpy"},  # rpy that old exporters write, always zeros
     "limit": {"lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk"},
 }
 
@@ -86,7 +86,7 @@ class Urdf:
                     self.top.tag,
                 )
             )
-        # what xacro wrote may still name its namespace
+        # files written by xacro may still name its namespace
         unexpanded = _xacro_in(self.top)
         if unexpanded is not None:
             raise unexpanded.bad(
@@ -449,7 +449,7 @@ def _check_joint(joint: Element) -> None:
 
 
 def _joint_notes(joints: Sequence[Element]) -> list[str]:
-    """Notes on limits that are taken for something, or not used."""
+    """Notes on limits that are substituted or not used."""
     notes: list[str] = []
     for joint in joints:
         limit, soft = joint.first("limit"), joint.first("safety_controller")
@@ -465,7 +465,9 @@ def _joint_notes(joints: Sequence[Element]) -> list[str]:
 
 
 def _rounded_angles(joints: Sequence[Element]) -> list[str]:
-    """Notes on angles that are taken for right angles although their last digit is off by more than it is rounded."""
+    """Notes on angles that count as right angles although their last digit is off by more than
+    rounding.
+    """
     notes: list[str] = []
     for joint in joints:
         origin = joint.first("origin")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a cell names a URDF as its machine."""
+"""The text by which a cell names a URDF as its machine."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ _TEXT = re.compile(
 
 @dataclass(frozen=True)
 class Reference:
-    """A chain of a URDF: its file, and the links at which it begins and ends, None for links
-    that the file proposes.
+    """A chain of a URDF: its file, and its first and last link, None for links that the file
+    proposes.
 
     Its text is `robot.urdf`, or `robot.urdf base=base_link tip=tool0`.
     """

@@ -14,7 +14,7 @@ from ..machines.machine import Machine
 
 
 def text(machine: Machine) -> str:
-    """A machine with its limits `maker` as a URDF without looks."""
+    """A machine with its limits `maker` as a URDF without visuals."""
     limits, count = machine.limits("maker"), len(machine.axes)
     base = None if np.array_equal(machine.base, np.eye(4)) else machine.base
     return _text_of(
@@ -37,8 +37,9 @@ def _text_of(
     max_speed: Array,
     base: Array | None = None,
 ) -> str:
-    """A chain as a URDF without looks: links base_link, link_1 ... and tool0, the flange; `base` where the maker's own base
-    frame is given. Figures have all their digits."""
+    """A chain as a URDF without visuals: links base_link, link_1 ... and tool0, the flange; `base`
+    if the manufacturer's base frame is given. Numbers have all their digits.
+    """
     lines = [
         '<?xml version="1.0"?>',
         f'<robot name="{_escaped(name)}">',
