@@ -109,7 +109,7 @@ class JointPath(Stage):
         ),
         ("DepositTime", "App::PropertyFloat", "Time of depositing moves (s)."),
         ("WaitTime", "App::PropertyFloat", "Lead times and waits between layers (s)."),
-        ("DepositLength", "App::PropertyLength", "Length of the deposit as it is run."),
+        ("DepositLength", "App::PropertyLength", "Length of the deposit as executed."),
         (
             "DepositVolume",
             "App::PropertyFloat",

@@ -192,8 +192,7 @@ def continued(
             raise InputError(
                 "BEAD_TOO_LONG",
                 "program.max_points",
-                "{} is woven and has {} points with its approach, but whether a weave continues "
-                "in another program was not confirmed; allow more points per program, or a "
+                "{} is woven and has {} points with its approach, but it is unconfirmed that a weave continues in another program; allow more points per program, or a "
                 "larger chord error",
                 place(runs[-1].moves),
                 sum(map(len, runs)),

@@ -114,11 +114,6 @@
         <translation>Masse volumique du dépôt en g/cm³ ; donne sa masse.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Deviations up to this, outside or inside, are within tolerance.</source>
-        <translation>Les écarts jusqu&apos;à cette valeur, vers l&apos;extérieur ou l&apos;intérieur, sont dans la tolérance.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Diameter of the nozzle&apos;s flat tip.</source>
         <translation>Diamètre du bout plat de la buse.</translation>
@@ -204,11 +199,6 @@
         <translation>Axes externes. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>External axis of the controller that carries e1; the others follow: eax_a, E1 are 1.</source>
-        <translation>Lequel des axes externes de la commande est e1 ; les autres suivent : eax_a, E1 sont 1.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>Faces of the wall, from the platform up.</source>
         <translation>Faces de la paroi, du plateau vers le haut.</translation>
@@ -232,11 +222,6 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Feed of joint moves: the time of each (G93), or the speed of the linear axes wherever they move (G94).</source>
         <translation>Avance des mouvements articulaires : le temps de chacun (G93), ou la vitesse des axes linéaires partout où ils bougent (G94).</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Fewest points of a full turn, however small its radius.</source>
-        <translation>Nombre minimal de points d&apos;un tour entier, si petit que soit son rayon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -325,8 +310,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Group output, H word, register or analogue output for it; for KUKA the first of eight outputs.</source>
-        <translation>Sortie de groupe, mot H, registre ou sortie analogique qui le transmet ; chez KUKA la première de huit sorties.</translation>
+        <source>Group output, H word, register or analogue output that carries the schedule number; for KUKA the first of eight outputs.</source>
+        <translation>Sortie de groupe, mot H, registre ou sortie analogique qui porte le numéro du programme de soudage ; chez KUKA la première de huit sorties.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
@@ -382,6 +367,11 @@
         <location filename="../../freecad_am/core/parameters/scan.py"/>
         <source>Largest deviation of the local layer height where layers blend from the scan back to the plan, as a share of the layer height. (%)</source>
         <translation>Plus grand écart de la hauteur de couche locale là où les couches ramènent de la numérisation au plan, en part de la hauteur de couche. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Largest deviation, outside or inside, that is within tolerance.</source>
+        <translation>Écart le plus grand, vers l&apos;extérieur ou l&apos;intérieur, qui est dans la tolérance.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -485,8 +475,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>Length of the deposit as it is run.</source>
-        <translation>Longueur du dépôt tel que parcouru.</translation>
+        <source>Length of the deposit as executed.</source>
+        <translation>Longueur du dépôt tel qu&apos;exécuté.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
@@ -599,6 +589,11 @@
         <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté. auto : 2 mm, ou l&apos;espacement des cordons s&apos;il est plus petit. (mm)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Minimum number of points of a full turn, for any radius.</source>
+        <translation>Nombre minimal de points d&apos;un tour entier, quel que soit son rayon.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Minimum time between the end of a layer of a solid and the start of its next layer.</source>
         <translation>Temps minimal entre la fin d&apos;une couche d&apos;un solide et le début de sa couche suivante.</translation>
@@ -640,8 +635,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Name of the called programs, without their number: SCHEDULE3.</source>
-        <translation>Nom des programmes appelés, sans leur numéro : SCHEDULE3.</translation>
+        <source>Name of the called programs without their number, such as SCHEDULE for SCHEDULE3.</source>
+        <translation>Nom des programmes appelés sans leur numéro, comme SCHEDULE pour SCHEDULE3.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -732,6 +727,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Number of the analogue input of the sensor.</source>
         <translation>Numéro de l&apos;entrée analogique du capteur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Number of the controller&apos;s external axis for e1; further axes follow. eax_a and E1 are 1.</source>
+        <translation>Numéro de l&apos;axe externe de la commande pour e1 ; les autres suivent. eax_a et E1 sont 1.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -924,6 +924,11 @@
         <translation>Part de la surface à l&apos;intérieur des contours que les cordons remplissent : leur longueur multipliée par leur écartement. (%)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Share of the farthest points that the fit ignores. (%)</source>
+        <translation>Part des points les plus écartés que l&apos;ajustement ignore. (%)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Share of the layer height by which the local distance of smooth layers may differ; for iso-parameter layers, the limit for a warning. (%)</source>
         <translation>Part de la hauteur de couche dont la distance locale des couches smooth peut s&apos;écarter ; pour les couches iso-parameter, la limite avant un avertissement. (%)</translation>
@@ -937,11 +942,6 @@
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>Share of the points within tolerance (%).</source>
         <translation>Part des points dans la tolérance (%).</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Share of the points, the farthest, that the fit ignores. (%)</source>
-        <translation>Part des points, les plus écartés, que l&apos;ajustement laisse de côté. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -1190,23 +1190,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Time by which the deposit is switched off after a bead ends.</source>
-        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon.</translation>
+        <source>Time from switching the deposit on until a bead starts.</source>
+        <translation>Temps de la mise en marche du dépôt au début d&apos;un cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Time by which the deposit is switched off after a bead ends. (s)</source>
-        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon. (s)</translation>
+        <source>Time from switching the deposit on until a bead starts. (s)</source>
+        <translation>Temps de la mise en marche du dépôt au début d&apos;un cordon. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Time by which the deposit is switched on before a bead starts.</source>
-        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon.</translation>
+        <source>Time from the end of a bead until the deposit is switched off.</source>
+        <translation>Temps de la fin d&apos;un cordon à l&apos;arrêt du dépôt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Time by which the deposit is switched on before a bead starts. (s)</source>
-        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon. (s)</translation>
+        <source>Time from the end of a bead until the deposit is switched off. (s)</source>
+        <translation>Temps de la fin d&apos;un cordon à l&apos;arrêt du dépôt. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -1645,6 +1645,11 @@
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Add</source>
         <translation>Ajouter</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
+        <source>Add a row</source>
+        <translation>Ajouter une ligne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/cladding.py"/>
@@ -2567,11 +2572,6 @@
         <translation>Prend les solides sélectionnés pour les déposer sur le cylindre ou le cône sélectionné en dernier</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Deviations up to this, outside or inside, are within tolerance.</source>
-        <translation>Les écarts jusqu&apos;à cette valeur, vers l&apos;extérieur ou l&apos;intérieur, sont dans la tolérance.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Diameter</source>
         <translation>Diamètre</translation>
@@ -2832,11 +2832,6 @@
         <translation>Axes externes. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>External axis of the controller that carries e1; the others follow: eax_a, E1 are 1.</source>
-        <translation>Lequel des axes externes de la commande est e1 ; les autres suivent : eax_a, E1 sont 1.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>FANUC sets AO[] between two moves when it reads the line, ahead of the motion</source>
         <translation>FANUC règle AO[] entre deux mouvements à la lecture de la ligne, avant le mouvement</translation>
@@ -2920,11 +2915,6 @@
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Feed of joint moves: the time of each (G93), or the speed of the linear axes wherever they move (G94).</source>
         <translation>Avance des mouvements articulaires : le temps de chacun (G93), ou la vitesse des axes linéaires partout où ils bougent (G94).</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Fewest points of a full turn, however small its radius.</source>
-        <translation>Nombre minimal de points d&apos;un tour entier, si petit que soit son rayon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
@@ -3273,8 +3263,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Group output, H word, register or analogue output for it; for KUKA the first of eight outputs.</source>
-        <translation>Sortie de groupe, mot H, registre ou sortie analogique qui le transmet ; chez KUKA la première de huit sorties.</translation>
+        <source>Group output, H word, register or analogue output that carries the schedule number; for KUKA the first of eight outputs.</source>
+        <translation>Sortie de groupe, mot H, registre ou sortie analogique qui porte le numéro du programme de soudage ; chez KUKA la première de huit sorties.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/new_job.py"/>
@@ -3612,6 +3602,11 @@
         <translation>Plus grand écart vers l&apos;extérieur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Largest deviation, outside or inside, that is within tolerance.</source>
+        <translation>Écart le plus grand, vers l&apos;extérieur ou l&apos;intérieur, qui est dans la tolérance.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>Largest deviation.</source>
         <translation>Plus grand écart.</translation>
@@ -3803,8 +3798,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>Length of the deposit as it is run.</source>
-        <translation>Longueur du dépôt tel que parcouru.</translation>
+        <source>Length of the deposit as executed.</source>
+        <translation>Longueur du dépôt tel qu&apos;exécuté.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -4152,6 +4147,11 @@
         <translation>Les cordons qui comblent des jours ne sont pas plus courts que cela ; les autres plus courts sont laissés de côté. auto : 2 mm, ou l&apos;espacement des cordons s&apos;il est plus petit.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>Minimum number of points of a full turn, for any radius.</source>
+        <translation>Nombre minimal de points d&apos;un tour entier, quel que soit son rayon.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Minimum time between the end of a layer of a solid and the start of its next layer.</source>
         <translation>Temps minimal entre la fin d&apos;une couche d&apos;un solide et le début de sa couche suivante.</translation>
@@ -4238,8 +4238,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Name of the called programs, without their number: SCHEDULE3.</source>
-        <translation>Nom des programmes appelés, sans leur numéro : SCHEDULE3.</translation>
+        <source>Name of the called programs without their number, such as SCHEDULE for SCHEDULE3.</source>
+        <translation>Nom des programmes appelés sans leur numéro, comme SCHEDULE pour SCHEDULE3.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -4427,6 +4427,11 @@
         <translation>Nombre des meilleures poses à planifier avec tous les points, jusqu&apos;à ce qu&apos;une soit faisable.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Number of the controller&apos;s external axis for e1; further axes follow. eax_a and E1 are 1.</source>
+        <translation>Numéro de l&apos;axe externe de la commande pour e1 ; les autres suivent. eax_a et E1 sont 1.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Number of the digital input to wait for between layers.</source>
         <translation>Numéro de l&apos;entrée logique à attendre entre les couches.</translation>
@@ -4490,11 +4495,6 @@
         <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>One layer only</source>
         <translation>Une seule couche</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
-        <source>One more row</source>
-        <translation>Une ligne de plus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/dock.py"/>
@@ -4735,11 +4735,6 @@
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
         <source>Planned</source>
         <translation>Prévu</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/inspection/panel.py"/>
-        <source>Planned is missing, as it was deleted; choose another</source>
-        <translation>Planned manque ; il a été supprimé, choisissez-en un autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -5427,6 +5422,11 @@
         <translation>Part de la surface à l&apos;intérieur des contours que les cordons remplissent : leur longueur multipliée par leur écartement.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/inspection.py"/>
+        <source>Share of the farthest points that the fit ignores.</source>
+        <translation>Part des points les plus écartés que l&apos;ajustement ignore.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Share of the layer height by which the local distance of smooth layers may differ; for iso-parameter layers, the limit for a warning.</source>
         <translation>Part de la hauteur de couche dont la distance locale des couches smooth peut s&apos;écarter ; pour les couches iso-parameter, la limite avant un avertissement.</translation>
@@ -5440,11 +5440,6 @@
         <location filename="../../freecad_am/objects/inspection.py"/>
         <source>Share of the points within tolerance (%).</source>
         <translation>Part des points dans la tolérance (%).</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Share of the points, the farthest, that the fit ignores.</source>
-        <translation>Part des points, les plus écartés, que l&apos;ajustement laisse de côté.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -6207,6 +6202,11 @@
         <translation>La buse reste dégagée pendant les rapides</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>The object to compare with (Planned) was deleted; choose another one</source>
+        <translation>L&apos;objet de comparaison (Planned) a été supprimé ; choisissez-en un autre</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>The outputs and inputs are linked to the process</source>
         <translation>Les sorties et entrées sont liées au procédé</translation>
@@ -6528,13 +6528,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Time by which the deposit is switched off after a bead ends.</source>
-        <translation>Dépôt coupé ce temps après la fin d&apos;un cordon.</translation>
+        <source>Time from switching the deposit on until a bead starts.</source>
+        <translation>Temps de la mise en marche du dépôt au début d&apos;un cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Time by which the deposit is switched on before a bead starts.</source>
-        <translation>Dépôt mis en marche ce temps avant le début d&apos;un cordon.</translation>
+        <source>Time from the end of a bead until the deposit is switched off.</source>
+        <translation>Temps de la fin d&apos;un cordon à l&apos;arrêt du dépôt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
@@ -10748,8 +10748,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
-        <source>move the part up in its file, or set cell.platform_diameter to what there is (0 for none)</source>
-        <translation>remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
+        <source>move the part up in its file, or set cell.platform_diameter to the real diameter (0 for none)</source>
+        <translation>remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur le diamètre réel (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
@@ -11233,8 +11233,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program_beads.py"/>
-        <source>only an output can change the schedule within a bead: calls stop the machine, and arc instructions may; use output, or remove the schedules of start and end</source>
-        <translation>un autre programme de soudage à l&apos;intérieur d&apos;un cordon n&apos;est transmis que par une sortie : les appels arrêtent la machine, et que les instructions d&apos;arc ne le fassent pas n&apos;a pas été confirmé ; prenez output, ou omettez les programmes de start et end</translation>
+        <source>only an output can change the schedule within a bead: calls stop the machine, and arc instructions may stop it too; use output, or remove the schedules of start and end</source>
+        <translation>seule une sortie peut changer le programme de soudage au sein d&apos;un cordon : les appels arrêtent la machine, et les instructions d&apos;arc peuvent l&apos;arrêter aussi ; utilisez output, ou retirez les programmes de start et end</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/pictures.py"/>
@@ -13858,8 +13858,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>the wall faces do not close around; open walls (half shells) cannot be deposited yet: choose a full tube</source>
-        <translation>les faces de la paroi ne se ferment pas sur le tour ; les parois ouvertes (demi-coques) ne peuvent pas encore être déposées : choisissez un tube entier</translation>
+        <source>the wall faces do not form a closed tube; open walls (half shells) cannot be deposited yet: choose a full tube</source>
+        <translation>les faces de la paroi ne forment pas un tube fermé ; les parois ouvertes (demi-coques) ne peuvent pas encore être déposées : choisissez un tube entier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
@@ -14368,8 +14368,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
-        <source>use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set cell.platform_diameter to what there is (0 for none)</source>
-        <translation>utilisez mount: feature, qui pose son extrémité la plus basse sur le plateau, remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur ce qui existe (0 pour aucun)</translation>
+        <source>use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set cell.platform_diameter to the real diameter (0 for none)</source>
+        <translation>utilisez mount: feature, qui pose son extrémité la plus basse sur le plateau, remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur le diamètre réel (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
@@ -15983,8 +15983,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/parts.py"/>
-        <source>{0} is woven and has {1} points with its approach, but whether a weave continues in another program was not confirmed; allow more points per program, or a larger chord error</source>
-        <translation>{0} est balayé et a {1} points avec son approche, et il n&apos;a pas été confirmé qu&apos;un balayage se poursuit dans un autre programme ; permettez plus de points dans un seul, ou une plus grande erreur de corde</translation>
+        <source>{0} is woven and has {1} points with its approach, but it is unconfirmed that a weave continues in another program; allow more points per program, or a larger chord error</source>
+        <translation>{0} est balayé et a {1} points avec son approche, mais il n&apos;est pas confirmé qu&apos;un balayage se poursuit dans un autre programme ; permettez plus de points par programme, ou une plus grande erreur de corde</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
@@ -15998,7 +15998,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
-        <source>{0} layer(s) of {1} get no bead, as all regions are too narrow: {2}; the largest, {3} mm^2 and {4} mm wide, is at {5}; the total is {6} mm^2; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
+        <source>{0} layer(s) of {1} get no bead, because all regions are too narrow: {2}; the largest, {3} mm^2 and {4} mm wide, is at {5}; the total is {6} mm^2; use narrower beads, lower strategy.narrowest, or make the part thicker there</source>
         <translation>{0} couche(s) de {1} ne reçoivent pas de cordon, car toutes leurs régions sont trop étroites : {2} ; la plus grande, de {3} mm^2 et {4} mm de large, est en {5} ; le total est de {6} mm^2 ; utilisez des cordons plus étroits, baissez strategy.narrowest, ou épaississez la pièce là</translation>
     </message>
     <message>
@@ -16303,13 +16303,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0} of {1} beads are deposited at {2} to {3} mm/s instead of {4} mm/s, so that one wire feed makes them {5}; the speed varies along them</source>
-        <translation>{0} des {1} cordons sont déposés à {2} à {3} mm/s au lieu de {4} mm/s, pour qu’un même dévidage leur donne {5} ; la vitesse la suit le long d’eux</translation>
+        <source>{0} of {1} beads are deposited at {2} to {3} mm/s instead of {4} mm/s, so that a constant wire feed makes them {5}; the speed varies along them</source>
+        <translation>{0} des {1} cordons sont déposés à {2} à {3} mm/s au lieu de {4} mm/s, pour qu’une avance de fil constante leur donne {5} ; la vitesse la suit le long d’eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0} of {1} beads are deposited at {2} to {3} mm/s, so that one wire feed makes them {4}; the speed varies along them</source>
-        <translation>{0} des {1} cordons sont déposés à {2} à {3} mm/s, pour qu’un même dévidage leur donne {4} ; la vitesse la suit le long d’eux</translation>
+        <source>{0} of {1} beads are deposited at {2} to {3} mm/s, so that a constant wire feed makes them {4}; the speed varies along them</source>
+        <translation>{0} des {1} cordons sont déposés à {2} à {3} mm/s, pour qu’une avance de fil constante leur donne {4} ; la vitesse la suit le long d’eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
@@ -17293,8 +17293,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/infill_dock.py"/>
-        <source>{} has no measured layers: solids in plane layers have some, once they are computed again.</source>
-        <translation>{} n&apos;a pas de couche mesurée : les solides en couches planes en ont, une fois recalculés.</translation>
+        <source>{} has no measured layers. Only solids in plane layers have them; recompute one.</source>
+        <translation>{} n&apos;a pas de couches mesurées. Seuls les solides en couches planes en ont ; recalculez-en un.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/whats_this.py"/>

@@ -152,8 +152,7 @@ def _ranges(faces: list[Any], kind: str, label: str) -> tuple[float, float]:
         raise InputError(
             "NOT_CLOSED",
             label,
-            "the wall faces do not close around; open walls (half shells) cannot be deposited "
-            "yet: choose a full tube",
+            "the wall faces do not form a closed tube; open walls (half shells) cannot be deposited yet: choose a full tube",
         )
     low, high = min(low for low, _ in rising), max(high for _, high in rising)
     if kind == TORUS and high - low > TURN - 1e-6:

@@ -22,7 +22,7 @@ class InspectionParameters:
     tolerance: float = f.parameter(
         0.5,
         f.LENGTH,
-        "Deviations up to this, outside or inside, are within tolerance.",
+        "Largest deviation, outside or inside, that is within tolerance.",
         low=0.0,
         open_low=True,
         high=1000.0,
@@ -50,7 +50,7 @@ class InspectionParameters:
     trim: float = f.parameter(
         0.0,
         f.RATIO,
-        "Share of the points, the farthest, that the fit ignores.",
+        "Share of the farthest points that the fit ignores.",
         low=0.0,
         high=0.49,
     )

@@ -231,10 +231,10 @@ class ProcessParameters:
         None, f.LENGTH, "Nozzle stand-off; copied to the report.", optional=True
     )
     lead_on: float = f.parameter(
-        0.0, f.TIME, "Time by which the deposit is switched on before a bead starts.", low=0.0
+        0.0, f.TIME, "Time from switching the deposit on until a bead starts.", low=0.0
     )
     lead_off: float = f.parameter(
-        0.0, f.TIME, "Time by which the deposit is switched off after a bead ends.", low=0.0
+        0.0, f.TIME, "Time from the end of a bead until the deposit is switched off.", low=0.0
     )
     overlap: float = f.parameter(
         0.0, f.LENGTH, "Length by which a closed bead continues past its seam.", low=0.0

@@ -97,7 +97,7 @@ class AxesParameters:
     first: int = f.parameter(
         1,
         f.COUNT,
-        "External axis of the controller that carries e1; the others follow: eax_a, E1 are 1.",
+        "Number of the controller's external axis for e1; further axes follow. eax_a and E1 are 1.",
         low=1,
         high=6,
         advanced=True,
@@ -121,13 +121,14 @@ class ScheduleParameters:
     output: int = f.parameter(
         2,
         f.COUNT,
-        "Group output, H word, register or analogue output for it; for KUKA the first of eight "
-        "outputs.",
+        "Group output, H word, register or analogue output that carries the schedule number; for KUKA the first of eight outputs.",
         low=1,
         high=4096,
     )
     call: str = f.parameter(
-        "SCHEDULE", f.TEXT, "Name of the called programs, without their number: SCHEDULE3."
+        "SCHEDULE",
+        f.TEXT,
+        "Name of the called programs without their number, such as SCHEDULE for SCHEDULE3.",
     )
 
     def __post_init__(self) -> None:

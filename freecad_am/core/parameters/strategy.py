@@ -103,7 +103,7 @@ class RevolutionParameters(LayerParameters):
     min_points: int = f.parameter(
         24,
         f.COUNT,
-        "Fewest points of a full turn, however small its radius.",
+        "Minimum number of points of a full turn, for any radius.",
         low=6,
         high=10000,
         advanced=True,

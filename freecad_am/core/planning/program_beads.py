@@ -72,8 +72,7 @@ def deposited(
         raise InputError(
             "SCHEDULE",
             "program.schedule.by",
-            "only an output can change the schedule within a bead: calls stop the machine, and "
-            "arc instructions may; use output, or remove the schedules of start and end",
+            "only an output can change the schedule within a bead: calls stop the machine, and arc instructions may stop it too; use output, or remove the schedules of start and end",
         )
     schedule = numbers[0] if by == ARC and not parameters.dry_run else None
     schedule_before, lead = _ahead(numbers[0], parameters), parameters.trigger.lead

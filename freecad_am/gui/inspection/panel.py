@@ -85,7 +85,9 @@ class PlannedChoice(Input):
         planned = self.document.getObject(name) if name else None
         if name and planned is None:
             raise InputError(
-                "NO_INPUT", "Inspection", "Planned is missing, as it was deleted; choose another"
+                "NO_INPUT",
+                "Inspection",
+                "The object to compare with (Planned) was deleted; choose another one",
             )
         return {"planned": "None" if planned is None else recorded.reference(planned)}
 

@@ -419,7 +419,7 @@ class PosesPage(Page):
         self.table = FigureTable("poses", ["1"], ["J1"])
         self.column.addWidget(self.table.widget)
         buttons = QtGui.QHBoxLayout()
-        self.more = QtGui.QPushButton(tr("One more row"))
+        self.more = QtGui.QPushButton(tr("Add a row"))
         self.more.setObjectName("moreRows")
         self.more.setAutoDefault(False)
         self.more.clicked.connect(self._add_row)

@@ -355,7 +355,7 @@ def _lacking(obj: Any) -> str:
     if obj is None:
         return tr("There is no toolpath yet: make one of a solid.")
     return tr(
-        "{} has no measured layers: solids in plane layers have some, once they are computed again."
+        "{} has no measured layers. Only solids in plane layers have them; recompute one."
     ).format(obj.Label)
 
 

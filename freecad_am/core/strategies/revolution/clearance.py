@@ -33,11 +33,10 @@ from ...types import Array, Index, Mask
 UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
 TOUCH = 1e-6  # mm
 DEEP = 0.05  # mm; a depth below the platform that chords explain
-MOVE = "move the part up in its file, or set cell.platform_diameter to what there is (0 for none)"
-MOUNT = (
-    "use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set "
-    "cell.platform_diameter to what there is (0 for none)"
+MOVE = (
+    "move the part up in its file, or set cell.platform_diameter to the real diameter (0 for none)"
 )
+MOUNT = "use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set cell.platform_diameter to the real diameter (0 for none)"
 GRAIN = 0.05  # of the radius of the platform, between the sampled points of solids
 
 

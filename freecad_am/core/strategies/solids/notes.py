@@ -131,8 +131,7 @@ def _speeds(
     ]
     _, layer, number = max(varied, key=lambda deviation: deviation[0])
     text = Text(
-        "{} of {} beads are deposited at {:.4g} to {:.4g} mm/s{}, so that one wire feed makes "
-        "them {}; the speed varies along them",
+        "{} of {} beads are deposited at {:.4g} to {:.4g} mm/s{}, so that a constant wire feed makes them {}; the speed varies along them",
         len(varied),
         len(deviations),
         speed.min(),

@@ -185,7 +185,7 @@ def empty_layer_issues(bare: Sequence[BareLayer], course: Course) -> list[Issue]
                 WARNING,
                 "LAYER_WITHOUT_BEAD",
                 Text(
-                    "{} layer(s) of {} get no bead, as all regions are too narrow: {}; the "
+                    "{} layer(s) of {} get no bead, because all regions are too narrow: {}; the "
                     "largest, {:.3g} mm^2 and {:.3g} mm wide, is at {}; the total is {:.4g} "
                     "mm^2; use narrower beads, lower strategy.narrowest, or make the part "
                     "thicker there",
