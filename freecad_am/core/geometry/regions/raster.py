@@ -324,7 +324,8 @@ def _shortened(stroke: Stroke) -> Stroke:
     for _ in range(2):
         arc = np.r_[0.0, np.cumsum(lengths(points))]
         by = min(ROUND_END * widths[0], arc[-1] * (1.0 - 1e-9))
-        segment = int(np.searchsorted(arc, by, side="right")) - 1
+        # a vertex within rounding of the cut goes too: it would leave a segment without a direction
+        segment = int(np.searchsorted(arc, by * (1.0 + 1e-10), side="right")) - 1
         share = (by - arc[segment]) / (arc[segment + 1] - arc[segment])
         start = points[segment] + share * (points[segment + 1] - points[segment])
         points = np.vstack([start, points[segment + 1 :]])[::-1]
