@@ -15,13 +15,15 @@ class Section:
     """The section of a part that a plane layer fills.
 
     frame: (4, 4) pose of its plane in part coordinates. loops: closed curves (n, 2) mm on it, first points not repeated,
-    material to the left. spacing: mm between neighbouring beads. is_sparse: beads leave it open on purpose.
+    material to the left. spacing: mm between neighbouring beads. is_sparse: beads leave it open on purpose. narrowest: share of
+    the nominal bead width that the narrowest bead has; nothing is missing where the section is narrower still.
     """
 
     frame: Array
     loops: tuple[Array, ...]
     spacing: float
     is_sparse: bool = False
+    narrowest: float = 1.0
 
     @property
     def edges(self) -> Array:
@@ -50,7 +52,7 @@ class Section:
 class Coverage:
     """How well the beads of a layer fill its section.
 
-    Shares of the part of the section that a bead of the nominal width can reach, all with effective widths: void: without a
+    Shares of the part of the section that the narrowest bead can reach, all with effective widths: void: without a
     bead, NaN where beads leave the section open on purpose; over: deposited more than once; outside: beads beyond the border.
     void_place, over_place: middle (3,) mm of the largest circle in void or double deposit, and void_size, over_size: its
     diameter, mm; None where it was not searched for or there is none.

@@ -132,6 +132,15 @@ def test_the_planned_overlap_of_beads_is_neither_void_nor_double():
     assert (one.void, one.over) == pytest.approx((0.0, 0.0), abs=2e-3)
 
 
+@pytest.mark.parametrize(("narrowest", "missing"), [(1.0, 0.0), (0.3, 20 * 2 / (1200 + 20 * 2))])
+def test_a_rib_without_a_bead_is_void_where_a_narrow_bead_would_fit(narrowest, missing):
+    """A rib half a bead wide on the long side of a rectangle: beads of adaptive widths could fill it."""
+    outline = [(0, 0), (100, 0), (100, 12), (60, 12), (60, 32), (58, 32), (58, 12), (0, 12)]
+    section = Section(FRAME, (np.array(outline, dtype=float),), WIDTH, narrowest=narrowest)
+    one = coverage(toolpath(Layer(tuple(lines(2, 6, 10)), section=section)))
+    assert one.void == pytest.approx(missing, abs=3e-3)
+
+
 def test_sparse_layers_have_no_void_and_curved_layers_are_not_measured():
     one = toolpath(layer(*lines(2, 6, 7), is_sparse=True), Layer(tuple(lines(2))))
     measured = void_and_double.measure(one, 0.0)

@@ -38,7 +38,7 @@ class Place(NamedTuple):
 class Picture:
     """A section and its beads on a raster; masks are (rows, columns).
 
-    inside: the section. reached: its part that a bead of the nominal width reaches. covered: with deposit. depth: how many
+    inside: the section. reached: its part that the narrowest bead reaches. covered: with deposit. depth: how many
     times deposit is there. deposit: mm^2, and single: mm^2 that this covers.
     """
 
@@ -152,7 +152,7 @@ def _picture(layer: Layer, section: Section, toolpath: Toolpath, across: float) 
     if share < 1.0:
         covered = raster.counts(wide)[0] > 0
     deposit = math.fsum(stroke.area for stroke in narrow)
-    reached = _reached(section, raster, inside, width)
+    reached = _reached(section, raster, inside, section.narrowest * width)
     return Picture(section, raster, inside, reached, covered, depth, deposit, single)
 
 

@@ -447,7 +447,8 @@ def section_of(layer: Slice, strategy: FilledParameters) -> Section | None:
     frame[:3] = np.column_stack([x - origin, y - origin, np.cross(x - origin, y - origin), origin])
     is_sparse = strategy.is_sparse and layer.buried != ()
     loops = tuple(border for region in regions for border in region.borders())
-    return Section(frame, loops, strategy.bead_spacing, is_sparse)
+    narrowest = strategy.narrowest if strategy.adapts_widths else 1.0
+    return Section(frame, loops, strategy.bead_spacing, is_sparse, narrowest)
 
 
 def add_sections(
