@@ -768,7 +768,7 @@ def _of_crossing(crossing: _Crossing) -> tuple[Array, Array, Array, Array, Array
 
 
 def _thinned(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[Array, Array | None]:
-    """Points and shares, thinned to the tolerances; shares are None if all are usual."""
+    """Points and shares, thinned to the tolerances; shares of a closed bead are None if all are usual."""
     if closed:
         points = np.vstack([points, points[:1]])
         share = np.r_[share, share[:1]]
@@ -779,7 +779,8 @@ def _thinned(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[A
     if closed:
         kept[-1] = False
     points, share = points[kept], share[kept]
-    return points, None if np.abs(share - 1.0).max(initial=0.0) < 1e-3 else share
+    is_usual = closed and np.abs(share - 1.0).max(initial=0.0) < 1e-3
+    return points, None if is_usual else share
 
 
 class _Middle(NamedTuple):

@@ -44,7 +44,7 @@ LONGEST_ENDS = 0.4995  # maximum share of a bead's length for each of its round 
 SHARES = 0.02  # of a bead's usual width; widths within this step count as equal
 SHARE_STEP = 0.05  # of the usual width; maximum change of the width along an edge of a bead
 DIGITS = 6  # of coordinates in mm by which a bead begins at one of its ends
-FARTHEST_TOLERANCE = 1e-9  # of a ring's extent; points within it count as equally far out
+FARTHEST_TOLERANCE = 1e-6  # of a ring's extent; points within it count as equally far out
 
 
 @dataclass(frozen=True, eq=False)

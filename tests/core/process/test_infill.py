@@ -132,6 +132,19 @@ def test_the_planned_overlap_of_beads_is_neither_void_nor_double():
     assert (one.void, one.over) == pytest.approx((0.0, 0.0), abs=2e-3)
 
 
+@pytest.mark.parametrize(
+    ("long", "wide", "spacing", "width"),
+    [(30, 20, 4, 4), (30, 20, 3.5, 4), (30, 20, 3.2, 4), (10, 10, 3.5, 4), (50, 5.5, 4, 5)],
+)
+def test_blocks_of_any_width_have_neither_void_nor_double_deposit(long, wide, spacing, width):
+    """With beads of one width a block of 20 mm has 2.7 % of void, or 2.1 % of double deposit."""
+    block = solids.box((0, 0, 0), (long, wide, 4))
+    values = {"bead_spacing": spacing, "process": ProcessParameters(bead_width=float(width))}
+    one = coverage(solids.planned(block, **values))
+    assert one.void <= 0.01 and one.over <= 0.01 and one.outside <= 0.01
+    assert coverage(solids.planned(block, widths="fixed", **values)).void >= one.void
+
+
 @pytest.mark.parametrize(("narrowest", "missing"), [(1.0, 0.0), (0.3, 20 * 2 / (1200 + 20 * 2))])
 def test_a_rib_without_a_bead_is_void_where_a_narrow_bead_would_fit(narrowest, missing):
     """A rib half a bead wide on the long side of a rectangle: beads of adaptive widths could fill it."""

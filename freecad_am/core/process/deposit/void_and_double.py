@@ -134,7 +134,30 @@ def picture(toolpath: Toolpath, number: int, across: float = PIXELS_ACROSS) -> P
 def _picture(layer: Layer, section: Section, toolpath: Toolpath, across: float) -> Picture | None:
     """The same with the data of its feature; None too where the section has no area."""
     width = toolpath.bead_width or section.spacing
-    wide = strokes(layer, section, toolpath)
+    return draw(section, strokes(layer, section, toolpath), width, across)
+
+
+def draw(
+    section: Section, wide: Sequence[Stroke], width: float, across: float = PIXELS_ACROSS
+) -> Picture | None:
+    """Draw a section and its beads on a raster.
+
+    Parameters
+    ----------
+    section : Section
+        The section; where neighbours overlap as its spacing plans, nothing is double.
+    wide : sequence of Stroke
+        Beads on its plane with their effective widths, mm.
+    width : float
+        Nominal width of a bead, mm.
+    across : float
+        Pixels to a nominal bead width.
+
+    Returns
+    -------
+    Picture or None
+        None where the section has no area.
+    """
     share = min(section.spacing / width, 1.0)
     narrow = [stroke._replace(widths=share * stroke.widths) for stroke in wide]
     points = np.vstack([*section.loops, *(stroke.points for stroke in wide), np.zeros((0, 2))])

@@ -19,14 +19,17 @@ from ...filling.fill import Gaps, fill, open_places
 from ...filling.free_width import fit_beads, narrow_beads, share_widths
 from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest_among
+from ...geometry.regions.raster import Stroke
 from ...geometry.regions.region import Region, join
 from ...geometry.regions.strip import Period, Strip
+from ...geometry.section import Section
 from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text, Word
 from ...layers.margins import ARCS
 from ...layers.surface import Slice
 from ...parameters.filled import FILLS, FilledParameters
 from ...parameters.process import ProcessParameters
 from ...process.bead_model import BeadModel
+from ...process.deposit.void_and_double import draw
 from ...process.wire import model_wire_feed
 from ...types import Array
 
@@ -40,7 +43,7 @@ MOST_FED = 1.5  # of the room in a layer; beads that overlap by a third
 USUAL_SPACING = (
     0.738  # of a width, at which the surface between beads is flat (Ding, Pan, Cuiuri, Li 2015)
 )
-WELL_COVERED = 0.02  # of a region; where beads of the usual width miss or repeat less, they stay
+WELL_FILLED = 0.005  # of a region; where beads of the usual width miss or repeat less, they stay
 BETTER = 0.8  # of the faults of beads of the usual width; others must have fewer to be used
 OVERLAP_SHARE = 0.03  # of a region, deposited over its other beads
 FULL_RANGE = (1.0, 1.0)  # widths that all beads have
@@ -315,7 +318,7 @@ class Pictures:
             cover = measure_cover(region, curves, filling.beads)
         adapted = None
         if strategy.adapts_widths and flat and isinstance(region, Region):
-            adapted = _adapt_widths(region, curves, cover, filling.beads, strategy)
+            adapted = _adapt_widths(region, curves, filling.beads, strategy)
         if adapted:
             curves, cover, gaps = adapted
         else:
@@ -328,32 +331,36 @@ class Pictures:
 
 
 def _adapt_widths(
-    region: Region,
-    curves: Sequence[PlaneCurve],
-    cover: Cover,
-    beads: Beads,
-    strategy: FilledParameters,
+    region: Region, curves: Sequence[PlaneCurve], beads: Beads, strategy: FilledParameters
 ) -> tuple[Sequence[PlaneCurve], Cover, Gaps] | None:
-    """Contours of adaptive width, their cover and the gaps they leave; None where they cover a region no
+    """Contours of adaptive width, their cover and the gaps they leave; None where they fill a region no
     better than its curves.
     """
-    fault = _fault(curves, cover, beads)
-    if fault < WELL_COVERED * cover.area:
+    fault = _fault(region, curves, beads)
+    if fault < WELL_FILLED:
         return None
     law = BeadLaw(2.0 * beads.inset, beads.spacing, strategy.narrowest, strategy.widest)
     adapted = adapt_contours(region, beads, law)
-    if not adapted:
+    if not adapted or _fault(region, adapted, beads) > BETTER * fault:
         return None
-    adapted_cover = measure_cover(region, adapted, beads)
-    if _fault(adapted, adapted_cover, beads) > BETTER * fault:
-        return None
-    return adapted, adapted_cover, open_places(region, adapted, beads)
+    return adapted, measure_cover(region, adapted, beads), open_places(region, adapted, beads)
 
 
-def _fault(curves: Sequence[PlaneCurve], cover: Cover, beads: Beads) -> float:
-    """Area, mm^2, that beads miss, deposit outside of a region, or deposit twice."""
-    twice = max(cover.over(beads.spacing * math.fsum(map(_weighed, curves))), 0.0)
-    return cover.missed + cover.outside + twice
+def _fault(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> float:
+    """Share of a region that beads miss, deposit twice or deposit beside it, as reports measure it."""
+    section = Section(np.eye(4), tuple(region.borders()), beads.spacing, narrowest=beads.narrowest)
+    width = 2.0 * beads.inset
+    picture = draw(section, [_stroke(curve, width) for curve in curves], width)
+    if picture is None:
+        return 0.0
+    return picture.coverage.void + picture.coverage.over + picture.coverage.outside
+
+
+def _stroke(curve: PlaneCurve, width: float) -> Stroke:
+    """The deposit of a curve, with the usual width in mm."""
+    points, share = curve.closed_points()
+    widths = np.full(len(points), width) if share is None else width * share
+    return Stroke(points, 0.5 * (widths[1:] + widths[:-1])).drop_repeats()
 
 
 def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
