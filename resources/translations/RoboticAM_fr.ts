@@ -16502,6 +16502,11 @@
         <translation>{0} rapides</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>{0} region(s) have no line of the fill: strategy.fill_density of {1} % is too low for their size; the largest, {2} mm^2, is at {3}; use a higher fill_density, or another fill_angle</source>
+        <translation>{0} région(s) ne reçoivent aucune ligne du remplissage : strategy.fill_density de {1} % est trop faible pour leur taille ; la plus grande, {2} mm^2, est à {3} ; augmentez fill_density, ou prenez un autre fill_angle</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>{0} restores a state that was never stored; store it first</source>
         <translation>{0} nomme un état qui n&apos;a pas été mémorisé ; mémorisez-le d&apos;abord</translation>

@@ -372,6 +372,22 @@ def test_beads_are_as_short_as_their_spacing_where_that_is_less_than_2_mm():
         assert SolidParameters(bead_spacing=apart).least_bead == least
 
 
+@pytest.mark.parametrize("fill", ["lines", "contours", "gyroid"])
+def test_a_density_too_low_for_a_region_is_told_with_its_place(fill):
+    """Lines 400 mm apart miss both of two blocks; lines 5 mm apart do not."""
+    blocks = [box((-100, 0, 0), (-70, 20, 8)), box((105, 103, 0), (135, 123, 8))]
+    low, usual = (
+        planned(*blocks, fill=fill, fill_density=density, solid_layers=0) for density in (0.01, 0.8)
+    )
+    told = [issue for issue in low.issues if issue.code == "NO_INFILL"]
+    assert [issue.layer for issue in told] == [0, 1]
+    number, density, area = told[0].message.values[:3]
+    assert (number, density) == ("2", "1")
+    # 30 x 20 mm less a wall 4 mm wide all round
+    assert float(area) == pytest.approx(22 * 12)
+    assert not [issue for issue in usual.issues if issue.code == "NO_INFILL"]
+
+
 def test_touching_and_overlapping_solids_are_one():
     """Two halves of a block, and one with a third that overlaps both: the beads of the block."""
     whole = planned(box((0, 0, 0), (60, 30, 8)))

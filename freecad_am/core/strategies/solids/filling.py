@@ -21,6 +21,7 @@ from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest_among
 from ...geometry.regions.raster import Stroke
 from ...geometry.regions.region import Region, join
+from ...geometry.regions.several import grow_regions
 from ...geometry.regions.strip import Period, Strip
 from ...geometry.section import Section
 from ...issues import NOTE, WARNING, InfeasibleError, InputError, Issue, Text, Word
@@ -47,6 +48,7 @@ WELL_FILLED = 0.005  # of a region; where beads of the usual width miss or repea
 BETTER = 0.8  # of the faults of beads of the usual width; others must have fewer to be used
 OVERLAP_SHARE = 0.03  # of a region, deposited over its other beads
 FULL_RANGE = (1.0, 1.0)  # widths that all beads have
+WALL_KINDS = ("contour", "centre")  # of beads that are no part of a sparse pattern
 
 
 class Bare(NamedTuple):
@@ -86,6 +88,7 @@ class _Picture(NamedTuple):
     gaps: Gaps
     cover: Cover
     bare: list[Bare]
+    unfilled: list[Bare]  # rooms inside the walls where a sparse pattern has no line
 
     def move(self, by: Array) -> _Picture:
         """The picture of the region moved by (2,) mm."""
@@ -93,6 +96,7 @@ class _Picture(NamedTuple):
             curves=[replace(curve, points=curve.points + by) for curve in self.curves],
             gaps=[(point + by, width) for point, width in self.gaps],
             bare=[place._replace(point=place.point + by) for place in self.bare],
+            unfilled=[room._replace(point=room.point + by) for room in self.unfilled],
         )
 
 
@@ -145,6 +149,7 @@ class Pictures:
         islands: list[list[int]] = []
         covers: list[Cover] = []
         bare: list[Bare] = []
+        unfilled: list[Bare] = []
         for region in layer.regions:
             try:
                 picture = self._picture(layer, region, filling)
@@ -177,9 +182,12 @@ class Pictures:
             gaps += picture.gaps
             covers.append(picture.cover)
             bare += picture.bare
+            unfilled += picture.unfilled
         issues = self._issues(layer, curves, gaps, filling)
         if curves and bare:  # layers without any bead are named together
             issues = (*issues, _no_bead(layer, bare))
+        if unfilled:
+            issues = (*issues, _no_infill(layer, unfilled, strategy.fill_density))
         return Filled(curves, issues, islands, total(covers), bare)
 
     def _issues(
@@ -327,7 +335,10 @@ class Pictures:
         bare_places = [
             Bare(bare_part.area, bare_part.width, bare_part.inside()) for bare_part, _ in bare
         ]
-        return _Picture(region, filling, curves, gaps, cover, bare_places)
+        unfilled = []
+        if sparse and isinstance(region, Region):
+            unfilled = _unfilled(region, curves, beads, strategy.rounds)
+        return _Picture(region, filling, curves, gaps, cover, bare_places, unfilled)
 
 
 def _adapt_widths(
@@ -361,6 +372,41 @@ def _stroke(curve: PlaneCurve, width: float) -> Stroke:
     points, share = curve.closed_points()
     widths = np.full(len(points), width) if share is None else width * share
     return Stroke(points, 0.5 * (widths[1:] + widths[:-1])).drop_repeats()
+
+
+def _unfilled(
+    region: Region, curves: Sequence[PlaneCurve], beads: Beads, rounds: float
+) -> list[Bare]:
+    """Rooms inside the walls of a region, each with space for a bead, if its sparse pattern has no line."""
+    is_pattern = [curve.kind not in WALL_KINDS or curve.ring >= rounds for curve in curves]
+    if math.isinf(rounds) or any(is_pattern):
+        return []
+    depth = 2.0 * beads.inset + (rounds - 1.0) * beads.spacing if rounds else 0.0
+    rooms = grow_regions((region,), -depth, beads.chord_error)
+    return [
+        Bare(room.area, room.width, room.inside())
+        for room in rooms
+        if room.width > 2.0 * beads.inset
+    ]
+
+
+def _no_infill(layer: Slice, unfilled: Sequence[Bare], density: float) -> Issue:
+    """The issue of rooms of a layer where a sparse pattern has no line."""
+    largest = max(unfilled, key=lambda room: room.area)
+    return Issue(
+        NOTE,
+        "NO_INFILL",
+        Text(
+            "{} region(s) have no line of the fill: strategy.fill_density of {:.3g} % is too low for "
+            "their size; the largest, {:.3g} mm^2, is at {}; use a higher fill_density, or another "
+            "fill_angle",
+            len(unfilled),
+            100.0 * density,
+            largest.area,
+            layer.where(largest.point),
+        ),
+        layer.number,
+    )
 
 
 def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
