@@ -44,7 +44,7 @@ MOST_FED = 1.5  # of the room in a layer; beads that overlap by a third
 USUAL_SPACING = (
     0.738  # of a width, at which the surface between beads is flat (Ding, Pan, Cuiuri, Li 2015)
 )
-WELL_FILLED = 0.005  # of a region; where beads of the usual width miss or repeat less, they stay
+WELL_FILLED = 0.01  # of a region; where beads of the usual width miss or repeat less, they stay
 BETTER = 0.8  # of the faults of beads of the usual width; others must have fewer to be used
 OVERLAP_SHARE = 0.03  # of a region, deposited over its other beads
 FULL_RANGE = (1.0, 1.0)  # widths that all beads have
