@@ -24,15 +24,19 @@ PAD = 0.06
 
 
 class Quantity(NamedTuple):
-    """What an axis counts, and in what."""
+    """What an axis counts, and in what; a whole one has no values between its numbers."""
 
     name: str
     unit: str = ""
+    is_whole: bool = False
 
     @property
     def label(self) -> str:
         """The label of the axis."""
         return f"{self.name}, {self.unit}" if self.unit else self.name
+
+
+LAYER_NUMBER = Quantity("layer", is_whole=True)
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,7 +13,7 @@ from ..core.geometry.toolpath_records import DeviationMap
 from ..core.inspection.bands import band_of, bands, css, step_of
 from ..core.process.shape.compare import name_of
 from ..core.types import Array
-from .chart import DOTS, MARKED, Bars, Chart, Curve, Quantity
+from .chart import DOTS, LAYER_NUMBER, MARKED, Bars, Chart, Curve, Quantity
 
 TILT = math.radians(30.0)  # from above, as in the other views
 FACING = 0.05  # cosine to the eye of faces that are seen
@@ -110,7 +110,7 @@ def _layers(deviations: DeviationMap, allowance: float) -> tuple[Chart, ...]:
     return (
         Chart(
             "Layer by layer",
-            Quantity("layer"),
+            LAYER_NUMBER,
             Quantity("beyond the faces", "mm"),
             (Curve("least", number, smallest, 1, MARKED), Curve("mean", number, mean, 0, MARKED)),
             marks=((allowance, "allowance"),),

@@ -258,8 +258,10 @@ class _Frame:
             spine.set(color=self.look.soft, linewidth=0.7, alpha=FRAME)
         across = max(3, min(10, int(self.panel.width / 75.0)))
         up = max(2, min(6, int(self.panel.height / 26.0)))
-        for axis, count in ((axes.xaxis, across), (axes.yaxis, up)):
-            axis.set_major_locator(MaxNLocator(count, steps=[1, 2, 2.5, 5, 10]))
+        quantities = self.chart.x, self.chart.y
+        for axis, count, quantity in zip((axes.xaxis, axes.yaxis), (across, up), quantities):
+            steps = [1, 2, 5, 10] if quantity.is_whole else [1, 2, 2.5, 5, 10]
+            axis.set_major_locator(MaxNLocator(count, steps=steps, integer=quantity.is_whole))
             numbers = ScalarFormatter(useOffset=False)
             numbers.set_powerlimits((-4, 6))
             axis.set_major_formatter(numbers)

@@ -15,7 +15,20 @@ from ..core.kinematics.cell import Cell
 from ..core.layers.plane_field import outline
 from ..core.process import model_notes
 from ..core.types import Array, Index, Integers, Mask
-from .chart import INF, LINE, MARKED, OUTLINE, STEP, Bars, Chart, Curve, Picture, Quantity, fit
+from .chart import (
+    INF,
+    LAYER_NUMBER,
+    LINE,
+    MARKED,
+    OUTLINE,
+    STEP,
+    Bars,
+    Chart,
+    Curve,
+    Picture,
+    Quantity,
+    fit,
+)
 from .source import Source
 
 TIME, PATH = "time", "path"
@@ -432,18 +445,17 @@ def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tu
             (("min", "lowest"), ("mean", "mean"), ("max", "highest"))
         )
     ]
-    layer = Quantity("layer")
     return (
         Chart(
             "Predicted height by layer",
-            layer,
+            LAYER_NUMBER,
             Quantity("height", "mm"),
             tuple(spread),
             marks=((layer_height, f"layer height {layer_height:g} mm"),),
         ),
         Chart(
             "Sum of the heights, minus the planned layers",
-            layer,
+            LAYER_NUMBER,
             Quantity("off", "mm"),
             (curve("drift", [row["drift_mm"] for row in rows], 3),),
             marks=((0.0, ""),),
@@ -462,7 +474,7 @@ def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     part_volume, deposited = (values[layers[0] : end] / MM3_PER_CM3 for values in source.slabs)
     if not len(part_volume):
         return ()
-    x, layer = np.arange(layers[0], layers[0] + len(part_volume), dtype=float), Quantity("layer")
+    x = np.arange(layers[0], layers[0] + len(part_volume), dtype=float)
     share = np.divide(
         100.0 * deposited,
         part_volume,
@@ -473,7 +485,7 @@ def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     return (
         Chart(
             "Volume by layer",
-            layer,
+            LAYER_NUMBER,
             Quantity("volume", "cm³"),
             (
                 Curve("part", x, part_volume, "soft", MARKED),
@@ -482,7 +494,7 @@ def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
         ),
         Chart(
             Text("Deposited share of the part: {:.4g} %", percent),
-            layer,
+            LAYER_NUMBER,
             Quantity("share", "%"),
             (Curve("share", x, share, 0, MARKED),),
             marks=((100.0, ""),),
@@ -511,7 +523,7 @@ def infill(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
     return (
         Chart(
             "Void and double deposit by layer",
-            Quantity("layer"),
+            LAYER_NUMBER,
             Quantity("share of the section", "%"),
             curves,
             marks=((limit, f"limit of void {limit:g} %"),) if limit < 100.0 else (),

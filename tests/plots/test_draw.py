@@ -11,7 +11,17 @@ import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 from freecad_am.plots import draw, files, pictures
-from freecad_am.plots.chart import DARK, LIGHT, PAGE, VARIABLES, Chart, Curve, Picture, Quantity
+from freecad_am.plots.chart import (
+    DARK,
+    LAYER_NUMBER,
+    LIGHT,
+    PAGE,
+    VARIABLES,
+    Chart,
+    Curve,
+    Picture,
+    Quantity,
+)
 from freecad_am.plots.draw import envelope
 from freecad_am.plots.pictures import PATH
 
@@ -80,6 +90,16 @@ def test_limits_are_bands_and_what_breaks_them_is_marked():
     figure, places = draw.figure((far,), DARK, 600, 300)
     assert places[0].up[1] < 2.0 and not figure.axes[0].patches  # out of sight, but told
     assert "limits -120 to 90 deg" in [text.get_text() for text in figure.texts]
+
+
+def test_layers_have_whole_numbers():
+    x = np.arange(20.0)
+    chart = Chart("volume", LAYER_NUMBER, Quantity("share", "%"), (Curve("share", x, x / 7.0),))
+    for width in (300, 900):
+        figure, _ = draw.figure((chart,), LIGHT, width, 300)
+        figure.canvas.draw()
+        numbers = [label.get_text() for label in figure.axes[0].get_xticklabels()]
+        assert len(numbers) > 2 and all(number.lstrip("\u2212").isdigit() for number in numbers)
 
 
 def test_a_window_shows_a_part(dome):
