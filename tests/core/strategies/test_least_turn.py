@@ -6,7 +6,12 @@ from itertools import product
 import numpy as np
 import pytest
 
-from freecad_am.core.strategies.clearance.tilt_search import BARRED, least_cost_states
+from freecad_am.core.strategies.clearance.tilt_search import (
+    BARRED,
+    MAX_JOINT_STATES,
+    least_cost_states,
+    useful_states,
+)
 
 
 def cost(states, allowed, weight, change, way):
@@ -38,3 +43,36 @@ def test_no_way_is_better(seed, same):
         assert cost(own, allowed[k], weight[k], change[k], found[k]) == pytest.approx(
             best, rel=1e-12
         )
+
+
+def test_states_of_many_are_chosen_as_one_by_one():
+    """A chain of more states than are worked on together: the same way, whichever way it is computed."""
+    rng = np.random.default_rng(4)
+    n, s = 12, MAX_JOINT_STATES + 9
+    states, allowed = rng.normal(size=(1, 1, s, 2)), rng.random((1, n, s)) > 0.5
+    weight, change = rng.uniform(0.1, 1, (1, n)), rng.uniform(0, 2, (1, n - 1))
+    alone = least_cost_states(states, allowed, weight, change)
+    together = least_cost_states(
+        states, *(np.repeat(v, 2, axis=0) for v in (allowed, weight, change))
+    )
+    assert (together == alone).all()
+    own = least_cost_states(np.repeat(states, n, axis=1), allowed, weight, change)
+    assert (own == alone).all()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_best_way_leads_through_useful_states_whatever_else_is_barred(seed):
+    rng = np.random.default_rng(seed)
+    n, s = 9, 12
+    states, known = rng.normal(size=(1, 1, s, 2)), rng.random((1, n, s)) > 0.6
+    known[..., 0] = True
+    allowed = known | (rng.random((1, n, s)) > 0.5)
+    weight, change = rng.uniform(0.1, 1, (1, n)), rng.uniform(0, 2, (1, n - 1))
+    useful = useful_states(states, allowed, known, weight, change)
+    assert useful.sum() < allowed.sum()
+    for share in (0.0, 0.3, 0.6, 1.0):
+        true = known | (allowed & (rng.random((1, n, s)) > share))
+        (way,) = least_cost_states(states, true, weight, change)
+        assert useful[np.arange(n), way].all()
+        (again,) = least_cost_states(states, true & useful, weight, change)
+        assert (again == way).all()

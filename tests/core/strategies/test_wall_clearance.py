@@ -422,6 +422,53 @@ def test_a_bead_of_many_points_is_tilted_at_some_and_is_clear_at_all(monkeypatch
     assert turns.max() < 1.0  # and not a step between candidates from one point to the next
 
 
+def try_every_candidate(search, offsets, open_, tested, anchor, fixed):
+    """Test all candidates that are not tested, before any way is sought."""
+    rows, columns = np.nonzero(~tested)
+    barred = ~search._clear(rows, offsets[rows, columns][:, None])[:, 0]
+    tested[:] = True
+    rows, columns = rows[barred], columns[barred]
+    open_[rows, columns] = open_[search._twin[rows], columns] = False
+
+
+@pytest.mark.parametrize("way", ["beside a wall", "around a post"])
+def test_tilts_are_those_that_a_test_of_every_candidate_gives(way, monkeypatch):
+    """The search tests candidates only where the best way leads through them, about half of them here."""
+    bodies = []
+    if way == "beside a wall":
+        path = flank(40, 16.0, 8.0)
+    else:
+        angle = np.linspace(0, 2 * np.pi, 61)
+        ring = np.stack([30 * np.cos(angle), 30 * np.sin(angle), np.zeros(61)], axis=1)
+        ring[-1] = ring[0]
+        path = toolpath(bead(ring, closed=True))
+        bodies = [box([38, -3, -20], [44, 3, 90], "post")]
+    looks = []
+    clear = nozzle_check.Space.clear
+    monkeypatch.setattr(
+        nozzle_check.Space,
+        "clear",
+        lambda self, rows, axis: looks.append(len(rows)) or clear(self, rows, axis),
+    )
+    found = keep_clear(path, bodies, NOZZLE, LOCAL, remedy=False)
+    few = sum(looks)
+    looks.clear()
+    least_clear = tilt_search.TiltSearch._least_clear
+
+    def after_all_tests(self, offsets, open_, tested, anchor, fixed):
+        try_every_candidate(self, offsets, open_, tested, anchor, fixed)
+        return least_clear(self, offsets, open_, tested, anchor, fixed)
+
+    monkeypatch.setattr(tilt_search.TiltSearch, "_least_clear", after_all_tests)
+    monkeypatch.setattr(tilt_search.TiltSearch, "_near_best", lambda *search: None)
+    monkeypatch.setattr(tilt_search.TiltSearch, "_useful", lambda self, states, open_, *rest: open_)
+    best = keep_clear(path, bodies, NOZZLE, LOCAL, remedy=False)
+    assert codes(found) == codes(best) and "TILT_BACK" in codes(found)
+    for (_, _, one), (_, _, other) in zip(found, best, strict=True):
+        assert (one.tool == other.tool).all()
+    assert few < 0.8 * sum(looks)
+
+
 def test_beads_of_one_layer_that_overlap_hinder_no_one():
     rows = [bead([[x, y, 0] for x in np.linspace(0, 30, 11)]) for y in np.arange(0.0, 30.0, 6.0)]
     lean = [

@@ -40,6 +40,7 @@ from .tilt_search import SPREAD, Change, TiltSearch, Touching, what_helps
 
 SLOWER = 6  # how often a bead that turns too fast is tilted again
 SEARCHED = 0.7  # share of the search that is complete when that begins
+POINTS_AT_ONCE = 10_000  # points of beads
 ROUNDING = 1e-9
 HALVINGS = 3  # how often a segment is halved if the nozzle touches between its ends
 
@@ -279,12 +280,18 @@ def _cleared(
         if len(bead_knots) < len(row):
             free = free.copy()
             free[bead_knots] = free_about(row, bead_knots, free)
-    search = TiltSearch(space, knots, closed, tool_before, plane, free, spread)
-    offset, stuck = search.search(watch)
     tool, tilt = tool_before.copy(), np.zeros(len(tool_before))
-    flat = np.concatenate(knots)
-    tool[flat], tilt[flat] = search.axes(flat, offset), np.linalg.norm(offset, axis=1)
-    touching = [flat[stuck]]
+    touching = []
+    blocks = _blocks(np.array([len(bead_knots) for bead_knots in knots]))
+    for number, block in enumerate(blocks):
+        some_knots = [knots[k] for k in block]
+        search = TiltSearch(space, some_knots, closed[block], tool_before, plane, free, spread)
+        offset, stuck = search.search(
+            watch.section(number / len(blocks), (number + 1) / len(blocks))
+        )
+        flat = search.flat
+        tool[flat], tilt[flat] = search.axes(flat, offset), np.linalg.norm(offset, axis=1)
+        touching.append(flat[stuck])
     for row, bead_knots in zip(rows, knots, strict=True):
         if len(bead_knots) < len(row):
             tool[row], touching_rows = spread_out(
@@ -296,6 +303,12 @@ def _cleared(
             )
             touching.append(touching_rows)
     return tool, tilt, np.concatenate(touching)
+
+
+def _blocks(counts: Index) -> list[Index]:
+    """Numbers of the beads, of `counts` points, that are searched together: so many that memory does not grow with their number."""
+    number = (np.cumsum(counts) - counts) // POINTS_AT_ONCE
+    return np.split(np.arange(len(counts)), np.flatnonzero(np.diff(number)) + 1)
 
 
 def _fastest(space: Space, row: Index, axes: Array) -> float:

@@ -4,6 +4,10 @@
 Each point has candidate axes on cones about the original axis, in growing angle until every point has a clear one, or a few of
 the points without have none on any cone. Among the sequences of clear candidates the search takes the one with the least
 integral of tilt^2 + (SPREAD d tilt / ds)^2 along the bead. Finer candidates about it follow, level by level.
+
+A test of a candidate takes long. Candidates that are not tested count as clear while a sequence is sought; then those of the
+sequence are tested, and the search goes on without the ones that touch. A sequence of clear candidates is then the best one
+of all, as if every candidate had been tested.
 """
 
 from __future__ import annotations
@@ -27,6 +31,7 @@ from .nozzle_check import CAP, Space, space_of
 
 BARRED = 1e9  # cost of a state that is not allowed; finite, so that a chain without a way through has a least bad one
 AT_ONCE = 1_000_000  # pairs of states worked on at once
+MAX_JOINT_STATES = 64  # states of a point, beyond which chains are worked on one by one without their barred states
 
 
 def least_cost_states(states: Array, allowed: Mask, weight: Array, change: Array) -> Index:
@@ -58,24 +63,87 @@ def least_cost_states(states: Array, allowed: Mask, weight: Array, change: Array
                 for chunk in chunks
             ]
         )
-    same = states.shape[1] == 1
-    size = np.broadcast_to((states**2).sum(axis=3), (b, n, s))
-    state_cost = np.where(allowed, weight[:, :, None] * size, BARRED)
-    fixed = _between(states[:, 0], states[:, 0]) if same else None
-    total, came = state_cost[:, 0], np.zeros((b, n, s), dtype=np.int32)
-    for k in range(1, n):
-        between = fixed if fixed is not None else _between(states[:, k - 1], states[:, k])
-        costs = total[:, :, None] + change[:, k - 1, None, None] * between
-        best = costs.min(axis=1)
-        came[:, k] = is_tied(costs, best[:, None]).argmax(
-            axis=1
-        )  # what first_least finds, of numbers that are all finite
-        total = best + state_cost[:, k]
+    states = np.broadcast_to(states, (b, n, s, states.shape[3]))
+    state_cost = np.where(allowed, weight[:, :, None] * (states**2).sum(axis=3), BARRED)
+    totals = _totals(states, allowed, change, state_cost)
     states_ = np.zeros((b, n), dtype=np.intp)
-    states_[:, -1] = index_of_minimum(total, axis=1)
+    states_[:, -1] = index_of_minimum(totals[:, -1], axis=1)
+    chain = np.arange(b)
     for k in range(n - 1, 0, -1):
-        states_[:, k - 1] = came[np.arange(b), k, states_[:, k]]
+        target = states[chain, k, states_[:, k]]
+        costs = change[:, k - 1, None] * _between(states[:, k - 1], target[:, None])[:, :, 0]
+        costs += totals[:, k - 1]
+        # what index_of_minimum finds, of numbers that are all finite
+        states_[:, k - 1] = is_tied(costs, costs.min(axis=1, keepdims=True)).argmax(axis=1)
     return states_
+
+
+def useful_states(states: Array, allowed: Mask, known: Mask, weight: Array, change: Array) -> Mask:
+    """Return the states that a way of least cost may lead through, of one chain.
+
+    Whichever more of the allowed states are barred, no way through another state is as good as
+    the best one through known states.
+
+    Parameters
+    ----------
+    states : (1, 1, s, d) or (1, n, s, d) array
+        States as of `least_cost_states`.
+    allowed : (1, n, s) bool array
+        States that may be free.
+    known : (1, n, s) bool array
+        States that are free.
+    weight, change : (1, n) and (1, n - 1) array
+        Costs as of `least_cost_states`.
+
+    Returns
+    -------
+    (n, s) bool array
+        True for the states that remain.
+    """
+    states = np.broadcast_to(states, (*allowed.shape, states.shape[3]))
+    size = weight[:, :, None] * (states**2).sum(axis=3)
+    own, known_own = (np.where(mask, size, BARRED) for mask in (allowed, known))
+    before = _totals(states, allowed, change, own)
+    after = _totals(states[:, ::-1], allowed[:, ::-1], change[:, ::-1], own[:, ::-1])[:, ::-1]
+    most = _totals(states, known, change, known_own)[0, -1].min()
+    useful: Mask = (before + after - own)[0] <= most + COST_TOLERANCE
+    return useful
+
+
+def _totals(states: Array, allowed: Mask, change: Array, own: Array) -> Array:
+    """(b, n, s) the least costs of the ways from the start to each state, with costs of their own (b, n, s)."""
+    totals = np.empty(own.shape)
+    totals[:, 0] = own[:, 0]
+    if len(own) == 1 and own.shape[2] > MAX_JOINT_STATES:
+        _add_allowed(states[0], allowed[0], change[0], own[0], totals[0])
+        return totals
+    costs = np.empty((len(totals), totals.shape[2], totals.shape[2]))
+    between = _between(states[:, 0], states[:, 0])
+    for k in range(1, totals.shape[1]):
+        if states.strides[1]:  # otherwise every point has the same states
+            between = _between(states[:, k - 1], states[:, k])
+        np.multiply(change[:, k - 1, None, None], between, out=costs)
+        costs += totals[:, k - 1, :, None]
+        np.add(costs.min(axis=1), own[:, k], out=totals[:, k])
+    return totals
+
+
+def _add_allowed(states: Array, allowed: Mask, change: Array, own: Array, totals: Array) -> None:
+    """Fill in the costs (n, s) of a single chain, of its allowed states; the others get BARRED."""
+    totals[1:] = BARRED
+    between = _between(states[None, 0], states[None, 0])[0]
+    barred = ~allowed.any(axis=1)
+    before = np.flatnonzero(allowed[0] | barred[0])
+    for k in range(1, len(totals)):
+        now = np.flatnonzero(allowed[k] | barred[k])
+        if states.strides[0]:
+            costs = _between(states[None, k - 1, before], states[None, k, now])[0]
+        else:
+            costs = between[before[:, None], now]
+        costs *= change[k - 1]
+        costs += totals[k - 1, before, None]
+        totals[k, now] = costs.min(axis=0) + own[k, now]
+        before = now
 
 
 def _between(a: Array, b: Array) -> Array:
@@ -90,6 +158,11 @@ RING, AZIMUTHS = np.radians(5.0), 16  # angle between cones of candidates, and c
 MAX_TILT_RAD = np.radians(90.0)  # largest tilt tried
 # before cone PROBED all larger cones are tried at PROBES points of a bead
 PROBED, PROBES = 7, 16
+CORRIDOR = 24  # candidates near a way, among which clear ones are sought first
+COST_TOLERANCE = 1e-5  # of costs, much more than ties
+NEIGHBOUR_COUNT = (
+    9  # candidates that are tested together, about one that the best way leads through
+)
 LEVELS = 4  # refinements of the candidates, each at half the distance
 COARSE = 0.6  # share of the progress before the refinements
 SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
@@ -118,6 +191,12 @@ class TiltSearch:
         self.asked = tool
         self.counts = np.array([len(row) for row in rows])
         self.begin = np.r_[0, np.cumsum(self.counts)][:-1]
+        self._bead = np.repeat(np.arange(len(self.counts)), self.counts)
+        # the other end of a closed bead, which is the same point
+        self._twin = np.arange(len(self.flat))
+        start = self.begin[closed]
+        end = start + self.counts[closed] - 1
+        self._twin[start], self._twin[end] = end, start
         self.lost = np.zeros(len(rows), dtype=bool)  # beads that no tilt clears
         self.sides = np.concatenate([_sides(tool[row], plane) for row in rows])
         points = space.points[self.flat]
@@ -159,10 +238,10 @@ class TiltSearch:
         """(k, s) whether the tilts (s, 2) or (k, s, 2) are clear at the places (k,)."""
         offsets = np.broadcast_to(offsets, (len(row), *offsets.shape[-2:]))
         s = offsets.shape[1]
-        spread = np.repeat(row, s)
-        return self.space.clear(
-            self.flat[spread], self._tilted(spread, offsets.reshape(-1, 2))
-        ).reshape(-1, s)
+        # neighbours along a bead follow each other, with the same tilt
+        places, offsets = np.tile(row, s), offsets.transpose(1, 0, 2).reshape(-1, 2)
+        clear = self.space.clear(self.flat[places], self._tilted(places, offsets))
+        return clear.reshape(s, len(row)).T
 
     def search(self, watch: Watch) -> tuple[Array, Mask]:
         """Search small and even tilts that keep the nozzle clear.
@@ -200,42 +279,120 @@ class TiltSearch:
         stuck : (m,) bool array
             Points without a clear tilt; they do not hinder the others.
         """
-        states = np.zeros((1, 2))
-        allowed = self._clear(np.arange(len(self.flat)), states) | ~self.near[:, None]
-        bead = np.repeat(np.arange(len(self.counts)), self.counts)
+        m, bead = len(self.flat), self._bead
+        states = [np.zeros((1, 2))]
+        open_ = [self._clear(np.arange(m), states[0]) | ~self.near[:, None]]
+        tested = [np.ones((m, 1), dtype=bool)]
+        # beads whose end is their start have a way only where both are free
+        has_way = self._both_ends(open_[0])[:, 0]
         pending = np.ones(len(self.counts), dtype=bool)
         last_ring = round(MAX_TILT_RAD / RING)
         for number in range(1, last_ring + 1):
             watch.share(number / (last_ring + 1))
             if number == PROBED:
                 # where nothing frees some of a bead's points there is no way, however many candidates the others have
-                self.lost[self._hopeless(allowed, pending, range(number, last_ring + 1))] = True
+                self.lost[
+                    self._hopeless(~has_way & self.near, pending, range(number, last_ring + 1))
+                ] = True
                 pending &= ~self.lost
                 if not pending.any():
                     break
             ring = self._ring(number)
-            states = np.concatenate([states, ring])
-            ring_clear = np.zeros((len(self.flat), len(ring)), dtype=bool)
-            rows = np.flatnonzero(pending[bead] & self.near)
-            ring_clear[rows] = self._clear(rows, ring)
+            # points that have a way are tested later, where the tilts lead through these candidates
+            wanted = pending[bead] & self.near
+            rows = np.flatnonzero(wanted & ~has_way)
+            ring_open = np.repeat(wanted[:, None], len(ring), axis=1)
+            ring_open[rows] = self._clear(rows, ring)
+            ring_tested = ~ring_open
+            ring_tested[rows] = True
             # one ring more than the first that frees every point, so that there is a way round
-            had = np.logical_and.reduceat(self._both_ends(allowed).any(axis=1), self.begin)
-            allowed = np.hstack([allowed, ring_clear])
+            had = np.logical_and.reduceat(has_way, self.begin)
+            has_way |= (self._both_ends(ring_open) & ring_tested).any(axis=1)
+            states.append(ring)
+            open_.append(ring_open)
+            tested.append(ring_tested)
             pending &= ~had
             if not pending.any():
                 break
-        allowed = self._both_ends(allowed)
-        stuck = np.logical_not(allowed.any(axis=1))
-        self.lost |= np.logical_or.reduceat(stuck, self.begin)
-        allowed[stuck] = True
-        # a closed bead starts where least tilt is needed, and with it
-        size = np.where(allowed, np.linalg.norm(states, axis=1), np.inf)
-        anchor = self._anchors(np.where(stuck, np.inf, size.min(axis=1)))
-        return states[self._least(states[None], allowed, anchor, index_of_minimum(size))], stuck
+        return self._through(np.concatenate(states), np.hstack(open_), np.hstack(tested))
 
-    def _hopeless(self, allowed: Mask, pending: Mask, numbers: range) -> Index:
-        """The pending beads with a sampled point that is not free on any cone, from points (m, s) and further cones."""
-        barred = ~self._both_ends(allowed).any(axis=1) & self.near
+    def _through(self, states: Array, open_: Mask, tested: Mask) -> tuple[Array, Mask]:
+        """Return tilts (m, 2) and stuck points (m,) by states (s, 2) that may be open (m, s)."""
+        open_ = self._both_ends(open_)
+        stuck = np.logical_not(open_.any(axis=1))
+        self.lost |= np.logical_or.reduceat(stuck, self.begin)
+        open_[stuck] = True
+        tested[stuck] = True
+        # a closed bead starts where least tilt is needed, and with it: all smaller tilts are tested
+        size = np.where(open_, np.linalg.norm(states, axis=1), np.inf)
+        anchor = self._anchors(np.where(stuck, np.inf, size.min(axis=1)))
+        fixed = index_of_minimum(size)
+        if len(states) > MAX_JOINT_STATES:
+            self._near_best(states, open_, tested, anchor, fixed)
+            open_ = self._useful(states[None, None], open_, tested, anchor, fixed)
+        # few states remain at most points, in the same order
+        number = np.argsort(~open_, axis=1, kind="stable")[:, : open_.sum(axis=1).max()]
+        return self._least_clear_of(number, states, open_, tested, anchor, fixed), stuck
+
+    def _near_best(
+        self, states: Array, open_: Mask, tested: Mask, anchor: Index, fixed: Index
+    ) -> None:
+        """Bring open_ and tested up to date near the ways that would be best if all open states were clear.
+
+        The ways through clear states are then about as good as any, which leaves few useful states.
+        """
+        chosen = np.zeros(len(self.flat), dtype=np.intp)
+        for bead in range(len(self.counts)):
+            self._least(np.array([bead]), states[None], open_, anchor, fixed, chosen)
+        apart = _between(states[None], states[None])[0][chosen]
+        known = np.where(open_ & tested, apart, np.inf).argmin(axis=1)
+        apart[~open_] = np.inf
+        apart[np.arange(len(apart)), known] = -1.0  # so that there is a way
+        number = np.argsort(apart, axis=1, kind="stable")[:, :CORRIDOR]
+        self._least_clear_of(number, states, open_, tested, anchor, fixed)
+
+    def _least_clear_of(
+        self,
+        number: Index,
+        states: Array,
+        open_: Mask,
+        tested: Mask,
+        anchor: Index,
+        fixed: Index,
+    ) -> Array:
+        """(m, 2) `_least_clear` among the states (s, 2) numbered (m, w); open_ and tested (m, s) are brought up to date."""
+        some_open, some_tested = (
+            np.take_along_axis(mask, number, axis=1) for mask in (open_, tested)
+        )
+        offsets = states[number]
+        fixed = np.argmax(number == fixed[:, None], axis=1)
+        chosen = self._least_clear(offsets, some_open, some_tested, anchor, fixed)
+        np.put_along_axis(open_, number, some_open, axis=1)
+        np.put_along_axis(tested, number, some_tested, axis=1)
+        best: Array = offsets[np.arange(len(offsets)), chosen]
+        return best
+
+    def _useful(
+        self, states: Array, open_: Mask, tested: Mask, anchor: Index, fixed: Index
+    ) -> Mask:
+        """(m, s) the states through which the best ways may lead, of those that may be open."""
+        useful = open_.copy()
+        for bead in range(len(self.counts)):
+            at, ends = (
+                slice(self.begin[bead], self.begin[bead] + self.counts[bead]),
+                np.array([bead]),
+            )
+            count = int(np.flatnonzero(open_[at].any(axis=0))[-1]) + 1
+            chains = self._chains(ends, open_[:, :count], anchor, fixed)
+            known = self._chains(ends, (open_ & tested)[at, :count], anchor, fixed, at.start)
+            row = chains.position[0]
+            useful[row, :count] &= useful_states(
+                states[:, :, :count], chains.free, known.free, chains.weight, chains.change
+            )
+        return self._both_ends(useful)
+
+    def _hopeless(self, barred: Mask, pending: Mask, numbers: range) -> Index:
+        """The pending beads with a sampled point among the barred (m,) that is not free on any further cone either."""
         samples = [np.zeros(0, dtype=np.intp)]
         for bead in np.flatnonzero(pending):
             rows = self.begin[bead] + np.flatnonzero(
@@ -247,10 +404,9 @@ class TiltSearch:
                 else rows
             )
         rows_ = np.concatenate(samples)
-        free = self._clear(rows_, np.concatenate([self._ring(number) for number in numbers])).any(
-            axis=1
-        )
-        beads: Index = np.unique(np.searchsorted(self.begin, rows_[~free], side="right") - 1)
+        for number in numbers:
+            rows_ = rows_[~self._clear(rows_, self._ring(number)).any(axis=1)]
+        beads: Index = np.unique(self._bead[rows_])
         return beads
 
     def finer(self, offset: Array, step: float, turn: int) -> Array:
@@ -278,15 +434,15 @@ class TiltSearch:
         offsets = offset[:, None] + grid
         centre_state = len(grid) // 2
         offsets[:, centre_state] = offset
-        allowed = np.zeros(offsets.shape[:2], dtype=bool)
-        rows = np.flatnonzero(self.near & ~np.repeat(self.lost, self.counts))
-        allowed[rows] = self._clear(rows, offsets[rows])
-        allowed = self._both_ends(allowed)
-        allowed[:, centre_state] = True
+        searched = self.near & ~self.lost[self._bead]
+        open_ = self._both_ends(np.repeat(searched[:, None], offsets.shape[1], axis=1))
+        tested = ~open_
+        open_[:, centre_state] = tested[:, centre_state] = True
         # each time another point of a closed bead stays as it is
         anchor = (self.counts - 1) * (turn % 3) // 3
-        states_ = self._least(offsets, allowed, anchor, np.full(len(offset), centre_state))
-        better: Array = offsets[np.arange(len(offset)), states_]
+        fixed = np.full(len(offset), centre_state)
+        chosen = self._least_clear(offsets, open_, tested, anchor, fixed)
+        better: Array = offsets[np.arange(len(offset)), chosen]
         return better
 
     def _ring(self, number: int) -> Array:
@@ -320,29 +476,76 @@ class TiltSearch:
             anchors.append(int(least_of_all[np.argmax(distance)]))
         return np.array(anchors)
 
-    def _least(self, states: Array, allowed: Mask, anchor: Index, fixed: Index) -> Index:
-        """(m,) the states of least cost; a closed bead is run from the anchor all around, its state there `fixed`."""
-        states_ = np.zeros(len(self.flat), dtype=np.intp)
-        # chains of similar lengths together, because padding to the longest takes memory
-        length = np.ceil(np.log2(self.counts)).astype(int)
-        for beads in (np.flatnonzero(length == size) for size in np.unique(length)):
-            self._least_of(beads, states, allowed, anchor, fixed, states_)
-        return states_
+    def _least_clear(
+        self, offsets: Array, open_: Mask, tested: Mask, anchor: Index, fixed: Index
+    ) -> Index:
+        """(m,) the clear tilts of least cost, of tilts (m, s, 2) that may be open and are tested (m, s) or not.
 
-    def _least_of(
+        Only the tilts that the best way leads through are tested, with those next to them, until
+        all of that way are clear: with other tilts barred besides, no way is better. open_ and
+        tested are brought up to date.
+        """
+        chosen = np.zeros(len(self.flat), dtype=np.intp)
+        todo = np.ones(len(self.counts), dtype=bool)
+        point = np.arange(len(self.flat))
+        while todo.any():
+            self._least(np.flatnonzero(todo), offsets, open_, anchor, fixed, chosen)
+            rows = np.flatnonzero(todo[self._bead] & ~tested[point, chosen])
+            self._test(rows, chosen[rows], offsets, open_, tested)
+            todo[:] = False
+            todo[self._bead[rows[~open_[rows, chosen[rows]]]]] = True
+        return chosen
+
+    def _test(self, rows: Index, picked: Index, offsets: Array, open_: Mask, tested: Mask) -> None:
+        """Test tilts picked at rows (k,), and those next to them that are not tested yet."""
+        apart = np.square(offsets[rows] - offsets[rows, picked][:, None]).sum(axis=2)
+        apart[~open_[rows]] = np.inf
+        apart[np.arange(len(rows)), picked] = -1.0
+        candidates = np.argsort(apart, axis=1, kind="stable")[:, :NEIGHBOUR_COUNT]
+        unknown = ~tested[rows[:, None], candidates]
+        row, candidate = np.repeat(rows, unknown.sum(axis=1)), candidates[unknown]
+        barred = ~self._clear(row, offsets[row, candidate][:, None])[:, 0]
+        tested[row, candidate] = True
+        row, candidate = row[barred], candidate[barred]
+        open_[row, candidate] = open_[self._twin[row], candidate] = False
+
+    def _least(
         self,
         beads: Index,
-        states: Array,
+        offsets: Array,
         allowed: Mask,
         anchor: Index,
         fixed: Index,
-        states_: Index,
+        chosen: Index,
     ) -> None:
-        """Put the states of least cost of some beads where they belong among those chosen (m,)."""
+        """Choose the tilts (m,) of least cost of some beads; a closed bead is run from the anchor all around, its tilt
+        there `fixed`."""
+        # chains of similar sizes together, because padding to the longest takes memory
+        last = allowed.shape[1] - np.argmax(allowed[:, ::-1], axis=1)
+        width = np.maximum.reduceat(last, self.begin)[beads]
+        sizes = np.ceil(np.log2(np.stack([self.counts[beads], width]))).astype(int)
+        kind = sizes[0] + 64 * sizes[1]
+        for group in (beads[kind == size] for size in np.unique(kind)):
+            states = slice(0, int(width[kind == kind[beads == group[0]]].max()))
+            chains = self._chains(group, allowed[:, states], anchor, fixed)
+            best = least_cost_states(
+                offsets[chains.position, states] if len(offsets) > 1 else offsets[None, :, states],
+                chains.free,
+                chains.weight,
+                chains.change,
+            )
+            for k, bead in enumerate(group):
+                start, count = self.begin[bead], self.counts[bead]
+                chosen[chains.position[k, :count]] = best[k, :count]
+                if self.closed[bead]:
+                    chosen[start + count - 1] = chosen[start]
+
+    def _chains(
+        self, beads: Index, allowed: Mask, anchor: Index, fixed: Index, first: int = 0
+    ) -> _Chains:
+        """Beads as chains; allowed: states (m - first, s) from the point `first` on."""
         n, s = int(self.counts[beads].max()), allowed.shape[1]
-        position = np.zeros(
-            (len(beads), n), dtype=np.intp
-        )  # of the chains' points in the list, the pads at any
+        position = np.zeros((len(beads), n), dtype=np.intp)
         weight, change = np.zeros(position.shape), np.zeros((len(position), n - 1))
         free = np.ones((*position.shape, s), dtype=bool)
         for k, bead in enumerate(beads):
@@ -356,18 +559,21 @@ class TiltSearch:
             step = self.step[position[k, : count - 1]]
             weight[k, :count] = 0.5 * (np.r_[0.0, step] + np.r_[step, 0.0])
             change[k, : count - 1] = self.spread**2 / np.maximum(step, 1e-6)
-            free[k, :count] = allowed[position[k, :count]]
+            free[k, :count] = allowed[position[k, :count] - first]
             if self.closed[bead]:
                 ends = np.arange(s) == fixed[start + anchor[bead]]
                 free[k, 0], free[k, count - 1] = ends, ends
-        best = least_cost_states(
-            states[None] if states.shape[0] == 1 else states[position], free, weight, change
-        )
-        for k, bead in enumerate(beads):
-            count = self.counts[bead]
-            states_[position[k, :count]] = best[k, :count]
-            if self.closed[bead]:
-                states_[self.begin[bead] + count - 1] = states_[self.begin[bead]]
+        return _Chains(position, free, weight, change)
+
+
+class _Chains(NamedTuple):
+    """Chains (b, n) padded to the longest: their points among those searched (any for the pads), which states are free
+    (b, n, s), and weights and changes as of `least_cost_states`."""
+
+    position: Index
+    free: Mask
+    weight: Array
+    change: Array
 
 
 def _near(points: Array, blocked: Mask, closed: bool, reach: float) -> Mask:
