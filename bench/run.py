@@ -58,6 +58,7 @@ BENCHMARKS = (
     "slicing",
     "surface",
     "threads",
+    "walls",
     "whole",
 )
 SMALLEST = "--smallest"

@@ -21,7 +21,7 @@ LAUNCHED = {
     "demo": r"(-o \S+)?",
     "test": r"(--freecad 1\.[01])? ?(--long)? ?[\w/.]*",
     "docs": r"(\S+)?",
-    "bench": r"(--smallest|infill|kinematics|planning|whole)?",
+    "bench": r"(--smallest|infill|kinematics|planning|walls|whole)?",
 }
 
 

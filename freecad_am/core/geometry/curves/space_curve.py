@@ -118,8 +118,13 @@ class SpaceCurve:
         (...) array of int
             Numbers of the arcs; at a node the arc that leaves it.
         """
-        index = np.searchsorted(self.w, self.wrap(w), side="right") - 1
-        arcs: Index = np.clip(index, 0, len(self.span) - 1)
+        return self._arcs(self.wrap(w))
+
+    def _arcs(self, w: Array) -> Index:
+        """The arcs that hold parameters within the range of the nodes."""
+        index = self.w.searchsorted(w, side="right") - 1
+        # np.clip takes many times that for a few
+        arcs: Index = np.minimum(np.maximum(index, 0), len(self.span) - 1)
         return arcs
 
     def wrap(self, w: Array) -> Array:
@@ -137,9 +142,10 @@ class SpaceCurve:
         """
         if not self.closed:
             return w
-        past = np.mod(w - self.w[0], self.period)
+        period = self.period
+        past = np.mod(w - self.w[0], period)
         # a hair below the first node the remainder rounds to the whole period, which is the first node again
-        return np.asarray(self.w[0] + np.where(past < self.period, past, 0.0))
+        return np.asarray(self.w[0] + np.where(past < period, past, 0.0))
 
     def evaluate_arcs(self, arc: Index, t: Array) -> tuple[Array, Array, Array]:
         """Evaluate arcs of the curve.
@@ -187,8 +193,9 @@ class SpaceCurve:
         bend : (n, 3) array
             Second derivatives along w.
         """
-        arc = self.arcs(w)
-        return self.evaluate_arcs(arc, (self.wrap(w) - self.w[arc]) / self.span[arc])
+        w = self.wrap(w)
+        arc = self._arcs(w)
+        return self.evaluate_arcs(arc, (w - self.w[arc]) / self.span[arc])
 
     def interpolation_error(self) -> Array:
         """Estimate the error of each arc against the curve from which the nodes were taken.
@@ -327,8 +334,9 @@ class SpaceCurve:
         """
         shape = w.shape
         result, goal = self.wrap(w).ravel(), points.reshape(-1, 3)
-        low, high = (bound[self.arcs(result)] for bound in self._pieces)
-        farthest = self.period / 50.0
+        arc = self._arcs(result)
+        low, high = (bound[arc] for bound in self._pieces)
+        farthest, least = self.period / 50.0, 1e-13 * self.period
         w, on = result, np.arange(len(result))  # parameters that have not converged
         for _ in range(STEPS):
             foot, slope, bend = self.at(w)
@@ -338,7 +346,7 @@ class SpaceCurve:
             step = dot(gap, slope) / np.maximum(np.abs(curvature), 1e-4 * rate)  # always downhill
             step = np.minimum(np.maximum(step, -farthest), farthest)
             new = np.minimum(np.maximum(w + step, low), high)
-            moving = np.abs(new - w) >= 1e-13 * self.period
+            moving = np.abs(new - w) >= least
             result[on] = w = new
             if not moving.any():
                 break

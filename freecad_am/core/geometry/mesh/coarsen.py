@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -86,34 +87,36 @@ class SmoothMesh:
         feet = points.astype(np.float64, copy=True)
         normals = np.zeros_like(feet)
         busy = np.arange(len(feet))
-        neighbours: Array = np.empty((len(feet), 0))
         for step in range(STEPS):
             if step < 2:  # from far away the first step changes the neighbours
-                nearest = np.asarray(
-                    self._tree.query(feet[busy], k=min(NEIGHBOUR_COUNT, len(self.samples)))[1]
-                )
-                neighbours = nearest.reshape(len(busy), min(NEIGHBOUR_COUNT, len(self.samples)))
+                neighbours = self._neighbours(feet[busy])
             value, slope = self._level(feet[busy], neighbours)
             size = np.maximum((slope * slope).sum(axis=1), 0.04)
-            move = np.clip(value / size, -4.0 * self.reach, 4.0 * self.reach)[:, None] * slope
+            most = 4.0 * self.reach
+            move = np.minimum(np.maximum(value / size, -most), most)[:, None] * slope
             feet[busy] -= move
             normals[busy] = slope
             still = np.abs(move).max(axis=1) < MIN_MOVE_MM
-            if step > 0:
-                busy, neighbours = busy[~still], neighbours[~still]
+            if step == 0 or not still.any():
+                continue
+            busy, neighbours = busy[~still], neighbours.select(~still)
             if not len(busy):
                 break
         return feet, normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
 
-    def _level(self, points: Array, neighbours: Array) -> tuple[Array, Array]:
+    def _neighbours(self, points: Array) -> _Neighbours:
+        """The nearest samples of points (k, 3)."""
+        count = min(NEIGHBOUR_COUNT, len(self.samples))
+        nearest = np.asarray(self._tree.query(points, k=count)[1]).reshape(len(points), count)
+        normals, areas = self._facets
+        return _Neighbours(self.samples[nearest], normals[nearest], areas[nearest])
+
+    def _level(self, points: Array, neighbours: _Neighbours) -> tuple[Array, Array]:
         """Return the approximate heights (k,) of points above the surface and their gradients (k,
         3).
-
-        neighbours: (k, l) samples.
         """
-        normals, areas = self._facets
-        normal, area = normals[neighbours], areas[neighbours]
-        offset = points[:, None] - self.samples[neighbours]
+        samples, normal, area = neighbours
+        offset = points[:, None] - samples
         square = np.einsum("klc,klc->kl", offset, offset)
         reach = np.maximum(self.reach**2, 2.0 * square.min(axis=1))[:, None]
         inner = np.maximum(1.0 - square / reach, 0.0)
@@ -137,6 +140,18 @@ class SmoothMesh:
         )
         slope = 0.5 * (np.einsum("kl,klc->kc", pull * change, offset) + mean + unit)
         return value, slope
+
+
+class _Neighbours(NamedTuple):
+    """Samples near points (k, l, 3), their normals (k, l, 3) and areas (k, l)."""
+
+    sample: Array
+    normal: Array
+    area: Array
+
+    def select(self, rows: Mask) -> _Neighbours:
+        """Return the neighbours of selected points."""
+        return _Neighbours(*(column[rows] for column in self))
 
 
 ROUNDS = 4

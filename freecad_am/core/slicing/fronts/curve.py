@@ -98,10 +98,11 @@ def fit_front(slicing: Slicing, below: list[SpaceCurve], line: Line) -> list[Spa
     nodes = offset.nodes_near(line)
     if nodes is None:
         return []
+    measured: dict[bytes, float] = {}
     for _ in range(ROUNDS):
         nodes = nodes.forward()
         curve = nodes.curve()
-        bad = _bad_arcs(curve, offset.error)
+        bad = _bad_arcs(curve, offset.error, measured)
         if not len(bad):
             return [curve]
         corners = offset.corners(nodes, bad)
@@ -111,9 +112,12 @@ def fit_front(slicing: Slicing, below: list[SpaceCurve], line: Line) -> list[Spa
 
 def fit_to_wall(wall: PatchWall, curve: SpaceCurve) -> SpaceCurve:
     """Add nodes to the curve where its arcs are off the wall between the nodes."""
+    measured: dict[bytes, float] = {}
     for _ in range(ROUNDS):
         bad = _bad_arcs(
-            curve, lambda points: np.linalg.norm(wall.project(points)[0] - points, axis=1)
+            curve,
+            lambda points: np.linalg.norm(wall.project(points)[0] - points, axis=1),
+            measured,
         )
         if not len(bad):
             break
@@ -131,12 +135,22 @@ def fit_to_wall(wall: PatchWall, curve: SpaceCurve) -> SpaceCurve:
     return curve
 
 
-def _bad_arcs(curve: SpaceCurve, off: Callable[[Array], Array]) -> Index:
+def _bad_arcs(
+    curve: SpaceCurve, off: Callable[[Array], Array], measured: dict[bytes, float]
+) -> Index:
     """Return the arcs off by more than TOLERANCE_MM at TEST_SHARES that are not too short to
     cut.
+
+    measured: by how much arcs are off, by their ends; new arcs are added.
     """
-    w = (curve.w[:-1, None] + curve.span[:, None] * TEST_SHARES).ravel()
-    max_error = off(curve.at(w)[0]).reshape(-1, len(TEST_SHARES)).max(axis=1)
+    ends = np.hstack([curve.points[:-1], curve.points[1:], curve.out[:-1], curve.into[1:]])
+    keys = [row.tobytes() for row in ends]
+    new = np.array([k for k, key in enumerate(keys) if key not in measured], dtype=np.intp)
+    if len(new):
+        w = (curve.w[new, None] + curve.span[new, None] * TEST_SHARES).ravel()
+        errors = off(curve.at(w)[0]).reshape(-1, len(TEST_SHARES)).max(axis=1)
+        measured.update((keys[k], error) for k, error in zip(new.tolist(), errors.tolist()))
+    max_error = np.array([measured[key] for key in keys])
     return np.flatnonzero((max_error > TOLERANCE_MM) & (curve.span > 1e-6 * curve.period))
 
 
@@ -340,7 +354,7 @@ class _Offset(NamedTuple):
             slope = foot.away - dot(foot.away, normal)[:, None] * normal
             off = self.height - foot.distance
             if np.abs(off).max(initial=0.0) < 1e-11 * self.height:
-                break
+                return points, normal, foot
             step = (off / np.maximum(dot(slope, slope), 0.05))[:, None] * slope
             if rims is not None:
                 rate = dot(foot.away[[0, -1]], rims)
