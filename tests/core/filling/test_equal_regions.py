@@ -9,9 +9,11 @@ from freecad_am.core.geometry.on_hub import Base
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.layers.plane_field import PlaneLayer
 from freecad_am.core.layers.surface import Slice
+from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.strategies.solids import filling
+from freecad_am.core.strategies.solids import beads, filling
+from freecad_am.core.strategies.solids.beads import BeadMaker, bead_of
 from freecad_am.core.strategies.solids.filling import Pictures
 
 SPACING = 2.0  # mm
@@ -20,8 +22,14 @@ NARROW = SPACING * np.array([[0.0, 0.0], [7.0, 0.0], [7.0, 0.2]])  # with a plac
 PLACES = np.array([[0.0, 0.0], [40.0, 3.0], [-31.7, 55.1], [1000.3, -777.7]])
 
 
+TILTED = np.array(
+    [[1.0, 0.0, 0.0, 3.0], [0.0, 0.6, -0.8, 1.0], [0.0, 0.8, 0.6, 2.0], [0.0, 0.0, 0.0, 1.0]]
+)
+BASE = Base("a plane", Plane(), TILTED)
+
+
 def layer_of(loops, number=0):
-    return Slice(number, Base("a plane", Plane(), np.eye(4)), PlaneLayer(0.0), regions(loops))
+    return Slice(number, BASE, PlaneLayer(0.7 * number), regions(loops))
 
 
 @pytest.fixture
@@ -66,3 +74,21 @@ def test_sparse_patterns_have_fixed_places(fills):
     islands = layer_of([BLOCK + at for at in PLACES])
     Pictures(strategy, ProcessParameters()).filled(islands, "islands")
     assert len(fills) == len(PLACES)
+
+
+@pytest.mark.parametrize("direction", ["counter-clockwise", "alternate"])
+def test_beads_of_equal_layers_are_made_once_and_moved(monkeypatch, direction):
+    """The lowest layer has a class of its own; with directions that alternate there are two kinds of the others."""
+    calls = []
+    monkeypatch.setattr(beads, "bead_of", lambda *given: calls.append(given) or bead_of(*given))
+    strategy = SolidParameters(bead_spacing=SPACING, widths="adaptive")
+    parameters = strategy, BuildDirectionParameters(), ProcessParameters(direction=direction), None
+    pictures, maker = Pictures(strategy, parameters[2]), BeadMaker(*parameters)
+    for number in range(6):
+        layer = layer_of([BLOCK, BLOCK + PLACES[1]], number)
+        curves = pictures.filled(layer, "islands").curves
+        for curve in curves:
+            made, alone = maker.bead_of(curve, layer).bead, bead_of(curve, layer, *parameters)
+            assert np.abs(made.points - alone.bead.points).max() < 1e-12
+            assert made.role == alone.bead.role and (made.speed == alone.bead.speed).all()
+    assert len(calls) == (3 if direction == "alternate" else 2) * len(curves)

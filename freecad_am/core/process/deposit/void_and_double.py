@@ -23,6 +23,7 @@ from ...types import Array, Integers, Mask
 CODE = "VOIDS"
 PIXELS_ACROSS = 16  # of a nominal bead
 MOST_PIXELS = 4e6  # of a layer; larger sections get larger pixels
+KEPT_PICTURES = 4  # of layers, for equal ones
 GRID_MM = 1e-4  # mm; layers whose borders and beads differ by less are equal
 CANDIDATES = 8  # the largest pieces of void or double deposit, one of which has the largest circle
 
@@ -240,9 +241,17 @@ def measure(toolpath: Toolpath, max_void: float) -> Toolpath:
     placed = {number for number, coverage in coverages.items() if coverage.void > max_void} | set(
         worst_layers(coverages)
     )
-    for number in placed:
-        exact = picture(toolpath, number)
+    pictures: dict[bytes, Picture] = {}  # the last few: of equal layers in turn
+    for number in sorted(placed):
+        section = toolpath.layers[number].section
+        assert section is not None
+        key = _key(toolpath.layers[number], section, toolpath)
+        exact = pictures.pop(key, None) or picture(toolpath, number)
         assert exact is not None
+        exact = replace(exact, section=section)
+        pictures[key] = exact
+        if len(pictures) > KEPT_PICTURES:
+            del pictures[next(iter(pictures))]
         coverages[number] = exact.find_places()
     layers = tuple(
         replace(layer, coverage=coverages.get(number))

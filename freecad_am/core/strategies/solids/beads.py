@@ -22,9 +22,9 @@ from ...geometry.curves.plane_curve import (
     steps,
 )
 from ...geometry.frames import TURN
-from ...geometry.on_hub import SolidsOnHub
+from ...geometry.on_hub import Base, SolidsOnHub
 from ...geometry.regions.region import select_significant, simplified
-from ...layers.plane_field import group_of, slabs
+from ...layers.plane_field import PlaneLayer, group_of, slabs
 from ...layers.surface import Slice
 from ...parameters.build_direction import BuildDirectionParameters
 from ...parameters.filled import FilledParameters
@@ -178,6 +178,35 @@ def bead_of(
     return _thinned(
         _set_speed(bead, flat, closed, share, heights, strategy, process, model)
     )._replace(turned=turned)
+
+
+class BeadMaker:
+    """Makes beads of curves by `bead_of`. A curve that comes again in another plane layer has the same bead, moved."""
+
+    def __init__(
+        self,
+        strategy: FilledParameters,
+        build: BuildDirectionParameters,
+        process: ProcessParameters,
+        model: BeadModel | None,
+    ) -> None:
+        self._parameters = strategy, build, process, model
+        self._may_move = strategy.deflection == 0.0
+        self._made: dict[tuple[PlaneCurve, str], tuple[Base, PlaneLayer, MadeBead]] = {}
+
+    def bead_of(self, curve: PlaneCurve, layer: Slice) -> MadeBead:
+        """The bead of a curve of a layer."""
+        surface = layer.surface
+        if not self._may_move or not isinstance(surface, PlaneLayer):
+            return bead_of(curve, layer, *self._parameters)
+        key = curve, classes.fill_bead_class(curve.kind, layer.number)
+        base, plane, made = self._made.get(key, (None, None, None))
+        if base is not layer.base or plane is None or made is None:
+            made = bead_of(curve, layer, *self._parameters)
+            self._made[key] = layer.base, surface, made
+            return made
+        rise = layer.base.rotate_to_part(np.array([[0.0, 0.0, surface.height - plane.height]]))
+        return made._replace(bead=replace(made.bead, points=made.bead.points + rise))
 
 
 def _thinned(dense: MadeBead) -> MadeBead:

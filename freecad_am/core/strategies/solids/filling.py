@@ -39,6 +39,7 @@ Same = TypeVar("Same", bound=FilledParameters)
 TOLERANCE_MM = 1e-6  # mm; regions whose borders are no farther apart are equal
 DEFAULT_WIDTH_MM = ProcessParameters().bead_width  # mm; a width that is other than that was given
 AREA_STEP = 0.01  # mm^2; areas of regions equal within TOLERANCE_MM differ by less
+PLACES = 7  # of moves in mm; the same with other rounding errors are one
 SIZE_STEP = 0.001  # mm; so do widths
 MOST_FED = 1.5  # of the room in a layer; beads that overlap by a third
 USUAL_SPACING = (
@@ -138,6 +139,8 @@ class Pictures:
         self._pictures: defaultdict[tuple[Period | None, _Outline], list[_Picture]] = defaultdict(
             list
         )
+        self._moved: dict[tuple[int, tuple[float, ...]], _Picture] = {}
+        self._turned: dict[PlaneCurve, PlaneCurve] = {}
 
     def filled(self, layer: Slice, name: str) -> Filled:
         """The beads of a layer, with a name for messages; every other curve is reversed if directions of closed ones alternate, or
@@ -173,10 +176,10 @@ class Pictures:
                     alternating
                     and (layer.number + curve.ring if curve.closed else layer.number) % 2
                 ):
-                    curve = curve.reversed()
-                curves.append(
-                    replace(curve, sheet=region.sheet) if isinstance(region, Region) else curve
-                )
+                    curve = self._reversed(curve)
+                if isinstance(region, Region) and curve.sheet != region.sheet:
+                    curve = replace(curve, sheet=region.sheet)
+                curves.append(curve)
             if island:
                 islands.append(sorted(island, key=lambda number: -curves[number].ring))
             gaps += picture.gaps
@@ -189,6 +192,12 @@ class Pictures:
         if unfilled:
             issues = (*issues, _no_infill(layer, unfilled, strategy.fill_density))
         return Filled(curves, issues, islands, total(covers), bare)
+
+    def _reversed(self, curve: PlaneCurve) -> PlaneCurve:
+        """A curve the other way, the same object each time: its bead is made once."""
+        if curve not in self._turned:
+            self._turned[curve] = curve.reversed()
+        return self._turned[curve]
 
     def _issues(
         self, layer: Slice, curves: Sequence[PlaneCurve], gaps: Gaps, filling: _Filling
@@ -284,10 +293,20 @@ class Pictures:
                 elif not may_move:
                     continue
                 if _equal([border + by for border in picture.region.borders()], region.borders()):
-                    return picture.move(by) if by.any() else picture
+                    return self._move(picture, by) if by.any() else picture
         picture = self._fill_region(region, filling, flat)
         self._pictures[period, outline].append(picture)
         return picture
+
+    def _move(self, picture: _Picture, by: Array) -> _Picture:
+        """A picture moved by (2,) mm, the same object for the same place in other layers."""
+        place = (
+            id(picture),
+            tuple(np.round(by, PLACES).tolist()),
+        )  # pictures are kept, so an id is not used again
+        if place not in self._moved:
+            self._moved[place] = picture.move(by)
+        return self._moved[place]
 
     def _fill_region(self, region: Region | Strip, filling: _Filling, flat: bool) -> _Picture:
         """Fill a region; open places are not reported if room is left on purpose. flat: no curve goes round the surface."""

@@ -40,7 +40,7 @@ from ...toolpath import Bead, Checks, Layer, MotionRules, Toolpath
 from ...types import Array, Mask
 from .. import estimated_size
 from ..progress import Progress, silent
-from .beads import MadeBead, bead_of, slab_volumes, twice_volume, volumes
+from .beads import BeadMaker, MadeBead, slab_volumes, twice_volume, volumes
 from .filling import Bare, Pictures, bead_width, over_fed, spaced
 from .notes import notes
 
@@ -272,6 +272,7 @@ def plan(
     )
     width = bead_width(strategy, process, model)
     pictures = Pictures(strategy, process, width)
+    maker = BeadMaker(strategy, build, process, model)
     ranked: list[RankedBead] = []
     made_beads: list[MadeBead] = []
     issues: list[tuple[Stack, Issue]] = []
@@ -308,7 +309,7 @@ def plan(
             )
             beads: list[Bead] = []
             for curve in picture.curves:
-                made_beads.append(bead_of(curve, layer, strategy, build, process, model))
+                made_beads.append(maker.bead_of(curve, layer))
                 beads.append(made_beads[-1].bead)
             if solids.has_plane_layers():
                 ranked += [
