@@ -35,7 +35,7 @@ from .centre import (
     start_curve,
 )
 
-MAX_WEDGE = math.radians(60.0)  # sides of a wedge that opens more belong to a corner
+MAX_WEDGE = math.radians(70.0)  # sides of a wedge that opens more belong to a corner
 GAP_WEDGE = math.radians(120.0)  # the same in a gap between beads
 STEP = 0.5  # of the spacing, between spokes
 RADIUS_TOLERANCE = 0.01  # of the spacing
@@ -44,10 +44,14 @@ SHORTEST_CENTRE = 1.0  # of the spacing; where the axis of a thick place is shor
 FORK_RATIO, FORK = 4.0, 0.5
 SUMMIT = 0.1  # of the spacing; closer summits count as one
 BRIDGE = 0.99  # of the radius at its ends; a stretch that gets narrower ends in a corner
+JUNCTION = 0.5  # of the spacing; summits as near to each other are in one junction
+SHORT_FORK = 1.0  # of the spacing; two beads in a shorter arm of a fork of single ones are one
 SHORT_CHANGE = 2.0  # of the spacing; shorter changes of the number of beads are ignored
 RAMP = 1.5  # of the spacing, along a bead, over which its depth changes with the number of beads
 MOUTH = 0.35  # of the spacing; how far inside a thick place its beads turn before a thin one
 SHARE_TOLERANCE = 0.02  # of the usual width; shares within this of a straight line need no point
+FRONT = 1e-6  # of the room for a pair; a spoke with this difference is where the pair begins
+TIP = 0.5  # of the room between outer beads before a pair begins, given to these from the tip on
 SAME = 1e-9  # of the spacing
 SHORTEST_PIECE = 0.1  # of the spacing; shorter pieces of the axis are ends of branches into corners
 CAP = 0.25  # of the radius of a bead's round end, which has no more volume, kept off the bead it ends on
@@ -173,7 +177,8 @@ class BeadLaw:
 
 class _Transition(NamedTuple):
     """A change of the number of beads. spokes: (m,) on the side with fewer beads; weights: (m,)
-    share of the change there, 0 to 1; low, high: the spokes on either side of the change."""
+    share of the change there, up to 1, and below 0 at the first spoke beyond; low, high: the spokes
+    on either side of the change."""
 
     spokes: Index
     low: int
@@ -198,24 +203,43 @@ class _Thickness(NamedTuple):
         ramped_depths, ramped_shares = depths.copy(), shares.copy()
         total = np.zeros(len(depths))
         for spokes, _, _, weights in self.transitions:
-            np.add.at(total, spokes, weights)
+            np.add.at(total, spokes, np.maximum(weights, 0.0))
         for spokes, low, high, weights in self.transitions:
-            weights = weights / np.maximum(total[spokes], 1.0)
+            weights = np.maximum(weights, 0.0) / np.maximum(total[spokes], 1.0)
             if min(self.counts[low], self.counts[high]) >= 2 * pair + 2:
                 ramped_depths[spokes] += weights * (depths[high] - depths[low])
                 ramped_shares[spokes] += weights * (shares[high] - shares[low])
         return ramped_depths, ramped_shares
 
 
+class _Pair(NamedTuple):
+    """A pair of beads. number: 0 for the outermost; is_there: (n,) spokes with it; is_early: (n,)
+    those of them before a change of the number of beads; depths: (n,) mm of the middles; shares:
+    (n,) of the usual width; room: (n,) mm, half of what outer pairs leave; least: (n,) mm, the
+    least half room for it.
+    """
+
+    number: int
+    is_there: Mask
+    is_early: Mask
+    depths: Array
+    shares: Array
+    room: Array
+    least: Array
+
+    def free(self, radii: Array, spacing: float) -> Array:
+        """Half (n,) of what is left, mm, of half thicknesses (n,) mm."""
+        return radii - self.depths - 0.5 * spacing * self.shares
+
+
 class _Crossing(NamedTuple):
-    """End of a bead between two spokes. middle (2,): on the axis; foot, direction (2,), radius and
-    depth: of an interpolated spoke; share: of the usual width.
+    """End of a bead between two spokes. middle (2,): on the axis; foot, direction (2,) and depth:
+    of an interpolated spoke; share: of the usual width.
     """
 
     middle: Array
     foot: Array
     direction: Array
-    radius: float
     depth: float
     share: float
 
@@ -233,13 +257,14 @@ def adapt_contours(region: Region, beads: Beads, law: BeadLaw) -> list[PlaneCurv
     law : BeadLaw
         Number and widths of beads.
     """
-    curves = _adapt(region, beads, law, MAX_WEDGE, SHORTEST_CENTRE * law.spacing)
+    shortest = SHORTEST_CENTRE * law.spacing
+    curves = _adapt(region, beads, law, MAX_WEDGE, shortest)
     if not curves:
         return []
     least = law.narrowest * law.width
     covered = covered_regions(curves, law.width, beads.chord_error)
     for gap in region.without(covered, wide=least, least_area=least * beads.shortest):
-        middles = _adapt(gap, beads, law, GAP_WEDGE, beads.shortest)
+        middles = _adapt(gap, beads, law, GAP_WEDGE, shortest)
         curves += [replace(curve, kind="closing", ring=0) for curve in middles]
     return curves
 
@@ -262,16 +287,153 @@ def _adapt(
         reach,
     )
     thickness = _thickness(spokes, law, max_wedge, shortest_centre)
+    spokes, thickness, pairs = _pairs(spokes, thickness, law)
     curves: list[PlaneCurve] = []
-    free = spokes.radii - 0.5 * (law.width - law.spacing)  # half the room for a bead in the middle
-    for pair in range(int(thickness.counts.max(initial=0)) // 2):
-        has_pair = thickness.counts >= 2 * pair + 2
-        depths, shares = thickness.depths(law, pair)
-        curves += _rings(spokes, thickness, has_pair, depths, shares, beads, pair, law)
-        innermost = thickness.counts // 2 == pair + 1
-        free = np.where(innermost, spokes.radii - depths - 0.5 * law.spacing * shares, free)
-    curves += _centres(spokes, thickness, law, beads, free)
+    for pair in pairs:
+        curves += _rings(spokes, thickness, pair, beads, law)
+    curves += _centres(spokes, thickness, pairs, law, beads)
     return [start_curve(curve, beads) for curve in long_enough(curves, beads.shortest)]
+
+
+def _pairs(
+    spokes: Spokes, thickness: _Thickness, law: BeadLaw
+) -> tuple[Spokes, _Thickness, list[_Pair]]:
+    """Determine the pairs of beads; add spokes where one begins between two spokes, and count its
+    beads.
+
+    Before a change of the number of beads, outer pairs narrow. The next pair begins where they leave
+    room for it: as wide as the narrowest beads. Until there the outer pair keeps the room, if no
+    bead is in the middle.
+    """
+    pairs: list[_Pair] = []
+    number, numbers = 0, thickness.counts // 2
+    divided = 0  # pairs whose beginnings have spokes
+    while number < int(numbers.max(initial=0)):
+        counts = thickness.counts
+        depths, shares = thickness.depths(law, number)
+        is_there = counts >= 2 * number + 2
+        is_early = np.zeros(len(counts), dtype=bool)
+        room, least = thickness.radii, np.full(len(counts), law.narrowest * law.width)
+        if number > 0:
+            room = pairs[-1].free(thickness.radii, law.spacing)
+            phase = np.where(counts // 2 == number, _phase(thickness, 2 * number + 2), -np.inf)
+            changes = phase > -np.inf
+            after, share = _fronts(
+                spokes.following,
+                changes,
+                ((room / least, 1.0), (room / least, 1.0 - TIP), (phase, 0.0)),
+            )
+            if len(after) and number > divided:
+                divided = number
+                spokes, thickness = _divided(spokes, thickness, after, share)
+                pairs, number, numbers = [], 0, thickness.counts // 2
+                continue
+            is_early = (phase >= -FRONT) & (room >= (1.0 - FRONT) * least)
+            is_kept = changes & (room < (1.0 - FRONT) * least) & (counts % 2 == 0)
+            left = np.maximum(least - (least - room) / TIP, 0.0)
+            pairs[-1] = _widened(pairs[-1], np.where(is_kept, room - left, 0.0), law)
+            shares = np.where(is_early, room / law.spacing, shares)
+            depths = np.where(is_early, thickness.radii - 0.5 * room, depths)
+            is_there |= is_early
+            numbers = np.where(is_early, number + 1, numbers)
+        pairs.append(_Pair(number, is_there, is_early, depths, shares, room, least))
+        number += 1
+    counts = np.where(numbers > thickness.counts // 2, 2 * numbers, thickness.counts)
+    return spokes, thickness._replace(counts=counts), pairs
+
+
+def _fronts(
+    following: Index, is_before: Mask, limits: Sequence[tuple[Array, float]]
+) -> tuple[Index, Array]:
+    """Spokes (k,) after which values (n,) cross a level between two spokes (n,) before a change, and
+    the share (k,) of the way to the following one where they do; none where they do so at a spoke.
+    """
+    first = np.flatnonzero(is_before & is_before[following])
+    after, share = [], []
+    for values, level in limits:
+        start, end = values[first], values[following[first]]
+        is_between = np.minimum(start, end) < level - FRONT
+        is_between &= np.maximum(start, end) > level + FRONT
+        after.append(first[is_between])
+        share.append((level - start[is_between]) / (end - start)[is_between])
+    places, shares = np.concatenate(after), np.concatenate(share)
+    order = np.lexsort((shares, places))
+    return places[order], shares[order]
+
+
+def _divided(
+    spokes: Spokes, thickness: _Thickness, after: Index, share: Array
+) -> tuple[Spokes, _Thickness]:
+    """Spokes, and what they have, with more of them: each at a share (k,) of the way from a spoke
+    `after` (k,), in order, to the one that follows."""
+    ends = spokes.following[after]
+
+    def column(values: Array) -> Array:
+        part = share if values.ndim == 1 else share[:, None]
+        return np.insert(
+            values, after + 1, (1.0 - part) * values[after] + part * values[ends], axis=0
+        )
+
+    places = np.arange(len(spokes.radii))
+    moved = places + np.searchsorted(after, places)
+    following = np.arange(1, len(places) + len(after) + 1)
+    is_last = spokes.following != places + 1
+    following[np.append(moved[1:], len(following))[is_last] - 1] = moved[spokes.following[is_last]]
+    directions = column(spokes.directions)
+    is_jump = np.abs(spokes.opposite[ends] - spokes.opposite[after]) > 1.0
+    opposite, touching = column(spokes.opposite), column(spokes.touching)
+    new = after + 1 + np.arange(len(after))
+    opposite[new[is_jump]] = spokes.opposite[after[is_jump]]
+    touching[new[is_jump]] = spokes.touching[after[is_jump]]
+    transitions = []
+    for members, low, high, weights in thickness.transitions:
+        everywhere = np.zeros(len(places))
+        everywhere[members] = weights
+        is_member = np.zeros(len(places), dtype=bool)
+        is_member[members] = True
+        is_inside = is_member[after] & is_member[ends]
+        transitions.append(
+            _Transition(
+                np.r_[moved[members], new[is_inside]],
+                int(moved[low]),
+                int(moved[high]),
+                np.r_[weights, column(everywhere)[new[is_inside]]],
+            )
+        )
+    return (
+        Spokes(
+            column(spokes.feet),
+            directions / np.hypot(*directions.T)[:, None],
+            column(spokes.radii),
+            following,
+            column(spokes.positions),
+            opposite,
+            touching,
+        ),
+        _Thickness(
+            column(thickness.radii),
+            np.insert(thickness.counts, after + 1, thickness.counts[after]),
+            np.insert(thickness.is_central, after + 1, thickness.is_central[after]),
+            transitions,
+        ),
+    )
+
+
+def _phase(thickness: _Thickness, count: int) -> Array:
+    """Share (n,) of a change to at least `count` beads at spokes with fewer, as in `_Transition`;
+    minus infinity elsewhere."""
+    phase = np.full(len(thickness.counts), -np.inf)
+    for spokes, low, high, weights in thickness.transitions:
+        if thickness.counts[low] < count <= thickness.counts[high]:
+            phase[spokes] = np.maximum(phase[spokes], weights)
+    return phase
+
+
+def _widened(pair: _Pair, added: Array, law: BeadLaw) -> _Pair:
+    """A pair with beads (n,) mm wider, up to the widest."""
+    shares = np.maximum(np.minimum(pair.shares + added / law.spacing, law.widest), pair.shares)
+    depths = pair.depths + 0.5 * law.spacing * (shares - pair.shares)
+    return pair._replace(depths=depths, shares=shares)
 
 
 def _thickness(
@@ -296,7 +458,8 @@ def _thickness(
     even = law.count_beads(deciding, np.ones(len(radii), dtype=bool))
     levelled = _Thickness(deciding, counts, is_central, [])
     _level_short_changes(levelled, even, forks, distance, following, law)
-    _bridge(radii, counts, distance, following, is_central, SHORT_CHANGE * law.spacing)
+    bridges = _bridge(radii, counts, distance, following, is_central, SHORT_CHANGE * law.spacing)
+    _level_junctions(counts, middles, summit, is_central, bridges, JUNCTION * law.spacing)
     follows = ~is_central & is_central[summit]
     counts[follows], deciding[follows] = counts[summit[follows]], deciding[summit[follows]]
     thickness = _Thickness(deciding, counts, is_central, [])
@@ -333,7 +496,7 @@ def _transitions(
                 ahead = arc - arc[k + 1] if falls else arc[k] - arc
                 length_of_few = _stretch_length(counts[members], arc, k if not falls else k + 1)
                 ramp = min(RAMP * law.spacing, 0.5 * length_of_few)
-                near = is_central[members] & (ahead >= 0.0) & (ahead < ramp)
+                near = _reaches(is_central[members], ahead, ramp)
                 ramped, weights = members[near], 1.0 - ahead[near] / max(ramp, 1e-300)
                 corner = np.flatnonzero(~is_central & np.isin(summit, ramped))
                 order = np.argsort(ramped)
@@ -342,6 +505,16 @@ def _transitions(
                     _Transition(np.r_[ramped, corner], low, high, np.r_[weights, weights[source]])
                 )
     return transitions
+
+
+def _reaches(is_central: Mask, ahead: Array, ramp: float) -> Mask:
+    """Mask of the spokes in the reach of a change, `ramp` mm along the axis, and of the first one
+    beyond. ahead: (n,) mm from the change on, negative on its other side."""
+    near = is_central & (ahead >= 0.0) & (ahead < ramp)
+    beyond = is_central & (ahead >= ramp)
+    if near.any() and beyond.any():
+        near[np.flatnonzero(beyond)[np.argmin(ahead[beyond])]] = True
+    return near
 
 
 def _mouth(
@@ -427,6 +600,12 @@ def _level_branch(
             counts[stretch] = min(low, high) if here < low else max(low, high)
         elif here % 2 == 1 and here > 1 and len(stretches) > 1:
             counts[stretch] = even[stretch]
+        elif here == 2 and min(low, high) == 1:
+            longest = max(lengths[max(number - 1, 0) : number + 2])
+            if stretch_length < SHORT_FORK * law.spacing and longest >= SHORT_CHANGE * law.spacing:
+                counts[stretch] = 1
+        elif here == 1 < max(low, high):
+            counts[stretch[thickness.radii[stretch] >= law.narrowest * law.width]] = 2
 
 
 def _share_of_number(thickness: _Thickness, inside: int, outside: int, law: BeadLaw) -> float:
@@ -457,9 +636,10 @@ def _stretch_length(counts: Index, arc: Array, member: int) -> float:
 
 def _bridge(
     radii: Array, counts: Index, distance: Array, following: Index, is_central: Mask, longest: float
-) -> None:
-    """Mark short stretches between two central ones, such as where ribs cross, that do not run into
-    a corner."""
+) -> Index:
+    """Mark and return short stretches between two central ones, such as where ribs cross, that do
+    not run into a corner."""
+    bridges = [np.zeros(0, dtype=np.intp)]
     for cycle in _cycles(following):
         for run in _runs(~is_central[cycle]):
             if len(run) == len(cycle):
@@ -471,6 +651,22 @@ def _bridge(
             if is_short and not is_corner and counts[ends[0]] == counts[ends[1]] < 3:
                 is_central[members] = True
                 counts[members] = counts[ends[0]]
+                bridges.append(members)
+    return np.concatenate(bridges)
+
+
+def _level_junctions(
+    counts: Index, middles: Array, summit: Index, is_central: Mask, bridges: Index, reach: float
+) -> None:
+    """Give corners whose summit is within `reach` mm of a bridge its number of beads, because those
+    have the room there."""
+    corner = np.flatnonzero(~is_central)
+    if not len(bridges) or not len(corner):
+        return
+    tree = cKDTree(middles[bridges])
+    distances, nearest_bridges = tree.query(middles[summit[corner]])
+    near = distances <= reach
+    counts[corner[near]] = counts[bridges[nearest_bridges[near]]]
 
 
 def _forks(spokes: Spokes, distance: Array, spacing: float) -> Mask:
@@ -607,18 +803,11 @@ def _walk_up(values: Array) -> Index:
 
 
 def _rings(
-    spokes: Spokes,
-    thickness: _Thickness,
-    has_pair: Mask,
-    depths: Array,
-    shares: Array,
-    beads: Beads,
-    pair: int,
-    law: BeadLaw,
+    spokes: Spokes, thickness: _Thickness, pair: _Pair, beads: Beads, law: BeadLaw
 ) -> list[PlaneCurve]:
     """Closed beads of a pair: along the border as far as the pair extends, then back on the other
     side."""
-    is_valid = has_pair & (depths <= spokes.radii + SAME * law.spacing)
+    is_valid = pair.is_there & (pair.depths <= spokes.radii + SAME * law.spacing)
     runs: list[tuple[_Crossing | None, Index, _Crossing | None]] = []
     for cycle in _cycles(spokes.following):
         for run in _runs(is_valid[cycle]):
@@ -627,38 +816,35 @@ def _rings(
                 runs.append((None, members, None))
                 continue
             before, after = cycle[run[0] - 1], cycle[(run[-1] + 1) % len(cycle)]
-            entry = _crossing(spokes, thickness, members[0], before, has_pair, depths, shares, law)
-            leave = _crossing(spokes, thickness, members[-1], after, has_pair, depths, shares, law)
+            entry = _crossing(spokes, thickness, members[0], before, pair, law)
+            leave = _crossing(spokes, thickness, members[-1], after, pair, law)
             runs.append((entry, members, leave))
     curves = []
     for chain in _chains([(entry, leave) for entry, _, leave in runs], law.spacing):
         points, chain_shares = _trace(
-            spokes, [runs[number] for number in chain], depths, shares, beads, law
+            spokes, [runs[number] for number in chain], pair.depths, pair.shares, beads, law
         )
         if len(points) > 2:
-            curves.append(PlaneCurve(points, True, "contour", pair, share=chain_shares))
+            curves.append(PlaneCurve(points, True, "contour", pair.number, share=chain_shares))
     return curves
 
 
 def _crossing(
-    spokes: Spokes,
-    thickness: _Thickness,
-    inside: int,
-    outside: int,
-    has_pair: Mask,
-    depths: Array,
-    shares: Array,
-    law: BeadLaw,
+    spokes: Spokes, thickness: _Thickness, inside: int, outside: int, pair: _Pair, law: BeadLaw
 ) -> _Crossing:
     """Point where a bead at the spoke `inside` ends before the spoke `outside`."""
     radii = spokes.radii[[inside, outside]]
-    depth, share = float(depths[inside]), 1.0
-    if has_pair[outside]:
-        room = radii - depths[[inside, outside]]
+    depth, share, wide = float(pair.depths[inside]), 1.0, float(pair.shares[inside])
+    if pair.is_there[outside]:
+        room = radii - pair.depths[[inside, outside]]
         share = room[0] / max(room[0] - room[1], 1e-300)
-        depth += share * float(depths[outside] - depths[inside])
+        depth += share * float(pair.depths[outside] - pair.depths[inside])
     elif thickness.is_central[inside] and thickness.is_central[outside]:
-        share = _share_of_change(thickness, inside, outside, law)
+        share = _share_of_change(thickness, inside, outside, pair, law)
+        if _narrows_away(inside, outside, pair):
+            radius = float((1.0 - share) * radii[0] + share * radii[1])
+            least = float(pair.least[inside])
+            depth, wide = radius - 0.5 * least, least / law.spacing
     else:
         limit = min(depth + MOUTH * law.spacing, radii[0])
         if radii[1] < limit:
@@ -670,11 +856,23 @@ def _crossing(
     middles = spokes.feet[[inside, outside]] + radii[:, None] * places[1]
     middle = (1.0 - share) * middles[0] + share * middles[1]
     radius = float((1.0 - share) * radii[0] + share * radii[1])
-    return _Crossing(middle, foot, direction, radius, min(depth, radius), float(shares[inside]))
+    return _Crossing(middle, foot, direction, min(depth, radius), wide)
 
 
-def _share_of_change(thickness: _Thickness, inside: int, outside: int, law: BeadLaw) -> float:
-    """Share of the way between two spokes of the axis at which the pair of the first ends."""
+def _narrows_away(inside: int, outside: int, pair: _Pair) -> bool:
+    """Whether a pair ends between two spokes because outer pairs leave it too little room."""
+    return bool(pair.room[inside] >= pair.least[inside] > pair.room[outside])
+
+
+def _share_of_change(
+    thickness: _Thickness, inside: int, outside: int, pair: _Pair, law: BeadLaw
+) -> float:
+    """Share of the way between two spokes of the axis at which a pair of the first ends."""
+    if _narrows_away(inside, outside, pair):
+        start, end = float(pair.room[inside]), float(pair.room[outside])
+        return (start - float(pair.least[inside])) / (start - end)
+    if pair.is_early[inside]:
+        return 0.0
     limit = law.least_radius(int(thickness.counts[inside]) // 2 * 2)
     return _share_to_limit(thickness, inside, outside, limit, 1.0)
 
@@ -731,40 +929,56 @@ def _trace(
     law: BeadLaw,
 ) -> tuple[Array, Array | None]:
     """Points (n, 2) of a ring through runs of spokes, and their shares of the width."""
-    parts: list[tuple[Array, Array, Array, Array, Array]] = []
+    parts: list[tuple[Array, Array]] = []
     for entry, members, leave in runs:
-        parts += [_of_crossing(entry)] if entry is not None else []
-        parts.append(
-            (
-                spokes.feet[members],
-                spokes.directions[members],
-                spokes.radii[members],
-                depths[members],
-                shares[members],
-            )
-        )
-        parts += [_of_crossing(leave)] if leave is not None else []
-    feet, directions, radii, depth, share = (np.concatenate(columns) for columns in zip(*parts))
-    points = feet + depth[:, None] * directions
+        feet, directions = spokes.feet[members], spokes.directions[members]
+        depth, share = depths[members], shares[members]
+        for end, at in ((entry, 0), (leave, len(members) + (entry is not None))):
+            if end is not None:
+                feet, directions, depth, share = (
+                    np.insert(values, at, value, axis=0)
+                    for values, value in (
+                        (feet, end.foot),
+                        (directions, end.direction),
+                        (depth, end.depth),
+                        (share, end.share),
+                    )
+                )
+        line = feet + depth[:, None] * directions
+        parts.append((line, share * _obliquity(line, directions, entry is None)))
+    points, share = (np.concatenate(columns) for columns in zip(*parts))
     chord = points - np.roll(points, 1, axis=0)
     is_kept = np.hypot(*chord.T) > 1e-6 * law.spacing
-    feet, directions, radii, depth, share = (
-        column[is_kept] for column in (feet, directions, radii, depth, share)
-    )
-    points = points[is_kept]
+    points, share = points[is_kept], share[is_kept]
     if len(points) < 3:
         return points, None
     return _thinned(points, share, True, beads)
 
 
-def _of_crossing(crossing: _Crossing) -> tuple[Array, Array, Array, Array, Array]:
-    return (
-        crossing.foot[None],
-        crossing.direction[None],
-        np.array([crossing.radius]),
-        np.array([crossing.depth]),
-        np.array([crossing.share]),
-    )
+def _obliquity(points: Array, directions: Array, closed: bool) -> Array:
+    """Width (n,) across a bead at its points (n, 2), as a share of its width along spokes of unit
+    `directions` (n, 2)."""
+    if closed:
+        points = np.vstack([points, points[:1]])
+        directions = np.vstack([directions, directions[:1]])
+    if len(points) < 2:
+        return np.ones(len(points))
+    edge = np.diff(points, axis=0)
+    long = np.hypot(*edge.T)
+    ends = [
+        np.abs(edge[:, 0] * direction[:, 1] - edge[:, 1] * direction[:, 0])
+        for direction in (directions[:-1], directions[1:])
+    ]
+    across, weight = np.zeros(len(points)), np.zeros(len(points))
+    across[:-1] += ends[0]
+    across[1:] += ends[1]
+    weight[:-1] += long
+    weight[1:] += long
+    if closed:
+        across[0] += across[-1]
+        weight[0] += weight[-1]
+        across, weight = across[:-1], weight[:-1]
+    return np.where(weight > 0.0, across / np.maximum(weight, 1e-300), 1.0)
 
 
 def _thinned(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[Array, Array | None]:
@@ -794,13 +1008,16 @@ class _Middle(NamedTuple):
 
 
 def _centres(
-    spokes: Spokes, thickness: _Thickness, law: BeadLaw, beads: Beads, free: Array
+    spokes: Spokes, thickness: _Thickness, pairs: Sequence[_Pair], law: BeadLaw, beads: Beads
 ) -> list[PlaneCurve]:
-    """Beads along the axis where pairs leave room for one. free: half that room (n,), mm."""
+    """Beads along the axis where pairs leave room for one."""
+    free = spokes.radii - 0.5 * (law.width - law.spacing)
+    for pair in pairs:
+        free = np.where(pair.is_there, pair.free(thickness.radii, law.spacing), free)
     width = np.where(thickness.counts == 1, law.width, law.spacing)
     room = np.where(thickness.counts == 1, spokes.radii, free)
     shares = np.minimum(2.0 * room / width, law.widest)
-    pieces, closed = _middle_pieces(spokes, thickness, law, shares)
+    pieces, closed = _middle_pieces(spokes, thickness, pairs, law, shares)
     curves = []
     for points, closed_shares in closed:
         thin_points, thin_shares = _thinned(points, closed_shares, True, beads)
@@ -814,16 +1031,42 @@ def _centres(
 
 
 def _middle_pieces(
-    spokes: Spokes, thickness: _Thickness, law: BeadLaw, shares: Array
+    spokes: Spokes, thickness: _Thickness, pairs: Sequence[_Pair], law: BeadLaw, shares: Array
 ) -> tuple[list[_Middle], list[tuple[Array, Array]]]:
-    """Pieces of the axis with room for a bead: open ones, each from one of its sides, and closed
-    ones."""
+    """Pieces of the axis with room for a bead: open ones, each from the side where it is shorter, and
+    closed ones."""
+    pieces, closed = _pieces_of_side(
+        spokes, thickness, pairs, law, shares, spokes.positions < spokes.opposite
+    )
+    if not pieces:
+        return pieces, closed
+    others, _ = _pieces_of_side(
+        spokes, thickness, pairs, law, shares, spokes.positions > spokes.opposite
+    )
+    ends = np.array([[piece.points[at] for at in (0, -1)] for piece in pieces])
+    for other in others:
+        away = np.hypot(*(ends - other.points[[-1, 0]]).transpose(2, 0, 1)).max(axis=1)
+        number = int(np.argmin(away))
+        shorter = length(pieces[number].points, False) - length(other.points, False)
+        if away[number] < 0.5 * law.spacing and shorter > SAME * law.spacing:
+            pieces[number] = other
+    return pieces, closed
+
+
+def _pieces_of_side(
+    spokes: Spokes,
+    thickness: _Thickness,
+    pairs: Sequence[_Pair],
+    law: BeadLaw,
+    shares: Array,
+    is_side: Mask,
+) -> tuple[list[_Middle], list[tuple[Array, Array]]]:
+    """Pieces of the axis with room for a bead from one side of the axis, with spokes (n,)."""
     following, middles, counts = spokes.following, spokes.middles, thickness.counts
     has_room = thickness.is_central & (shares >= law.narrowest) & (counts > 0)
-    is_first_side = (spokes.positions < spokes.opposite) & ~np.isnan(spokes.opposite)
     pieces, closed = [], []
     for cycle in _cycles(following):
-        for run in _runs((has_room & is_first_side)[cycle]):
+        for run in _runs((has_room & is_side)[cycle]):
             members = cycle[run]
             if len(run) == len(cycle):
                 closed.append((middles[members], shares[members]))
@@ -835,11 +1078,11 @@ def _middle_pieces(
                 (before, members[0], False),
                 (after, members[-1], True),
             ):
-                goes_on = bool(thickness.is_central[neighbour] and is_first_side[neighbour])
+                goes_on = bool(thickness.is_central[neighbour] and is_side[neighbour])
                 has_more = bool(counts[neighbour] // 2 > counts[member] // 2)
                 meets.append(has_more)
                 if goes_on:
-                    share = _share_of_end(thickness, member, neighbour, law, shares)
+                    share = _share_of_end(thickness, member, neighbour, pairs, law, shares)
                     end = middles[member] + share * (middles[neighbour] - middles[member])
                     width = max(float(shares[member]), law.narrowest)
                     if not has_more:
@@ -852,12 +1095,18 @@ def _middle_pieces(
 
 
 def _share_of_end(
-    thickness: _Thickness, inside: int, outside: int, law: BeadLaw, shares: Array
+    thickness: _Thickness,
+    inside: int,
+    outside: int,
+    pairs: Sequence[_Pair],
+    law: BeadLaw,
+    shares: Array,
 ) -> float:
     """Share of the way between two spokes at which a bead in the middle ends: where another pair
     begins, or where it would become too narrow."""
     if thickness.counts[outside] // 2 > thickness.counts[inside] // 2:
-        return 1.0 - _share_of_change(thickness, outside, inside, law)
+        pair = pairs[int(thickness.counts[inside]) // 2]
+        return 1.0 - _share_of_change(thickness, outside, inside, pair, law)
     fall = float(shares[inside] - shares[outside])
     return min(max((float(shares[inside]) - law.narrowest) / max(fall, 1e-300), 0.0), 1.0)
 
@@ -875,11 +1124,13 @@ def _join_middles(
     pairs = cKDTree(ends).query_pairs(reach, output_type="ndarray")
     outward = np.array([_outward(piece.points, at) for piece in joined for at in (0, -1)])
     turn = np.einsum("ni,ni->n", outward[pairs[:, 0]], outward[pairs[:, 1]])
+    begins = np.array([flag for piece in joined for flag in piece.meets])
+    pairs, turn = (values[~begins[pairs].all(axis=1)] for values in (pairs, turn))
     partner = np.full(len(ends), -1)
     for a, b in pairs[np.argsort(turn, kind="stable")].tolist():
         if partner[a] < 0 and partner[b] < 0 and (a // 2 != b // 2):
             partner[a], partner[b] = b, a
-    meets = np.array([flag for piece in joined for flag in piece.meets])
+    meets = begins.copy()
     for a, b in pairs.tolist():
         meets[a] |= partner[a] < 0 and partner[b] >= 0
         meets[b] |= partner[b] < 0 and partner[a] >= 0
@@ -945,15 +1196,21 @@ def _cut_back(piece: _Middle, law: BeadLaw, shortest: float) -> _Middle:
     elsewhere so far that a round end with the volume of the bead touches the border.
     """
     points, shares = piece.points, piece.shares
-    for meets, in_pairs in zip(piece.meets, piece.in_pairs):
-        points, shares = points[::-1], shares[::-1]  # the end in question is the last
-        radius = 0.5 * (law.spacing if in_pairs else law.width) * float(shares[-1])
-        if meets:
-            excess = length(points, False) - 1.01 * shortest
-            back = min(CAP * radius + 0.5 * law.spacing * MEET, max(excess, 0.0))
-            points, shares = shorten_end(points, shares, back)
-        else:
-            reach = radius if in_pairs else ROUND_END * radius
-            end = points[-1] + reach * _outward(points, -1)
-            points, shares = np.vstack([points, end]), np.r_[shares, shares[-1:]]
+    for is_cut in (
+        False,
+        True,
+    ):  # in this order, so that the length does not depend on the direction
+        for meets, in_pairs in zip(piece.meets, piece.in_pairs):
+            points, shares = points[::-1], shares[::-1]  # the end in question is the last
+            if meets != is_cut:
+                continue
+            radius = 0.5 * (law.spacing if in_pairs else law.width) * float(shares[-1])
+            if meets:
+                excess = length(points, False) - 1.01 * shortest
+                back = min(CAP * radius + 0.5 * law.spacing * MEET, max(excess, 0.0))
+                points, shares = shorten_end(points, shares, back)
+            else:
+                reach = radius if in_pairs else ROUND_END * radius
+                end = points[-1] + reach * _outward(points, -1)
+                points, shares = np.vstack([points, end]), np.r_[shares, shares[-1:]]
     return piece._replace(points=points, shares=shares)

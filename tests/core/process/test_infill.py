@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from shapely import geometry, ops
 
+from freecad_am.core.geometry.regions.raster import Raster, Stroke
 from freecad_am.core.geometry.section import Section
 from freecad_am.core.layers.stacking import prepare_stack
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
@@ -125,6 +126,17 @@ def test_the_width_of_a_bead_is_its_volume_by_length_and_layer_height():
     assert coverage(toolpath(layer(*beads), law=law)).void == pytest.approx(0.0, abs=2e-3)
     low = lines(2, 6, 10, width=WIDTH, height=0.75 * HEIGHT)
     assert coverage(toolpath(layer(*low), law=law)).void == pytest.approx(0.25, rel=0.02)
+
+
+@pytest.mark.parametrize("ends", [(6.0, 2.0), (2.0, 6.0), (5.0, 5.0)])
+def test_round_ends_add_no_volume_to_tapering_strokes(ends):
+    """The area of a stroke, by trapezoids, is what it covers."""
+    points = np.stack([np.linspace(0.0, 30.0, 61), np.zeros(61)], axis=1)
+    wide = np.linspace(*ends, 61)
+    stroke = Stroke(points, 0.5 * (wide[1:] + wide[:-1]))
+    raster = Raster.around(points, 6.0, 0.02)
+    covered = np.count_nonzero(raster.counts([stroke])[0]) * raster.pixel**2
+    assert covered == pytest.approx(30.0 * 0.5 * sum(ends), rel=2e-3)
 
 
 def test_the_planned_overlap_of_beads_is_neither_void_nor_double():

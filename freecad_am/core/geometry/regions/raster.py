@@ -7,7 +7,8 @@ deposited volume:
 - A segment is a rectangle as wide as the stroke there.
 - An outer corner is mitred up to a turn of MITRED_TURN_RAD. The wedge outside has the area of the overlap inside, so that
   consecutive segments neither lack nor double material. A sharper corner is round outside, and its overlap counts.
-- The ends of an open stroke are round. Each end moves back by pi / 8 of the width first, so that the round end adds no volume.
+- The ends of an open stroke are round. Each end moves back first, at a constant width by pi / 8 of it, so that the round end
+  adds no volume.
   A stroke shorter than both ends together is a disc.
 
 The raster is turned against the coordinates: no edge of a part or stroke runs along its rows, and errors of pixels average out.
@@ -319,14 +320,15 @@ def _disc_of(stroke: Stroke) -> Array:
 
 
 def _shortened(stroke: Stroke) -> Stroke:
-    """The stroke without the lengths of its round ends."""
+    """The stroke without the lengths of its round ends, each of which has the area of what it replaces."""
     points, widths = stroke
     for _ in range(2):
-        arc = np.r_[0.0, np.cumsum(lengths(points))]
-        by = min(ROUND_END * widths[0], arc[-1] * (1.0 - 1e-9))
-        # a vertex within rounding of the cut goes too: it would leave a segment without a direction
-        segment = int(np.searchsorted(arc, by * (1.0 + 1e-10), side="right")) - 1
-        share = (by - arc[segment]) / (arc[segment + 1] - arc[segment])
+        long = lengths(points)
+        area = np.cumsum(long * widths) - long * widths  # before each segment
+        replaced = np.clip((ROUND_END * widths**2 - area) / (long * widths), 0.0, None)
+        # a segment that goes up to rounding goes as a whole: it would be left without a direction
+        segment = int(np.argmax(np.r_[replaced[:-1] < 1.0 - 1e-9, True]))
+        share = min(float(replaced[segment]), 1.0 - 1e-9)
         start = points[segment] + share * (points[segment + 1] - points[segment])
         points = np.vstack([start, points[segment + 1 :]])[::-1]
         widths = widths[segment:][::-1]
