@@ -236,7 +236,7 @@ def test_what_cannot_follow_the_wire(fin):
     )
     done, *_ = fin("30 mm", robot, ("siemens, motion: cartesian", "fanuc"))
     assert done.status == 2 and done.err.startswith(
-        "error[NO_WIRE_OUTPUT] fin.yaml: process.wire.feed_mode: AO[]"
+        "error[NO_WIRE_OUTPUT] fin.yaml: process.wire.feed_mode: FANUC sets AO[]"
     ), done.err
     done, *_ = fin("30 mm", ("bead_model: csw, ", ""))
     assert done.status == 2 and done.err.startswith(

@@ -300,7 +300,9 @@ def test_offset_layers_have_the_shape_of_what_they_stand_on(planned, workshop):
         np.array([int(row["layer"]) for row in rows]),
     )
     assert layer.max() >= 8
-    assert np.abs(np.linalg.norm(points, axis=1) - 40.0 - 2.0 * layer).max() < 0.25
+    height = np.linalg.norm(points, axis=1) - 40.0
+    # the grid of the distances errs in proportion to the distance from the dome
+    assert (np.abs(height - 2.0 * layer) < 0.05 + 0.0105 * height).all()
     lean = (column(rows, "bx", "by", "bz") * points).sum(axis=1) / np.linalg.norm(points, axis=1)
     assert np.degrees(np.arccos(np.clip(lean, -1.0, 1.0))).max() < 5.0
 

@@ -26,6 +26,7 @@ cell: {limits: paper, platform: [0, 0, 30, 0, 0, 0]}
 joints: {method: constant}
 """
 METHODS = ("smooth", "iso-parameter", "centreline-normal", "constant-distance")
+SEVERAL_FACES = SimpleNamespace(closes_around=False)  # what is asked of such a wall
 
 
 @pytest.fixture
@@ -104,7 +105,7 @@ def test_walls_of_several_faces_say_what_does_not_apply():
     layers = tuple(Layer((Bead(ring, up, up, circle, np.ones(73), True),)) for ring in points)
     toolpath = Toolpath(layers, np.eye(4), 2.0, 0.1, family="surface")
     strategy = SurfaceParameters(layer_height=2.0)
-    found = spacing_comparison.compare(object(), strategy)
+    found = spacing_comparison.compare(SEVERAL_FACES, strategy)
     first, *others = spacing_comparison.rows(found, strategy, toolpath, [np.full(73, 2.0)] * 2)
     assert (first["method"], first["planned"], first["layers"]) == ("constant-distance", True, 3)
     assert [first["min_mm"], first["max_mm"], first["reason"]] == [2.0, 2.0, None]
@@ -113,7 +114,7 @@ def test_walls_of_several_faces_say_what_does_not_apply():
     assert all(row["reason"] and row["layers"] is None and not row["planned"] for row in others)
 
     others = spacing_comparison.compare(
-        object(), SurfaceParameters(layer_height=2.0, method="fronts")
+        SEVERAL_FACES, SurfaceParameters(layer_height=2.0, method="fronts")
     )
     told = {one.method: one.reason for one in others}
     assert (
@@ -142,7 +143,7 @@ def test_corners_of_walls_of_several_faces_are_those_of_their_beads():
     )
     toolpath = Toolpath(layers, np.eye(4), 2.0, 0.1, family="surface")
     strategy = SurfaceParameters(layer_height=2.0)
-    found = spacing_comparison.compare(object(), strategy)
+    found = spacing_comparison.compare(SEVERAL_FACES, strategy)
     first = spacing_comparison.rows(found, strategy, toolpath, [np.full(3, 2.0)] * 2)[0]
     assert first["cornered_layers"] == 2 and first["corner_max_deg"] == pytest.approx(40.0)
 

@@ -15,7 +15,6 @@ import numpy as np
 from ...brep.kernel import limits as kernel
 from ...brep.revolution.wall import find_wall
 from ...brep.shapes import part_depths
-from ...brep.walls.wall_on import named_faces
 from ...core.geometry.curves.profile import RevolvedWall
 from ...core.geometry.formatting import place
 from ...core.geometry.mesh.manifold import find_holes, separate_vertices
@@ -143,6 +142,8 @@ class SelectedPart:
     def is_one_bead_thick(self) -> bool:
         """Whether the faces of the solid, named or else detected, form a wall of one bead."""
         try:
+            from ...brep.walls.wall_on import named_faces  # loads splines
+
             names = tuple(name for name, _ in named_faces(self.shape, self.names, self.label))
             depths = part_depths.face_depths(self.shape, names, self.label, None)
         except (InputError, *kernel.FAULTS):
