@@ -15,7 +15,7 @@ from shapely.geometry import LineString, Point, Polygon, box
 from shapely.geometry.polygon import orient
 from shapely.ops import unary_union
 
-from freecad_am.core.filling.adaptive import BeadLaw, adapt_contours
+from freecad_am.core.filling.adaptive_widths import BeadLaw, adapt_contours
 from freecad_am.core.filling.centre import Beads
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.geometry.regions.spokes import find_spokes

@@ -11,8 +11,8 @@ from scipy.spatial import cKDTree
 
 from freecad_am.core.filling.centre import OVER, Beads
 from freecad_am.core.filling.cover import measure_cover
+from freecad_am.core.filling.even_widths import fit_beads, narrow_beads, share_widths
 from freecad_am.core.filling.fill import fill
-from freecad_am.core.filling.free_width import fit_beads, narrow_beads, share_widths
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.issues import InputError
 from freecad_am.core.parameters.filled import DevelopableParameters

@@ -12,11 +12,11 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from ...filling.adaptive import BeadLaw, adapt_contours
+from ...filling.adaptive_widths import BeadLaw, adapt_contours
 from ...filling.centre import OVER, Beads, PlaneCurve, bare_parts
 from ...filling.cover import Cover, measure_cover, total
+from ...filling.even_widths import fit_beads, narrow_beads, share_widths
 from ...filling.fill import Gaps, fill, open_places
-from ...filling.free_width import fit_beads, narrow_beads, share_widths
 from ...filling.sparse import Infill
 from ...geometry.curves.plane_curve import nearest_among
 from ...geometry.regions.raster import Stroke
