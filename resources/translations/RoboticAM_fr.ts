@@ -9822,11 +9822,6 @@
         <translation>il est à {0} mm hors du plan du fil et de son axe ; dessinez le fil dans un plan qui contient l&apos;axe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>it loads a part where the robot cannot stop</source>
-        <translation>il charge une partie là où le robot ne peut pas s&apos;arrêter</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/catalogue.py"/>
         <source>it may hold only the letters A to Z, digits and underscores</source>
         <translation>il ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
@@ -13270,6 +13265,11 @@
         <location filename="../../freecad_am/read_back/selected.py"/>
         <source>the program calls {0}, which is missing, so its motions and signals are not simulated; add its file, or check it on the controller</source>
         <translation>le programme appelle {0}, qui manque, si bien que ses mouvements et signaux ne sont pas parcourus ; ajoutez son fichier, ou vérifiez-le sur la commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the program does not stop if a part cannot be loaded</source>
+        <translation>le programme ne s&apos;arrête pas si une partie ne peut pas être chargée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>

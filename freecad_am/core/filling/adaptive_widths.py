@@ -112,6 +112,10 @@ class BeadLaw:
         even = 2 + 2 * np.searchsorted(self._limits(pairs, 2), radii, side="right")
         return np.where(in_pairs & (counts > 1), even, counts).astype(np.intp)
 
+    def pair_room(self, pair: int) -> float:
+        """Half the thickness, mm, that a pair of usual beads fills; the outermost, 0, lies at the border."""
+        return 0.5 * (self.width + self.spacing) if pair == 0 else self.spacing
+
     def least_radius(self, count: int) -> float:
         """Smallest half thickness, mm, with room for this number of beads."""
         return float(self._limits(np.array([count - 1]), 1)[0])
@@ -313,7 +317,8 @@ def _pairs(
         depths, shares = thickness.depths(law, number)
         is_there = counts >= 2 * number + 2
         is_early = np.zeros(len(counts), dtype=bool)
-        room, least = thickness.radii, np.full(len(counts), law.narrowest * law.width)
+        usual_room = law.pair_room(number)
+        room, least = thickness.radii, np.full(len(counts), law.narrowest * usual_room)
         if number > 0:
             room = pairs[-1].free(thickness.radii, law.spacing)
             phase = np.where(counts // 2 == number, _phase(thickness, 2 * number + 2), -np.inf)
@@ -332,7 +337,7 @@ def _pairs(
             is_kept = changes & (room < (1.0 - FRONT) * least) & (counts % 2 == 0)
             left = np.maximum(least - (least - room) / TIP, 0.0)
             pairs[-1] = _widened(pairs[-1], np.where(is_kept, room - left, 0.0), law)
-            shares = np.where(is_early, room / law.spacing, shares)
+            shares = np.where(is_early, np.minimum(room / usual_room, law.widest), shares)
             depths = np.where(is_early, thickness.radii - 0.5 * room, depths)
             is_there |= is_early
             numbers = np.where(is_early, number + 1, numbers)
@@ -381,8 +386,13 @@ def _divided(
     following[np.append(moved[1:], len(following))[is_last] - 1] = moved[spokes.following[is_last]]
     directions = column(spokes.directions)
     is_jump = np.abs(spokes.opposite[ends] - spokes.opposite[after]) > 1.0
+    positions = column(spokes.positions)
     opposite, touching = column(spokes.opposite), column(spokes.touching)
     new = after + 1 + np.arange(len(after))
+    is_end = (
+        spokes.positions[ends] < spokes.positions[after]
+    )  # of a border, where positions begin anew
+    positions[new[is_end]] = spokes.positions[after[is_end]]
     opposite[new[is_jump]] = spokes.opposite[after[is_jump]]
     touching[new[is_jump]] = spokes.touching[after[is_jump]]
     transitions = []
@@ -406,7 +416,7 @@ def _divided(
             directions / np.hypot(*directions.T)[:, None],
             column(spokes.radii),
             following,
-            column(spokes.positions),
+            positions,
             opposite,
             touching,
         ),
@@ -588,12 +598,15 @@ def _level_branch(
         for a, b in zip(cuts, cuts[1:])
         if b > a
     ]
+    # all stretches are judged by the counts before, so that both sides of the axis, which are walked
+    # in opposite directions, get the same
+    before = [int(counts[stretch[0]]) for stretch in stretches]
     for number, (stretch, stretch_length) in enumerate(zip(stretches, lengths)):
         if stretch_length >= SHORT_CHANGE * law.spacing:
             continue
-        here = int(counts[stretch[0]])
+        here = before[number]
         low, high = (
-            int(counts[stretches[beside][0]]) if 0 <= beside < len(stretches) else here
+            before[beside] if 0 <= beside < len(stretches) else here
             for beside in (number - 1, number + 1)
         )
         if (here - low) * (here - high) > 0:
@@ -843,8 +856,8 @@ def _crossing(
         share = _share_of_change(thickness, inside, outside, pair, law)
         if _narrows_away(inside, outside, pair):
             radius = float((1.0 - share) * radii[0] + share * radii[1])
-            least = float(pair.least[inside])
-            depth, wide = radius - 0.5 * least, least / law.spacing
+            wide = min(float(pair.least[inside]) / law.pair_room(pair.number), law.widest)
+            depth = radius - 0.5 * law.spacing * wide
     else:
         limit = min(depth + MOUTH * law.spacing, radii[0])
         if radii[1] < limit:
@@ -945,7 +958,8 @@ def _trace(
                     )
                 )
         line = feet + depth[:, None] * directions
-        parts.append((line, share * _obliquity(line, directions, entry is None)))
+        slanted = share * _obliquity(line, directions, entry is None)
+        parts.append((line, np.maximum(slanted, np.minimum(share, law.narrowest))))
     points, share = (np.concatenate(columns) for columns in zip(*parts))
     chord = points - np.roll(points, 1, axis=0)
     is_kept = np.hypot(*chord.T) > 1e-6 * law.spacing

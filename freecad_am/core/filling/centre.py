@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 from ..geometry.curves.plane_curve import (
     arcs,
     cut_at_length,
+    dense,
     divided_by_step,
     doubled_area,
     length,
@@ -589,15 +590,15 @@ def bare_parts(
         return []
     error = max(beads.chord_error, COARSE * beads.inset)
     places = np.vstack([_places(curve, beads.inset) for curve in curves])
-    distance = cKDTree(places).query(np.vstack(region.borders()))[0].max()
-    if distance < 3.0 * beads.inset - error:
-        return []  # a bare piece would reach to a corner of the border that is farther out
+    border_places = np.vstack([dense(border, beads.inset) for border in region.borders()])
+    if cKDTree(places).query(border_places)[0].max() < 3.0 * beads.inset - error:
+        return []  # a bare piece would reach to a place of the border that is farther out
     reached = along(lines, beads.inset, error)
     bare = []
     for piece in region.without(reached, least_area=LEAST_BARE * beads.inset**2):
         if piece.extent <= 2.0 * beads.inset:
             continue
-        border = piece.borders()[0]
+        border = dense(piece.borders()[0], beads.inset)
         out = float(
             np.min([covered_region.nearest(border)[1] for covered_region in reached], axis=0).max()
         )

@@ -569,7 +569,7 @@ def _load(
     """Load a part; the program must stop if that fails, and the robot must not deposit meanwhile."""
     next_statements = [next(statements, (0, ""))[1] for _ in range(3)]
     if not next_statements[0].startswith("popUpMsg(") or next_statements[1:] != ["return", "endIf"]:
-        raise unreadable(where, "it loads a part where the robot cannot stop")
+        raise unreadable(where, "the program does not stop if a part cannot be loaded")
     if run.on or f"{app.folder}/{part_name}" not in run.applications or alias not in app.libraries:
         raise unreadable(
             where,

@@ -247,6 +247,61 @@ def test_thousands_of_random_shapes_are_covered_alike_in_five_poses(thousand):
     assert np.percentile(apart, 95) < 0.01
 
 
+# two plates on a neck, and a plate with a wedge: beads slant across their spokes at the shoulders
+SHOULDERS = {
+    "dovetail": [
+        (0, 0), (20.18, 0), (20.18, 3.45), (62.73, 4.54),
+        (62.73, 17.47), (20.18, 18.56), (20.18, 20.18), (0, 20.18),
+    ],
+    "tang": [
+        (0, 0), (41.26, 0), (41.26, 10.1), (73.99, 9.76),
+        (73.99, 21.64), (41.26, 21.3), (41.26, 41.26), (0, 41.26),
+    ],
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SHOULDERS)
+@pytest.mark.parametrize(("spacing", "narrowest"), [(5.0, 0.3), (3.7, 0.3), (5.0, 0.6)])
+def test_no_bead_is_narrower_or_wider_than_allowed(name, spacing, narrowest):
+    law = BeadLaw(5.0, spacing, narrowest, 1.5)
+    beads = Beads(spacing, 0.2 * spacing, 2.0, chord_error=0.02, width=5.0)
+    curves = adapt_contours(region_of(Polygon(SHOULDERS[name])), beads, law)
+    shares = [curve.share for curve in curves if curve.share is not None]
+    assert shares
+    for share in shares:
+        assert share.min() >= narrowest - 1e-9 and share.max() <= 1.5 + 1e-9
+
+
+def blade(half_angle, radius):
+    """A blade: a wedge to a tip, an arc to a half width of 7 mm, then 50 mm that widen slowly."""
+    angle, slope = math.radians(half_angle), math.atan(0.02)
+    turned = np.linspace(angle, slope, 24)
+    arc = radius * np.stack([-np.sin(turned), np.cos(turned)], axis=1)
+    arc += [0.0, 7.0] - arc[-1]
+    start = arc[0]
+    tip = start - start[1] / math.sin(angle) * np.array([math.cos(angle), math.sin(angle)])
+    end = arc[-1] + 50.0 * np.array([1.0, 0.02])
+    upper = np.vstack([tip, arc, end])
+    return Polygon(np.vstack([upper, upper[:0:-1] * [1.0, -1.0]]))
+
+
+@pytest.mark.parametrize("half_angle", [32.0, 33.0])
+@pytest.mark.parametrize("radius", [8.0, 12.0])
+def test_both_sides_of_a_blade_get_the_same_number_of_beads(half_angle, radius):
+    """Sides of an axis are walked in opposite directions."""
+    law = BeadLaw(5.0, 5.0, 0.3, 1.5)
+    beads = Beads(5.0, 1.0, 2.0, chord_error=0.02)
+    shape = blade(half_angle, radius)
+    curves = adapt_contours(region_of(shape), beads, law)
+    for curve in curves:
+        if curve.closed:
+            assert curve.points[:, 1].min() < 0.0 < curve.points[:, 1].max()
+    mirrored = adapt_contours(
+        region_of(affinity.scale(shape, 1.0, -1.0, origin=(0, 0))), beads, law
+    )
+    assert len(mirrored) == len(curves)
+
+
 def test_spokes_reach_the_medial_axis():
     """The circle about the end of a spoke is empty and touches the border: by distances of shapely."""
     for seed in range(12):

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
+from freecad_am.core.filling.adaptive_widths import BeadLaw, adapt_contours
 from freecad_am.core.filling.centre import Beads, bare_parts
 from freecad_am.core.filling.cover import measure_cover
 from freecad_am.core.filling.fill import fill, open_places
@@ -399,6 +400,18 @@ def test_a_round_island_narrower_than_the_narrowest_bead_is_named():
     assert fill(region, BEADS) == ()
     ((part, _),) = bare_parts(region, (), BEADS)
     assert part.area == region.area
+
+
+def test_a_long_neck_between_plates_that_no_bead_fits_is_named():
+    """Its corners are near the beads of the plates, but the beads do not reach its sides."""
+    thin = 0.5 * BEADS.narrowest * S
+    low, high = 10.0 - 0.5 * thin, 10.0 + 0.5 * thin
+    outline = [(0, 0), (20, 0), (20, low), (60, low), (60, 0), (80, 0)]
+    outline += [(80, 20), (60, 20), (60, high), (20, high), (20, 20), (0, 20)]
+    (region,) = regions([np.array(outline, dtype=float)])
+    curves = adapt_contours(region, BEADS, BeadLaw(S, S, BEADS.narrowest, 1.5))
+    ((neck, _),) = bare_parts(region, curves, BEADS)
+    assert neck.area == pytest.approx(40.0 * thin, rel=0.05)
 
 
 def test_equal_sections_get_equal_beads_wherever_a_mesh_has_points_on_their_edges():

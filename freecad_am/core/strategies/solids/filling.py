@@ -380,7 +380,8 @@ def _fault(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> float:
     """Share of a region that beads miss, deposit twice or deposit beside it, as reports measure it."""
     section = Section(np.eye(4), tuple(region.borders()), beads.spacing, narrowest=beads.narrowest)
     width = 2.0 * beads.inset
-    picture = draw(section, [_stroke(curve, width) for curve in curves], width)
+    strokes = [_stroke(curve, width) for curve in curves]
+    picture = draw(section, [stroke for stroke in strokes if len(stroke.widths)], width)
     if picture is None:
         return 0.0
     return picture.coverage.void + picture.coverage.over + picture.coverage.outside
