@@ -242,7 +242,7 @@ def test_random_programs_come_back(random_application, seed, motion, setup):
     ("call layer_0001()", "call start()", "hand", "calls itself"),
     ("call gripper:open()", "call other:open()", "hand/start.pgx line 8", "other is not a library"),
     ("call gripper:open()", "call prog:open()", "hand/start.pgx line 8", "called before it is loaded"),
-    ("call gripper:open()", 'if prog:libLoad("./two")!=0', "hand/start.pgx line 8", "the robot cannot stop"),
+    ("call gripper:open()", 'if prog:libLoad("./two")!=0', "hand/start.pgx line 8", "does not stop if a part cannot be loaded"),
     ("call gripper:open()", 'if prog:libLoad("./two")!=0\npopUpMsg("")\nreturn\nendIf', "hand/start.pgx line 8",
      "is missing"),
     ("doExtrude=false", "diReady=false", "hand/start.pgx line 6", "not a digital output"),
