@@ -3,6 +3,7 @@
 
 import ast
 import gc
+import inspect
 import math
 import re
 import sys
@@ -18,9 +19,13 @@ from freecad_am.core.issues import AmError, Issue, Text
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.parameters.process import ProcessParameters
 from freecad_am.core.parameters.strategy import RevolutionParameters
+from freecad_am.core.preflight.promise import Promise
 from freecad_am.gui.in_language import as_in_panels, in_language, names_first
+from freecad_am.objects.families.recognition import Proposal, Refusal
 from freecad_am.objects.results.findings import message_of
 from freecad_am.objects.work import progress
+from freecad_am.plots.chart import Chart, Curve, Quantity
+from freecad_am.plots.pictures import Entry
 
 ROOT = Path(__file__).resolve().parent.parent
 FOLDER = ROOT / "resources" / "translations"
@@ -28,6 +33,7 @@ sys.path.insert(0, str(FOLDER))
 
 import collect  # noqa: E402
 import ts_file  # noqa: E402
+from templates import MAKERS  # noqa: E402
 
 UPDATE = "run resources/translations/collect.py, translate what it lists in RoboticAM_fr.ts, and run it with --release"
 NO_BREAK = "\u00a0"
@@ -64,6 +70,24 @@ def test_all_texts_are_collected(collected, french):
         assert now == shipped, (
             f"{context}: new {sorted(now - shipped)}, gone {sorted(shipped - now)}; {UPDATE}"
         )
+
+
+@pytest.mark.parametrize(
+    ("made", "shown"),
+    [
+        (Proposal, {"reason"}),
+        (Refusal, {"remark"}),
+        (Promise, {"promise", "how"}),
+        (Entry, {"title"}),
+        (Chart, {"title"}),
+        (Curve, {"name"}),
+        (Quantity, {"name"}),
+    ],
+)
+def test_texts_of_records_are_collected_from_the_fields_that_are_shown(made, shown):
+    """The collector knows them by position: a field put before them would lose their French."""
+    names = list(inspect.signature(made).parameters)
+    assert {names[position] for position in MAKERS[made.__name__]} == shown
 
 
 def test_texts_that_are_whole_where_they_are_made_are_there(french):
