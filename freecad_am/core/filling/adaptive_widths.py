@@ -6,7 +6,7 @@ Contour-Parallel Toolpaths in Fused Deposition Modeling", Computer-Aided Design 
 thickness at each point of the medial axis determines the number of beads across and their widths.
 Where a branch of the axis runs into a corner, the corner takes over the beads of the thicker part.
 Where the paper uses trapezoids between the border and a Voronoi diagram, this module assigns bead
-numbers and widths to spokes.
+counts and widths to spokes, the segments from the border to the medial axis.
 """
 
 from __future__ import annotations
@@ -35,40 +35,48 @@ from .centre import (
     start_curve,
 )
 
-MAX_WEDGE = math.radians(70.0)  # sides of a wedge that opens more belong to a corner
-GAP_WEDGE = math.radians(120.0)  # the same in a gap between beads
-STEP = 0.5  # of the spacing, between spokes
-RADIUS_TOLERANCE = 0.01  # of the spacing
-SHORTEST_CENTRE = 1.0  # of the spacing; where the axis of a thick place is shorter, pairs fill it
-# a fork is a jump of more than FORK_RATIO times the distance along the axis and FORK of the spacing
+MAX_WEDGE = math.radians(70.0)  # opening angle of a wedge; the sides of a wider wedge form a corner
+GAP_WEDGE = math.radians(120.0)  # opening angle limit of wedges in a gap between beads
+STEP = 0.5  # in spacings; distance between spokes
+RADIUS_TOLERANCE = 0.01  # in spacings; tolerance of the radii of spokes
+# in spacings; minimum length of the axis in a thick part for a centreline bead, otherwise pairs
+# fill it
+SHORTEST_CENTRE = 1.0
+# minimum jump of the touching point at a fork: FORK_RATIO times the distance along the axis plus
+# FORK spacings
 FORK_RATIO, FORK = 4.0, 0.5
-SUMMIT = 0.1  # of the spacing; closer summits count as one
-BRIDGE = 0.99  # of the radius at its ends; a stretch that gets narrower ends in a corner
-JUNCTION = 0.5  # of the spacing; summits as near to each other are in one junction
-SHORT_FORK = 1.0  # of the spacing; two beads in a shorter arm of a fork of single ones are one
-SHORT_CHANGE = 2.0  # of the spacing; shorter changes of the number of beads are ignored
-RAMP = 1.5  # of the spacing, along a bead, over which its depth changes with the number of beads
-MOUTH = 0.35  # of the spacing; how far inside a thick place its beads turn before a thin one
-SHARE_TOLERANCE = 0.02  # of the usual width; shares within this of a straight line need no point
-FRONT = 1e-6  # of the room for a pair; a spoke with this difference is where the pair begins
-TIP = 0.5  # of the room between outer beads before a pair begins, given to these from the tip on
-SAME = 1e-9  # of the spacing
-SHORTEST_PIECE = 0.1  # of the spacing; shorter pieces of the axis are ends of branches into corners
-CAP = 0.25  # of the radius of a bead's round end, which has no more volume, kept off the bead it ends on
-MEET = 0.8  # of the usual width; approximate width of beads on which others end
-JOINT = 1.3  # steps; closer ends of middle beads are joined
+SUMMIT = 0.1  # in spacings; closer summits are merged
+BRIDGE = 0.99  # fraction of the radius at the ends; a stretch that narrows more ends in a corner
+JUNCTION = 0.5  # in spacings; summits this close to a bridge belong to its junction
+# in spacings; a shorter arm with two beads gets one bead if a neighbouring arm has one
+SHORT_FORK = 1.0
+SHORT_CHANGE = 2.0  # in spacings; shorter changes of the bead count are ignored
+RAMP = 1.5  # in spacings; length along a bead over which a change of the bead count takes effect
+MOUTH = 0.35  # in spacings; distance by which beads of a thick part turn back before a thin part
+SHARE_TOLERANCE = 0.02  # tolerance of bead shares in the linear interpolation between points
+FRONT = 1e-6  # relative tolerance of the space at which a pair begins
+# fraction of the minimum space of a pair; range of space before the pair begins over which the
+# outer beads return to their own width
+TIP = 0.5
+SAME = 1e-9  # in spacings; tolerance of equal lengths
+SHORTEST_PIECE = 0.1  # in spacings; shorter pieces of the axis are ends of branches into corners
+# fraction of the end radius; clearance between a round end, which has no extra volume, and the bead
+# at which it ends
+CAP = 0.25
+MEET = 0.8  # in spacings; approximate width of beads at which other beads end
+JOINT = 1.3  # in steps between spokes; closer ends of centreline beads are joined
 
 
 @dataclass(frozen=True)
 class BeadLaw:
-    """How many beads lie side by side in a place, and how wide they are.
+    """Bead count and bead widths as a function of thickness.
 
     Parameters
     ----------
     width, spacing : float
-        mm, of usual beads: width of one, distance between two.
+        Width and spacing of beads of nominal width, mm.
     narrowest, widest : float
-        Least and greatest share of the usual width.
+        Minimum and maximum bead share.
     """
 
     width: float
@@ -77,34 +85,34 @@ class BeadLaw:
     widest: float
 
     def usual_radius(self, counts: Array | Index | int) -> Array:
-        """Return half the thickness that a number of usual beads fills.
+        """Return half the thickness that beads of nominal width fill.
 
         Parameters
         ----------
         counts : (n,) array of int or int
-            Numbers of beads across.
+            Bead counts across the thickness.
 
         Returns
         -------
         (n,) array
-            mm.
+            Half thicknesses, mm.
         """
         return np.asarray(0.5 * (self.width + (np.asarray(counts) - 1.0) * self.spacing))
 
     def count_beads(self, radii: Array, in_pairs: Mask) -> Index:
-        """Return the number of beads across places.
+        """Return the bead counts for given thicknesses.
 
         Parameters
         ----------
         radii : (n,) array
-            Half the thickness of each place, mm.
+            Half thicknesses, mm.
         in_pairs : (n,) array of bool
-            Places without room for a single bead along the middle.
+            Whether a bead along the centreline is excluded.
 
         Returns
         -------
         (n,) array of int
-            Numbers; even in pairs, and 0 where not even the narrowest bead fits.
+            Bead counts; even if `in_pairs` is set, 0 where not even the narrowest bead fits.
         """
         highest = int(np.max(radii, initial=0.0) / (0.5 * self.spacing)) + 3
         counts = np.searchsorted(self._limits(np.arange(highest), 1), radii, side="right")
@@ -113,15 +121,15 @@ class BeadLaw:
         return np.where(in_pairs & (counts > 1), even, counts).astype(np.intp)
 
     def pair_room(self, pair: int) -> float:
-        """Half the thickness, mm, that a pair of usual beads fills; the outermost, 0, lies at the border."""
+        """Return half the thickness, mm, that a pair of beads of nominal width fills; pair 0 is outermost."""
         return 0.5 * (self.width + self.spacing) if pair == 0 else self.spacing
 
     def least_radius(self, count: int) -> float:
-        """Smallest half thickness, mm, with room for this number of beads."""
+        """Return the minimum half thickness, mm, for a bead count."""
         return float(self._limits(np.array([count - 1]), 1)[0])
 
     def _limits(self, counts: Index, step: int) -> Array:
-        """Half the thickness (n,), mm, at which the number of beads rises from `counts` by `step`."""
+        """Return the half thicknesses (n,), mm, at which bead counts rise from `counts` by `step`."""
         few, many = self.usual_radius(counts), self.usual_radius(counts + step)
         limits = np.where(counts <= 4, np.sqrt(np.maximum(few, 0.0) * many), 0.5 * (few + many))
         limits = np.minimum(limits, self._radius_at(counts, self.widest))
@@ -132,19 +140,20 @@ class BeadLaw:
         )
 
     def _radius_at(self, counts: Index, share: float) -> Array:
-        """Half the thickness (n,), mm, that beads fill if the inner ones have this share of the
-        usual width."""
+        """Return the half thicknesses (n,), mm, filled if `share` is the bead share of inner beads."""
         usual = self.usual_radius(counts)
         return usual + (share - 1.0) * self._variable_radius(counts)
 
     def _variable_radius(self, counts: Index) -> Array:
-        """Part of half the thickness (n,), mm, that beads of variable width fill: the whole of it
-        with up to five beads, otherwise the inner four or five beads."""
+        """Return the part of the half thicknesses (n,), mm, that beads of variable width fill.
+
+        With up to five beads all widths vary; otherwise only those of the inner four or five beads.
+        """
         inner = np.where(np.asarray(counts) % 2 == 0, 2.0, 2.5) * self.spacing
         return np.where(np.asarray(counts) <= 5, self.usual_radius(counts), inner)
 
     def shares(self, counts: Index, radii: Array) -> Array:
-        """Widths of the inner beads as shares (n,) of the usual width."""
+        """Return the bead shares (n,) of the inner beads."""
         room = np.maximum(self._variable_radius(counts), SAME)
         share = 1.0 + (radii - self.usual_radius(counts)) / room
         return np.asarray(np.clip(share, self.narrowest, self.widest))
@@ -155,34 +164,37 @@ class BeadLaw:
         Parameters
         ----------
         pair : int
-            Number of the pair, 0 for the outermost.
+            Index of the pair, 0 for the outermost.
         counts : (n,) array of int
-            Numbers of beads across.
+            Bead counts.
         radii : (n,) array
-            Half the thickness of each place, mm.
+            Half thicknesses, mm.
 
         Returns
         -------
         depths : (n,) array
-            Distances of the middles of the beads from the border, mm.
+            Distances of the bead centrelines from the border, mm.
         shares : (n,) array
-            Widths as shares of the usual width.
+            Bead shares.
         """
         share = self.shares(counts, radii)
         usual_pairs = np.where(counts <= 5, 0, counts // 2 - 2)
         outermost = np.where(usual_pairs > 0, 1.0, share)
-        variable = np.maximum(pair - usual_pairs, 0)  # beads of variable width before this
+        variable = np.maximum(pair - usual_pairs, 0)  # beads of variable width outside this pair
         depth = 0.5 * self.width * outermost + self.spacing * (pair - variable + share * variable)
-        # one of two neighbours is usual, so that half a spacing between them is too
+        # at the boundary one neighbour has nominal width; its half of the spacing does not vary
         between = (pair >= usual_pairs) & (usual_pairs > 0)
         depth += np.where(between, 0.5 * self.spacing * (share - 1.0), 0.0)
         return depth, np.where(pair < usual_pairs, 1.0, share)
 
 
 class _Transition(NamedTuple):
-    """A change of the number of beads. spokes: (m,) on the side with fewer beads; weights: (m,)
-    share of the change there, up to 1, and below 0 at the first spoke beyond; low, high: the spokes
-    on either side of the change."""
+    """Change of the bead count along the axis.
+
+    spokes: (m,) spokes at which depths and widths change gradually. low, high: spokes on either
+    side of the change. weights: (m,) fraction of the change from `low` to `high` at each spoke, up
+    to 1; at most 0 at the first spoke beyond the ramp.
+    """
 
     spokes: Index
     low: int
@@ -191,9 +203,11 @@ class _Transition(NamedTuple):
 
 
 class _Thickness(NamedTuple):
-    """Thickness and beads at each spoke. radii: (n,) mm, half the deciding thickness; counts: (n,)
-    beads across; is_central: (n,) whether the axis there runs between two sides; transitions:
-    changes of the number of beads.
+    """Thickness and bead count at each spoke.
+
+    radii: (n,) half the thickness that determines the bead count, mm. counts: (n,) bead counts.
+    is_central: (n,) whether the axis runs between two sides there. transitions: changes of the bead
+    count.
     """
 
     radii: Array
@@ -202,7 +216,7 @@ class _Thickness(NamedTuple):
     transitions: list[_Transition]
 
     def depths(self, law: BeadLaw, pair: int) -> tuple[Array, Array]:
-        """`BeadLaw.depths` of all spokes (n,), with jumps at changes of the number smoothed."""
+        """Return `BeadLaw.depths` of all spokes (n,), smoothed at changes of the bead count."""
         depths, shares = law.depths(pair, self.counts, self.radii)
         ramped_depths, ramped_shares = depths.copy(), shares.copy()
         total = np.zeros(len(depths))
@@ -217,10 +231,12 @@ class _Thickness(NamedTuple):
 
 
 class _Pair(NamedTuple):
-    """A pair of beads. number: 0 for the outermost; is_there: (n,) spokes with it; is_early: (n,)
-    those of them before a change of the number of beads; depths: (n,) mm of the middles; shares:
-    (n,) of the usual width; room: (n,) mm, half of what outer pairs leave; least: (n,) mm, the
-    least half room for it.
+    """Pair of beads.
+
+    number: index, 0 for the outermost. is_there: (n,) spokes at which the pair exists. is_early:
+    (n,) spokes at which the pair exists before the bead count changes. depths: (n,) depths of the
+    centrelines, mm. shares: (n,) bead shares. room: (n,) half the space that outer pairs leave, mm.
+    least: (n,) minimum half space for the pair, mm.
     """
 
     number: int
@@ -232,13 +248,15 @@ class _Pair(NamedTuple):
     least: Array
 
     def free(self, radii: Array, spacing: float) -> Array:
-        """Half (n,) of what is left, mm, of half thicknesses (n,) mm."""
+        """Return half the space (n,), mm, inside this pair for half thicknesses (n,), mm."""
         return radii - self.depths - 0.5 * spacing * self.shares
 
 
 class _Crossing(NamedTuple):
-    """End of a bead between two spokes. middle (2,): on the axis; foot, direction (2,) and depth:
-    of an interpolated spoke; share: of the usual width.
+    """End of a bead between two spokes.
+
+    middle: (2,) point on the axis, mm. foot, direction: (2,) of the interpolated spoke. depth: of
+    the bead along this spoke, mm. share: bead share.
     """
 
     middle: Array
@@ -249,17 +267,21 @@ class _Crossing(NamedTuple):
 
 
 def adapt_contours(region: Region, beads: Beads, law: BeadLaw) -> list[PlaneCurve]:
-    """Fill a region with contours, with beads along its middle, and with beads in the remaining
-    gaps.
+    """Fill a region with contours, centreline beads, and beads in the remaining gaps.
 
     Parameters
     ----------
     region : Region
         Plane region, mm.
     beads : Beads
-        Options; spacing and width are the law's.
+        Options; spacing and width are taken from `law`.
     law : BeadLaw
-        Number and widths of beads.
+        Bead count and bead widths.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Beads with bead shares; empty if no bead fits.
     """
     shortest = SHORTEST_CENTRE * law.spacing
     curves = _adapt(region, beads, law, MAX_WEDGE, shortest)
@@ -276,10 +298,10 @@ def adapt_contours(region: Region, beads: Beads, law: BeadLaw) -> list[PlaneCurv
 def _adapt(
     region: Region, beads: Beads, law: BeadLaw, max_wedge: float, shortest_centre: float
 ) -> list[PlaneCurve]:
-    """Fill a region with contours, and with beads along its middle.
+    """Fill a region with contours and centreline beads.
 
-    max_wedge: rad; sides of a wedge that opens more belong to a corner. shortest_centre: mm; a
-    shorter stretch of the axis gets no bead of its own.
+    max_wedge: opening angle of a wedge, rad; the sides of a wider wedge form a corner.
+    shortest_centre: minimum length of the axis for a centreline bead, mm.
     """
     reach = 2.0 * float(np.hypot(*(region.borders()[0] - region.middle).T).max())
     turn = 2.0 * math.acos(max(1.0 - beads.chord_error / max(reach, beads.chord_error), 0.0))
@@ -302,16 +324,15 @@ def _adapt(
 def _pairs(
     spokes: Spokes, thickness: _Thickness, law: BeadLaw
 ) -> tuple[Spokes, _Thickness, list[_Pair]]:
-    """Determine the pairs of beads; add spokes where one begins between two spokes, and count its
-    beads.
+    """Determine the pairs of beads, add spokes where pairs begin, and update the bead counts.
 
-    Before a change of the number of beads, outer pairs narrow. The next pair begins where they leave
-    room for it: as wide as the narrowest beads. Until there the outer pair keeps the room, if no
-    bead is in the middle.
+    Before the bead count changes, outer pairs become narrower. The next pair begins where they
+    leave enough space for two beads of minimum width. Up to this point the outer pair fills the
+    space, unless there is a centreline bead.
     """
     pairs: list[_Pair] = []
     number, numbers = 0, thickness.counts // 2
-    divided = 0  # pairs whose beginnings have spokes
+    divided = 0  # index of the last pair with spokes at its starts
     while number < int(numbers.max(initial=0)):
         counts = thickness.counts
         depths, shares = thickness.depths(law, number)
@@ -350,8 +371,11 @@ def _pairs(
 def _fronts(
     following: Index, is_before: Mask, limits: Sequence[tuple[Array, float]]
 ) -> tuple[Index, Array]:
-    """Spokes (k,) after which values (n,) cross a level between two spokes (n,) before a change, and
-    the share (k,) of the way to the following one where they do; none where they do so at a spoke.
+    """Find where values (n,) cross a level between two spokes before a change of the bead count.
+
+    limits: pairs of values and level. is_before: (n,) spokes before a change. Returns the spokes
+    (k,) before the crossings and the positions (k,) of the crossings as fractions of the distance
+    to the following spoke. Crossings at a spoke do not count.
     """
     first = np.flatnonzero(is_before & is_before[following])
     after, share = [], []
@@ -369,8 +393,11 @@ def _fronts(
 def _divided(
     spokes: Spokes, thickness: _Thickness, after: Index, share: Array
 ) -> tuple[Spokes, _Thickness]:
-    """Spokes, and what they have, with more of them: each at a share (k,) of the way from a spoke
-    `after` (k,), in order, to the one that follows."""
+    """Insert interpolated spokes, with their thickness and bead counts.
+
+    after: (k,) spokes, ascending, after which a spoke is inserted. share: (k,) position of the new
+    spoke as a fraction of the distance to the following spoke.
+    """
     ends = spokes.following[after]
 
     def column(values: Array) -> Array:
@@ -391,7 +418,7 @@ def _divided(
     new = after + 1 + np.arange(len(after))
     is_end = (
         spokes.positions[ends] < spokes.positions[after]
-    )  # of a border, where positions begin anew
+    )  # positions begin anew at the start of a border
     positions[new[is_end]] = spokes.positions[after[is_end]]
     opposite[new[is_jump]] = spokes.opposite[after[is_jump]]
     touching[new[is_jump]] = spokes.touching[after[is_jump]]
@@ -430,8 +457,10 @@ def _divided(
 
 
 def _phase(thickness: _Thickness, count: int) -> Array:
-    """Share (n,) of a change to at least `count` beads at spokes with fewer, as in `_Transition`;
-    minus infinity elsewhere."""
+    """Return the weight (n,) of changes to at least `count` beads, as in `_Transition`.
+
+    The weight is minus infinity at spokes outside such changes.
+    """
     phase = np.full(len(thickness.counts), -np.inf)
     for spokes, low, high, weights in thickness.transitions:
         if thickness.counts[low] < count <= thickness.counts[high]:
@@ -440,7 +469,7 @@ def _phase(thickness: _Thickness, count: int) -> Array:
 
 
 def _widened(pair: _Pair, added: Array, law: BeadLaw) -> _Pair:
-    """A pair with beads (n,) mm wider, up to the widest."""
+    """Widen the beads of a pair by `added` (n,) mm, up to the maximum width."""
     shares = np.maximum(np.minimum(pair.shares + added / law.spacing, law.widest), pair.shares)
     depths = pair.depths + 0.5 * law.spacing * (shares - pair.shares)
     return pair._replace(depths=depths, shares=shares)
@@ -449,7 +478,7 @@ def _widened(pair: _Pair, added: Array, law: BeadLaw) -> _Pair:
 def _thickness(
     spokes: Spokes, law: BeadLaw, max_wedge: float, shortest_centre: float
 ) -> _Thickness:
-    """Determine the thickness at each spoke; corners take over that of the part they belong to."""
+    """Determine the thickness at each spoke; corners take the thickness of the part they adjoin."""
     radii, following = spokes.radii, spokes.following
     middles = spokes.middles
     rise = radii[following] - radii
@@ -479,10 +508,11 @@ def _thickness(
 def _transitions(
     spokes: Spokes, thickness: _Thickness, distance: Array, summit: Index, law: BeadLaw
 ) -> list[_Transition]:
-    """Changes of the number of beads, and of their widths where a thin part opens into a thick
-    place: each extends over `RAMP` of the axis on the side with fewer beads, and into the corners
-    that belong to it; where the thin part has less room than the beads of the thick place take, as
-    far into the mouth as this is so.
+    """Find changes of the bead count, and of the width where a thin part opens into a thick part.
+
+    A change extends over `RAMP` along the axis on the side with fewer beads, and into the corners
+    that belong to this side. If the thin part has less space than the beads of the thick part need,
+    the change extends into the mouth instead, see `_mouth`.
     """
     counts, deciding, is_central = thickness.counts, thickness.radii, thickness.is_central
     transitions = []
@@ -518,8 +548,10 @@ def _transitions(
 
 
 def _reaches(is_central: Mask, ahead: Array, ramp: float) -> Mask:
-    """Mask of the spokes in the reach of a change, `ramp` mm along the axis, and of the first one
-    beyond. ahead: (n,) mm from the change on, negative on its other side."""
+    """Return a mask of the spokes within `ramp` mm of a change along the axis, plus the next spoke.
+
+    ahead: (n,) distances from the change, mm, negative on the side with more beads.
+    """
     near = is_central & (ahead >= 0.0) & (ahead < ramp)
     beyond = is_central & (ahead >= ramp)
     if near.any() and beyond.any():
@@ -536,11 +568,14 @@ def _mouth(
     step: int,
     law: BeadLaw,
 ) -> _Transition | None:
-    """The change from a thin part to a thick place along the spokes of its mouth, which are longer
-    from one to the next: beads of the thin part widen until they are as wide as those of the thick
-    place. None if the thin part has room for beads as wide as those.
+    """Return the change from a thin to a thick part along the spokes of the mouth.
 
-    low, high: the adjacent spokes of both; step: 1 if `high` follows `low`, else -1.
+    The spokes of the mouth get longer towards the thick part. Along the mouth, beads of the thin
+    part widen to the width of the beads of the thick part. Returns None if the thin part has enough
+    space for that width.
+
+    low, high: adjacent spokes of the thin and the thick part. step: 1 if `high` follows `low`, else
+    -1.
     """
     pairs = int(thickness.counts[low]) // 2
     if not pairs or pairs > int(thickness.counts[high]) // 2:
@@ -570,8 +605,10 @@ def _level_short_changes(
     following: Index,
     law: BeadLaw,
 ) -> None:
-    """Remove short changes from the counts: a number of beads that holds for a short stretch of the
-    axis takes that of its neighbours; an odd number between others takes that of `even`.
+    """Remove short changes of the bead count, in place.
+
+    A short stretch of the axis takes the bead count of its neighbours. An odd count between a lower
+    and a higher count is replaced by the count in `even`.
     """
     for cycle in _cycles(following):
         for run in _runs(thickness.is_central[cycle]):
@@ -598,8 +635,8 @@ def _level_branch(
         for a, b in zip(cuts, cuts[1:])
         if b > a
     ]
-    # all stretches are judged by the counts before, so that both sides of the axis, which are walked
-    # in opposite directions, get the same
+    # Judge every stretch by the original counts: the two sides of the axis are walked in opposite
+    # directions and must get the same numbers of beads.
     before = [int(counts[stretch[0]]) for stretch in stretches]
     for number, (stretch, stretch_length) in enumerate(zip(stretches, lengths)):
         if stretch_length >= SHORT_CHANGE * law.spacing:
@@ -622,7 +659,7 @@ def _level_branch(
 
 
 def _share_of_number(thickness: _Thickness, inside: int, outside: int, law: BeadLaw) -> float:
-    """Share of the way between two spokes at which the number of beads changes."""
+    """Return the fraction of the way between two spokes at which the bead count changes."""
     most = int(max(thickness.counts[inside], thickness.counts[outside]))
     return _share_to_limit(thickness, inside, outside, law.least_radius(most), 0.5)
 
@@ -630,8 +667,10 @@ def _share_of_number(thickness: _Thickness, inside: int, outside: int, law: Bead
 def _share_to_limit(
     thickness: _Thickness, inside: int, outside: int, limit: float, level: float
 ) -> float:
-    """Share of the way between two spokes at which half the thickness is `limit` mm; `level` where it
-    is the same at both."""
+    """Return the fraction of the way between two spokes at which half the thickness is `limit` mm.
+
+    Returns `level` if the thickness is equal at both spokes.
+    """
     start, end = float(thickness.radii[inside]), float(thickness.radii[outside])
     if start == end:
         return level
@@ -639,7 +678,7 @@ def _share_to_limit(
 
 
 def _stretch_length(counts: Index, arc: Array, member: int) -> float:
-    """Length, mm, of the stretch of the axis that has the same number of beads as `member`."""
+    """Return the length, mm, of the stretch around `member` with a constant bead count."""
     changes = np.flatnonzero(counts != counts[member])
     before, after = changes[changes < member], changes[changes > member]
     start = before[-1] + 1 if len(before) else 0
@@ -650,8 +689,10 @@ def _stretch_length(counts: Index, arc: Array, member: int) -> float:
 def _bridge(
     radii: Array, counts: Index, distance: Array, following: Index, is_central: Mask, longest: float
 ) -> Index:
-    """Mark and return short stretches between two central ones, such as where ribs cross, that do
-    not run into a corner."""
+    """Mark short stretches between two central stretches as central, and return their spokes.
+
+    Such stretches occur where ribs cross. Stretches that run into a corner do not count.
+    """
     bridges = [np.zeros(0, dtype=np.intp)]
     for cycle in _cycles(following):
         for run in _runs(~is_central[cycle]):
@@ -671,8 +712,10 @@ def _bridge(
 def _level_junctions(
     counts: Index, middles: Array, summit: Index, is_central: Mask, bridges: Index, reach: float
 ) -> None:
-    """Give corners whose summit is within `reach` mm of a bridge its number of beads, because those
-    have the room there."""
+    """Give corners whose summit is within `reach` mm of a bridge the bead count of the bridge.
+
+    The beads of the bridge occupy the space there.
+    """
     corner = np.flatnonzero(~is_central)
     if not len(bridges) or not len(corner):
         return
@@ -683,13 +726,16 @@ def _level_junctions(
 
 
 def _forks(spokes: Spokes, distance: Array, spacing: float) -> Mask:
-    """Spokes (n,) after which the axis forks: the touching point of the circle jumps."""
+    """Return a mask (n,) of the spokes after which the axis forks.
+
+    At a fork the touching point of the inscribed circle jumps.
+    """
     jump = np.hypot(*(spokes.touching[spokes.following] - spokes.touching).T)
     return np.asarray(np.nan_to_num(jump) > FORK_RATIO * distance + FORK * spacing)
 
 
 def _in_short_runs(is_level: Mask, distance: Array, following: Index, shortest: float) -> Mask:
-    """Mask of level stretches of the axis that are shorter than a length, mm."""
+    """Return a mask (n,) of level stretches of the axis that are shorter than `shortest` mm."""
     short = np.zeros(len(is_level), dtype=bool)
     for cycle in _cycles(following):
         for run in _runs(is_level[cycle]):
@@ -699,14 +745,17 @@ def _in_short_runs(is_level: Mask, distance: Array, following: Index, shortest: 
 
 
 def _cycles(following: Index) -> list[Index]:
-    """Numbers of the spokes of each border, in order. They are consecutive."""
+    """Return the spoke indices of each border, which are consecutive."""
     last = np.flatnonzero(following != np.arange(1, len(following) + 1))
     firsts = np.r_[0, last[:-1] + 1]
     return [np.arange(first, end + 1) for first, end in zip(firsts.tolist(), last.tolist())]
 
 
 def _runs(mask: Mask) -> list[Index]:
-    """Runs of True in a cyclic mask, each as consecutive numbers; a single run if all are True."""
+    """Return the runs of True in a cyclic mask, each as indices in cyclic order.
+
+    If all values are True, there is a single run.
+    """
     if mask.all():
         return [np.arange(len(mask))]
     if not mask.any():
@@ -720,12 +769,12 @@ def _runs(mask: Mask) -> list[Index]:
 
 
 def _carry_uphill(spokes: Spokes, is_central: Mask, reach: float) -> tuple[Array, Mask, Index]:
-    """Find the radius (n,) that decides at each spoke, whether (n,) beads there come in pairs only,
-    and the summit (n,), a spoke.
+    """Find the radius (n,) that determines the bead count at each spoke, and the summit spoke (n,).
 
-    A spoke in a corner follows the largest circle uphill of it along the axis, its summit. Small
-    facets cause several summits in a row; one between two higher summits takes the lower of these.
-    Summits within `reach` mm of each other count as one.
+    Also returns whether (n,) beads come in pairs only. Uphill means towards larger inscribed
+    circles along the axis. A spoke in a corner takes the radius of its summit, the largest circle
+    uphill. Small facets cause several summits in a row; a summit between two higher summits takes
+    the radius of the lower one. Summits within `reach` mm of each other are merged.
     """
     radii = spokes.radii
     deciding, summit = radii.copy(), np.arange(len(radii))
@@ -758,8 +807,11 @@ def _carry_uphill(spokes: Spokes, is_central: Mask, reach: float) -> tuple[Array
 def _join_summits(
     spokes: Spokes, deciding: Array, summit: Index, corner: Index, reach: float
 ) -> Index:
-    """Summit (n,) of each spoke after joining: summits within `reach` mm become one, and a summit
-    that another stretch of the axis passes on its way up gives way to the higher one."""
+    """Merge summits and return the summit (n,) of each spoke.
+
+    Summits within `reach` mm are merged. If another stretch of the axis passes a summit on its way
+    to a higher summit, the higher summit replaces the passed one.
+    """
     middles, following = spokes.middles, spokes.following
     tops, number = np.unique(summit[corner], return_inverse=True)
     group = _groups(middles[tops], reach)
@@ -789,15 +841,17 @@ def _join_summits(
 
 
 def _groups(points: Array, reach: float) -> Index:
-    """Group numbers (n,) of points (n, 2): points within `reach` mm of each other share a group."""
+    """Group points (n, 2) that are within `reach` mm of each other; return group indices (n,)."""
     pairs = cKDTree(points).query_pairs(reach, output_type="ndarray")
     links = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(points), len(points)))
     return np.asarray(connected_components(links, directed=False)[1], dtype=np.intp)
 
 
 def _summits(values: Array) -> tuple[Array, Index]:
-    """Levels (n,) of values (n,) with dips between higher values filled, and the number (n,) of the
-    summit uphill of each value."""
+    """Fill the dips of values (n,) between higher values, and find the summit uphill of each value.
+
+    Returns the filled values (n,) and the indices (n,) of the summits.
+    """
     level = np.minimum(np.maximum.accumulate(values), np.maximum.accumulate(values[::-1])[::-1])
     number = np.arange(len(values))
     right = _walk_up(values)
@@ -809,7 +863,7 @@ def _summits(values: Array) -> tuple[Array, Index]:
 
 
 def _walk_up(values: Array) -> Index:
-    """Number (n,) of the place where a climb to the right from each place ends."""
+    """Return the index (n,) at which a climb to the right from each value ends."""
     rising = np.r_[values[1:] >= values[:-1], False]
     ends = np.where(rising, len(values), np.arange(len(values)))
     return np.asarray(np.minimum.accumulate(ends[::-1])[::-1])
@@ -818,8 +872,11 @@ def _walk_up(values: Array) -> Index:
 def _rings(
     spokes: Spokes, thickness: _Thickness, pair: _Pair, beads: Beads, law: BeadLaw
 ) -> list[PlaneCurve]:
-    """Closed beads of a pair: along the border as far as the pair extends, then back on the other
-    side."""
+    """Return the closed beads of a pair.
+
+    Each bead follows one side of the axis as far as the pair extends and returns along the other
+    side.
+    """
     is_valid = pair.is_there & (pair.depths <= spokes.radii + SAME * law.spacing)
     runs: list[tuple[_Crossing | None, Index, _Crossing | None]] = []
     for cycle in _cycles(spokes.following):
@@ -845,7 +902,7 @@ def _rings(
 def _crossing(
     spokes: Spokes, thickness: _Thickness, inside: int, outside: int, pair: _Pair, law: BeadLaw
 ) -> _Crossing:
-    """Point where a bead at the spoke `inside` ends before the spoke `outside`."""
+    """Return the end of a bead that reaches the spoke `inside` but not the spoke `outside`."""
     radii = spokes.radii[[inside, outside]]
     depth, share, wide = float(pair.depths[inside]), 1.0, float(pair.shares[inside])
     if pair.is_there[outside]:
@@ -873,14 +930,14 @@ def _crossing(
 
 
 def _narrows_away(inside: int, outside: int, pair: _Pair) -> bool:
-    """Whether a pair ends between two spokes because outer pairs leave it too little room."""
+    """Whether a pair ends between two spokes because outer pairs leave too little space."""
     return bool(pair.room[inside] >= pair.least[inside] > pair.room[outside])
 
 
 def _share_of_change(
     thickness: _Thickness, inside: int, outside: int, pair: _Pair, law: BeadLaw
 ) -> float:
-    """Share of the way between two spokes of the axis at which a pair of the first ends."""
+    """Return the fraction of the way from spoke `inside` to `outside` at which a pair ends."""
     if _narrows_away(inside, outside, pair):
         start, end = float(pair.room[inside]), float(pair.room[outside])
         return (start - float(pair.least[inside])) / (start - end)
@@ -893,7 +950,10 @@ def _share_of_change(
 def _chains(
     ends: Sequence[tuple[_Crossing | None, _Crossing | None]], spacing: float
 ) -> list[list[int]]:
-    """Runs chained into rings: where a run ends, another begins on the other side of the axis."""
+    """Chain runs of spokes into rings.
+
+    Where a run ends, the next run begins on the other side of the axis.
+    """
     open_runs = [number for number, (entry, leave) in enumerate(ends) if leave is not None]
     closed = [[number] for number, (_, leave) in enumerate(ends) if leave is None]
     if not open_runs:
@@ -915,8 +975,10 @@ def _chains(
 
 
 def _match(leaves: Array, entries: Array, spacing: float) -> Index:
-    """Number of the entry (n, 2) assigned to each place (n, 2), one to one, at the least total
-    distance."""
+    """Assign an entry (n, 2) to each leave (n, 2), one to one, with minimum total distance.
+
+    Returns the entry indices (n,).
+    """
     count = len(leaves)
     successor = np.full(count, -1)
     following = np.roll(np.arange(count), -1)  # most gaps are corners, where the next run begins
@@ -941,7 +1003,7 @@ def _trace(
     beads: Beads,
     law: BeadLaw,
 ) -> tuple[Array, Array | None]:
-    """Points (n, 2) of a ring through runs of spokes, and their shares of the width."""
+    """Return the points (n, 2) of a ring through runs of spokes, and their bead shares (n,)."""
     parts: list[tuple[Array, Array]] = []
     for entry, members, leave in runs:
         feet, directions = spokes.feet[members], spokes.directions[members]
@@ -970,8 +1032,10 @@ def _trace(
 
 
 def _obliquity(points: Array, directions: Array, closed: bool) -> Array:
-    """Width (n,) across a bead at its points (n, 2), as a share of its width along spokes of unit
-    `directions` (n, 2)."""
+    """Return the ratio (n,) of the width across a bead to its width along the spokes.
+
+    points: (n, 2) of the bead. directions: (n, 2) unit vectors of the spokes.
+    """
     if closed:
         points = np.vstack([points, points[:1]])
         directions = np.vstack([directions, directions[:1]])
@@ -996,7 +1060,10 @@ def _obliquity(points: Array, directions: Array, closed: bool) -> Array:
 
 
 def _thinned(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[Array, Array | None]:
-    """Points and shares, thinned to the tolerances; shares of a closed bead are None if all are usual."""
+    """Reduce points and bead shares to the tolerances.
+
+    The bead shares of a closed bead are None if the bead has nominal width throughout.
+    """
     if closed:
         points = np.vstack([points, points[:1]])
         share = np.r_[share, share[:1]]
@@ -1012,8 +1079,11 @@ def _thinned(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[A
 
 
 class _Middle(NamedTuple):
-    """A piece of the axis for a bead: points (n, 2), shares (n,), whether its ends meet beads that
-    begin there, and whether they are inside pairs."""
+    """Piece of the axis for a centreline bead.
+
+    points: (n, 2). shares: (n,) bead shares. meets: whether each end meets beads that begin there.
+    in_pairs: whether each end is between the beads of a pair.
+    """
 
     points: Array
     shares: Array
@@ -1024,7 +1094,7 @@ class _Middle(NamedTuple):
 def _centres(
     spokes: Spokes, thickness: _Thickness, pairs: Sequence[_Pair], law: BeadLaw, beads: Beads
 ) -> list[PlaneCurve]:
-    """Beads along the axis where pairs leave room for one."""
+    """Return the centreline beads, along the axis where pairs leave enough space."""
     free = spokes.radii - 0.5 * (law.width - law.spacing)
     for pair in pairs:
         free = np.where(pair.is_there, pair.free(thickness.radii, law.spacing), free)
@@ -1047,8 +1117,10 @@ def _centres(
 def _middle_pieces(
     spokes: Spokes, thickness: _Thickness, pairs: Sequence[_Pair], law: BeadLaw, shares: Array
 ) -> tuple[list[_Middle], list[tuple[Array, Array]]]:
-    """Pieces of the axis with room for a bead: open ones, each from the side where it is shorter, and
-    closed ones."""
+    """Find the open and closed pieces of the axis with space for a bead.
+
+    Both sides of the axis yield each open piece; the shorter version is kept.
+    """
     pieces, closed = _pieces_of_side(
         spokes, thickness, pairs, law, shares, spokes.positions < spokes.opposite
     )
@@ -1075,7 +1147,10 @@ def _pieces_of_side(
     shares: Array,
     is_side: Mask,
 ) -> tuple[list[_Middle], list[tuple[Array, Array]]]:
-    """Pieces of the axis with room for a bead from one side of the axis, with spokes (n,)."""
+    """Find the open and closed pieces of the axis with space for a bead, from one side of the axis.
+
+    is_side: (n,) spokes of this side.
+    """
     following, middles, counts = spokes.following, spokes.middles, thickness.counts
     has_room = thickness.is_central & (shares >= law.narrowest) & (counts > 0)
     pieces, closed = [], []
@@ -1116,8 +1191,10 @@ def _share_of_end(
     law: BeadLaw,
     shares: Array,
 ) -> float:
-    """Share of the way between two spokes at which a bead in the middle ends: where another pair
-    begins, or where it would become too narrow."""
+    """Return the fraction of the way between two spokes at which a centreline bead ends.
+
+    The bead ends where another pair begins or where the bead would become too narrow.
+    """
     if thickness.counts[outside] // 2 > thickness.counts[inside] // 2:
         pair = pairs[int(thickness.counts[inside]) // 2]
         return 1.0 - _share_of_change(thickness, outside, inside, pair, law)
@@ -1128,8 +1205,7 @@ def _share_of_end(
 def _join_middles(
     pieces: list[_Middle], reach: float, law: BeadLaw, shortest: float
 ) -> list[_Middle]:
-    """Pieces joined where they meet, the straightest pair first; ends that overlap other beads are
-    cut back."""
+    """Join pieces where they meet, the straightest pair first, and cut back overlapping ends."""
     least = SHORTEST_PIECE * law.spacing
     joined = [piece for piece in pieces if length(piece.points, False) > least]
     ends = np.array([piece.points[at] for piece in joined for at in (0, -1)]).reshape(-1, 2)
@@ -1153,7 +1229,7 @@ def _join_middles(
 
 
 def _on_others(pieces: list[_Middle], reach: float) -> Mask:
-    """Mask of the ends of pieces, two each, within `reach` mm of the interior of another piece."""
+    """Return a mask of the ends, two per piece, within `reach` mm of the interior of another piece."""
     points = np.vstack([piece.points[1:-1] for piece in pieces])
     owner = np.repeat(np.arange(len(pieces)), [len(piece.points) - 2 for piece in pieces])
     ends = np.array([piece.points[at] for piece in pieces for at in (0, -1)])
@@ -1164,7 +1240,7 @@ def _on_others(pieces: list[_Middle], reach: float) -> Mask:
 
 
 def _outward(points: Array, at: int) -> Array:
-    """Unit direction (2,) of a line (n, 2) at one of its ends, outwards."""
+    """Return the outward unit direction (2,) of a line (n, 2) at one of its ends."""
     if len(points) < 2:
         return np.zeros(2)
     out = points[0] - points[1] if at == 0 else points[-1] - points[-2]
@@ -1174,7 +1250,7 @@ def _outward(points: Array, at: int) -> Array:
 def _walk(
     pieces: list[_Middle], partner: Index, meets: Mask, law: BeadLaw, shortest: float
 ) -> list[_Middle]:
-    """Chains of pieces from open end to open end, and closed chains."""
+    """Chain pieces from open end to open end, then into closed chains."""
     is_left = np.ones(len(pieces), dtype=bool)
     starts = [end for end in range(2 * len(pieces)) if partner[end] < 0]
     starts += list(range(0, 2 * len(pieces), 2))
@@ -1205,17 +1281,17 @@ def _walk(
 
 
 def _cut_back(piece: _Middle, law: BeadLaw, shortest: float) -> _Middle:
-    """Shorten a piece by its ends that overlap other beads, of which `shortest` mm remain. Extend
-    its free ends: inside pairs to the end of the room between them, so that the bead has its volume,
-    elsewhere so far that a round end with the volume of the bead touches the border.
+    """Cut back the ends of a piece that meet other beads, and extend its free ends.
+
+    A cut leaves at least `shortest` mm. Between the beads of a pair, a free end extends to the end
+    of the space between them. Elsewhere it extends until a round end with the volume of the bead
+    touches the border.
     """
     points, shares = piece.points, piece.shares
-    for is_cut in (
-        False,
-        True,
-    ):  # in this order, so that the length does not depend on the direction
+    # extend before cutting, so that the length does not depend on the direction
+    for is_cut in (False, True):
         for meets, in_pairs in zip(piece.meets, piece.in_pairs):
-            points, shares = points[::-1], shares[::-1]  # the end in question is the last
+            points, shares = points[::-1], shares[::-1]  # the current end is the last point
             if meets != is_cut:
                 continue
             radius = 0.5 * (law.spacing if in_pairs else law.width) * float(shares[-1])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads in the gaps between other beads: along their middle, until no gap is wider than stated."""
+"""Options of beads, and beads along the centrelines of gaps and thin regions."""
 
 from __future__ import annotations
 
@@ -35,28 +35,43 @@ from ..geometry.regions.strip import Period, Strip, Window
 from ..issues import InfeasibleError
 from ..types import Array
 
-NEXT, OVER = (
-    0.7548776662,
-    0.5698402910,
-)  # of a length: starts of the next contour, of the next layer (the sequence R2)
-THINNEST = 0.6  # of a bead's width; wider ribs get a bead even if all beads have the usual width
-ROUND_END = 0.25 * math.pi  # in radii: length of a rectangle with the area of a round end
-LONGEST_ENDS = 0.4995  # maximum share of a bead's length for each of its round ends
-SHARES = 0.02  # of a bead's usual width; widths within this step count as equal
-SHARE_STEP = 0.05  # of the usual width; maximum change of the width along an edge of a bead
-DIGITS = 6  # of coordinates in mm by which a bead begins at one of its ends
-FARTHEST_TOLERANCE = 1e-6  # of a ring's extent; points within it count as equally far out
+# fractions of a bead's length by which the start moves from contour to contour and from layer to
+# layer (the R2 low-discrepancy sequence)
+NEXT, OVER = 0.7548776662, 0.5698402910
+THINNEST = 0.6  # in bead widths; wider ribs get a bead even if all beads have the nominal width
+ROUND_END = 0.25 * math.pi  # in radii; length of a rectangle with the area of a round end
+LONGEST_ENDS = 0.4995  # maximum fraction of a bead's length for each round end
+SHARES = 0.02  # in nominal widths; width resolution of lines of constant width
+SHARE_STEP = 0.05  # in nominal widths; maximum width change along an edge of a bead
+DIGITS = 6  # decimals of coordinates, mm, that decide at which end a bead begins
+FARTHEST_TOLERANCE = 1e-6  # fraction of a ring's extent; points within it count as equally far out
 
 
 @dataclass(frozen=True, eq=False)
 class PlaneCurve:
-    """The middle of a bead: points (n, 2) mm; a closed one does not repeat its first point.
+    """Centreline of a bead.
 
-    kind: 'contour', 'connected', 'line', 'spiral', 'zigzag', 'centre' or 'closing'. ring: counts from the outermost contour, 0,
-    inwards. turns: how often a closed one goes round the hub, so that its last point is followed by the first, moved by as many
-    periods. sheet: u (`strip.Period`), mm, about which it is unrolled: on a wide cone it may be more than half a turn of the plane
-    from 0. share: (n,) of the usual bead width at each point; None: 1. dot: a short bead in a round place narrower than a bead:
-    the fed volume spreads to the size of that place.
+    Attributes
+    ----------
+    points : (n, 2) array
+        mm; a closed curve does not repeat its first point.
+    closed : bool
+        Whether the last point connects to the first.
+    kind : str
+        'contour', 'connected', 'line', 'spiral', 'zigzag', 'centre' or 'closing'.
+    ring : int
+        Contour index, from 0 for the outermost contour inwards.
+    turns : int
+        Number of turns of a closed curve around the hub. The last point connects to the first point
+        moved by this number of periods.
+    sheet : float
+        u (`strip.Period`), mm, about which the curve is unrolled. On a wide cone it can be more
+        than half a turn of the plane away from 0.
+    share : (n,) array or None
+        Bead share: width at each point as a fraction of the nominal width; None: 1.
+    dot : bool
+        Whether this is a short bead in a round region narrower than a bead. The deposited volume
+        spreads to fill this region.
     """
 
     points: Array
@@ -69,26 +84,27 @@ class PlaneCurve:
     dot: bool = False
 
     def reversed(self) -> PlaneCurve:
-        """The same run the other way, a closed one from the same start."""
+        """Return the curve in the opposite direction; a closed curve keeps its start."""
         points, share = self.points[::-1], None if self.share is None else self.share[::-1]
         if self.closed:
             points, share = np.roll(points, 1, axis=0), None if share is None else np.roll(share, 1)
         return replace(self, points=points, share=share)
 
     def closed_points(self, period: Period | None = None) -> tuple[Array, Array | None]:
-        """Return points and shares, of a closed curve with the first repeated at the end.
+        """Return points and bead shares; a closed curve repeats its first point at the end.
 
         Parameters
         ----------
         period : Period, optional
-            Of the hub, to repeat the first point a period on if the curve goes round.
+            Period of the hub. If the curve goes around the hub, the repeated point is moved by
+            `turns` periods.
 
         Returns
         -------
         points : (n, 2) or (n + 1, 2) array
             mm.
         share : (n,) or (n + 1,) array or None
-            Shares of the usual width, as `share`.
+            Bead shares; None: 1.
         """
         if not self.closed:
             return self.points, self.share
@@ -100,20 +116,21 @@ class PlaneCurve:
         ]
 
     def deposit(self, inset: float) -> tuple[Array, Array]:
-        """Return the line about which the bead spreads, with round ends.
+        """Return the line whose offset with round ends is the bead.
 
         Parameters
         ----------
         inset : float
-            Half the usual width, mm.
+            Half the nominal width, mm.
 
         Returns
         -------
         points : (m, 2) array
-            Points, mm, of a closed bead with the first repeated at the end. An open one with widths of its own is shortened
-            by its round ends, which have no volume of their own; one of the usual width keeps its points.
+            mm; a closed bead repeats its first point at the end. An open bead with bead shares is
+            shortened so that its round ends add no volume. An open bead of nominal width keeps its
+            points.
         share : (m,) array
-            Of the usual width.
+            Bead shares.
         """
         points, share = self.closed_points()
         if share is None:
@@ -128,14 +145,16 @@ class PlaneCurve:
 
 
 def divide_by_share(points: Array, share: Array) -> tuple[Array, Array]:
-    """Divide the edges of a line so that the width changes little along each: a bead has one speed an edge.
+    """Divide edges of a line until the bead share changes by at most SHARE_STEP along each edge.
+
+    Each edge is deposited at a single speed.
 
     Parameters
     ----------
     points : ndarray, shape (n, 2)
         mm.
     share : ndarray, shape (n,)
-        Of the usual width.
+        Bead shares.
     """
     counts = np.maximum(np.ceil(np.abs(np.diff(share)) / SHARE_STEP - 1e-9), 1.0).astype(np.intp)
     if (counts == 1).all():
@@ -156,14 +175,15 @@ def split_by_width(points: Array, share: Array) -> tuple[list[tuple[Array, bool]
     points : (n, 2) array
         The bead, mm.
     share : (n,) array
-        Of the usual width.
+        Bead shares.
 
     Returns
     -------
     lines : list of tuple
-        Points (m, 2), mm, and False: no line is closed.
+        Points (m, 2), mm, and False, because no line is closed.
     shares : list of float
-        Of the usual width, in steps of `SHARES`; the mean where all are within one step.
+        Bead share of each line, in steps of `SHARES`; the mean if all bead shares are within one
+        step.
     """
     if np.ptp(share) < SHARES:
         return [(points, False)], [float(share.mean())]
@@ -176,7 +196,7 @@ def split_by_width(points: Array, share: Array) -> tuple[list[tuple[Array, bool]
 
 
 def plane_text(point: Array) -> str:
-    """A point (2,) as text."""
+    """Format a point (2,)."""
     return f"({point[0]:.4g}, {point[1]:.4g}) mm"
 
 
@@ -184,14 +204,36 @@ def plane_text(point: Array) -> str:
 class Beads:
     """Options for filling a region, shared by all patterns.
 
-    spacing: mm between the middles of neighbouring beads. width: mm of a bead; the outermost is half a width inside the border;
-    0: the spacing. gap: the widest (mm) that may stay open between beads. shortest: beads that close gaps are extended to this
-    length (mm), others below it are dropped. thin: 'single' deposits one bead in regions, or necks, narrower than a bead;
-    'refuse' rejects them. clockwise: sense of closed beads. start: a point (x, y) near which closed beads begin, or the direction
-    (rad) in which they begin farthest out. chord_error: mm, of arcs; 0: 0.005 spacings. where: a point (2,) as text. spread: share
-    of its length by which the outermost closed bead begins behind `start`, inner ones at further ones; None: none does.
-    narrowest: least share of the width of a bead. overlap: share of the width by which the ends of lines reach into the last
-    wall; None: as neighbours overlap.
+    Attributes
+    ----------
+    spacing : float
+        Distance between the centrelines of neighbouring beads, mm.
+    gap : float
+        Maximum width of a gap that may stay open between beads, mm.
+    shortest : float
+        Minimum bead length, mm. Shorter gap-closing beads are extended; other shorter beads are
+        dropped.
+    thin : str
+        'single' deposits one bead in regions or necks narrower than a bead; 'refuse' rejects them.
+    clockwise : bool
+        Sense of closed beads.
+    start : tuple of float or float
+        Point (x, y), mm, near which closed beads begin, or direction, rad, in which the start is
+        the farthest point of the bead.
+    chord_error : float
+        Chord error of arcs, mm; 0: 0.005 spacings.
+    where : callable
+        Formats a point (2,).
+    width : float
+        Bead width, mm; 0: the spacing. The outermost bead is half a width inside the border.
+    spread : float or None
+        Offset of the start of the outermost closed bead after `start`, as a fraction of the bead
+        length. Starts move by NEXT from contour to contour. None: all beads begin at `start`.
+    narrowest : float
+        Minimum bead share.
+    overlap : float or None
+        Fraction of the width by which line ends overlap the last wall; None: the overlap of
+        neighbours.
     """
 
     spacing: float
@@ -209,19 +251,19 @@ class Beads:
 
     @property
     def end_inset(self) -> float:
-        """Distance (mm) of the ends of lines from the middle of the last wall."""
+        """Distance between line ends and the centreline of the last wall, mm."""
         return (
             0.5 * self.spacing if self.overlap is None else self.inset * (1.0 - 2.0 * self.overlap)
         )
 
     @property
     def inset(self) -> float:
-        """Distance (mm) of the middle of the outermost bead from the border."""
+        """Distance between the border and the centreline of the outermost bead, mm."""
         return 0.5 * (self.width or self.spacing)
 
     @property
     def thinnest(self) -> float:
-        """Least width (mm) of ribs and round places that get a bead."""
+        """Minimum width of ribs and round regions that get a bead, mm."""
         return 2.0 * self.inset * min(self.narrowest, THINNEST)
 
     def __post_init__(self) -> None:
@@ -243,14 +285,14 @@ class Beads:
         Parameters
         ----------
         points : (n, 2) array
-            The ring, mm, its first point not repeated.
+            The ring, mm, without repeated first point.
         number : int, optional
-            Number of contours outside, which moves the start if starts are spread.
+            Contour index of the ring, which offsets the start if `spread` is set.
 
         Returns
         -------
         (m, 2) array
-            The ring; it may have a new point at its start.
+            The ring, mm, possibly with a new start point.
         """
         turned = points[::-1] if (doubled_area(points) < 0.0) != self.clockwise else points
         started = start_at(turned, self.start_of(turned))
@@ -261,7 +303,7 @@ class Beads:
         return start_at(started, cut_at_length(loop, behind * length(started, True))[-1])
 
     def start_of(self, points: Array) -> Array:
-        """Return the place that a ring should begin nearest to.
+        """Return the point near which a ring should begin.
 
         Parameters
         ----------
@@ -285,8 +327,10 @@ class Beads:
 
 
 def long_enough(curves: list[PlaneCurve], shortest: float) -> list[PlaneCurve]:
-    """The curves without those below a length, mm; those round the hub, which may have a single point, and dots, which have
-    been made as long as that, are long enough."""
+    """Drop curves shorter than `shortest` mm.
+
+    Curves around the hub, which may have a single point, and dots always stay.
+    """
     return [
         curve
         for curve in curves
@@ -297,7 +341,7 @@ def long_enough(curves: list[PlaneCurve], shortest: float) -> list[PlaneCurve]:
 
 
 def start_curve(curve: PlaneCurve, beads: Beads) -> PlaneCurve:
-    """A closed curve with the sense and start asked for; an open one as it is."""
+    """Give a closed curve the requested sense and start; return an open curve unchanged."""
     if not curve.closed or curve.turns:
         return curve
     points = beads.ring(curve.points, curve.ring)
@@ -325,12 +369,12 @@ def contours_of(regions: Sequence[Strip | Region], beads: Beads, ring: int) -> l
     beads : Beads
         Sense and start of closed beads.
     ring : int
-        Number of the contours, 0 for the outermost.
+        Contour index, 0 for the outermost.
 
     Returns
     -------
     list of PlaneCurve
-        Closed curves of kind 'contour', mm; of strips on the unrolled plane.
+        Closed curves of kind 'contour', mm; those of strips are on the unrolled plane.
     """
     curves = []
     for region in regions:
@@ -354,27 +398,30 @@ def contours_of(regions: Sequence[Strip | Region], beads: Beads, ring: int) -> l
     return [start_curve(curve, beads) for curve in curves]
 
 
-ROUNDS = 12  # of beads within one gap
-FINE = 0.04  # of the spacing, mm between the places that the middle is found from
-MAX_EXTENSIONS = 8  # attempts to make a bead long enough
-COARSE = 0.01  # of the gap; resolution at which open regions are found
-# squares of half a bead's width; a larger region without room for contours consists of ribs
+ROUNDS = 12  # maximum number of passes that place beads in a gap
+FINE = 0.04  # in spacings; distance between border samples that determine a centreline
+MAX_EXTENSIONS = 8  # maximum number of extensions of a short bead
+COARSE = 0.01  # fraction of the gap; resolution of open regions
+# in squares of half a bead width; a larger region without space for contours consists of ribs
 NETWORK = 12.0
-RIB = 0.6  # of a bead's width; a protrusion with a larger mean thickness is a rib
-# of the chord error; in narrower places the border replaces the centreline, which is slow to find
+RIB = 0.6  # in bead widths; a protrusion with a larger mean thickness is a rib
+# in chord errors; a narrower region uses its border instead of its centreline, which is slow to
+# find
 SLIVER = 1.0
-DOT = 5.0  # of half a bead's width; maximum size of a round region narrower than a bead
-LEAST_BARE = 0.01  # of the square of half a bead's width; rounding leaves thousands of smaller places between beads
-ENDS = 0.5  # of the gap; a bead in a gap ends where the gap is this narrow
+DOT = 5.0  # in half bead widths; maximum size of a round region narrower than a bead
+# in squares of half a bead width; minimum area of a bare piece, because rounding leaves thousands
+# of smaller pieces between beads
+LEAST_BARE = 0.01
+ENDS = 0.5  # fraction of the allowed gap; gap width at which a bead in a gap ends
 
 
 def centre_beads(
     gaps: Sequence[Region], beads: Beads, ring: int, inner: Sequence[Region], kind: str = "centre"
 ) -> list[PlaneCurve]:
-    """Return beads along the middle of gaps, until no gap is wider than stated.
+    """Place beads along the centrelines of gaps until no gap is wider than `beads.gap`.
 
-    They are closed in gaps that go round, else open. Beads are moved into `inner`, and short ones
-    extended in there until they are long enough.
+    Beads in annular gaps are closed. All beads are moved into `inner`, and short open beads are
+    extended inside these regions.
 
     Parameters
     ----------
@@ -383,16 +430,16 @@ def centre_beads(
     beads : Beads
         Spacing, allowed gap and shortest length, mm.
     ring : int
-        Number that the curves get.
+        Contour index of the curves.
     inner : sequence of Region
-        Allowed positions of bead middles; anywhere if empty.
+        Regions in which bead centrelines stay, mm; no restriction if empty.
     kind : str, optional
         Kind of the curves.
 
     Returns
     -------
     list of PlaneCurve
-        Those in small rooms may be too short.
+        The beads; in small regions they can be shorter than `beads.shortest`.
     """
     curves: list[PlaneCurve] = []
     for _ in range(ROUNDS):
@@ -416,14 +463,14 @@ def centre_beads(
 def open_regions(
     curves: Sequence[PlaneCurve], inner: Sequence[Region], beads: Beads
 ) -> list[Region]:
-    """Return the regions that curves leave open, wider than the allowed gap.
+    """Return the open regions between beads that are wider than the allowed gap.
 
     Parameters
     ----------
     curves : sequence of PlaneCurve
         Beads.
     inner : sequence of Region
-        Allowed positions of bead middles; what these beads cannot reach does not count.
+        Regions in which bead centrelines stay, mm; area out of reach of such beads does not count.
     beads : Beads
         Spacing and allowed gap, mm.
 
@@ -442,21 +489,21 @@ def open_regions(
 def covered_regions(
     curves: Sequence[PlaneCurve], width: float, chord_error: float
 ) -> tuple[Region, ...]:
-    """Return the regions that beads cover at their widths, with round ends.
+    """Return the regions that beads cover, with variable widths and round ends.
 
     Parameters
     ----------
     curves : sequence of PlaneCurve
-        Middles of the beads.
+        Centrelines of the beads.
     width : float
-        The usual width, mm, that shares are relative to.
+        Nominal width, mm.
     chord_error : float
         Chord error of arcs, mm.
 
     Returns
     -------
     tuple of Region
-        In the order of their leftmost points.
+        Regions, mm, ordered by their leftmost points.
     """
     lines, halves = [], []
     for curve in curves:
@@ -479,25 +526,25 @@ def closing_beads(
     ring: int,
     ends: Sequence[Region] = (),
 ) -> list[PlaneCurve]:
-    """Return beads in the gaps within reach of beads with their middles in `inner`.
+    """Place beads in the gaps that beads with centrelines in `inner` can reach.
 
     Parameters
     ----------
     inner : sequence of Region
-        Allowed positions of bead middles.
+        Regions in which bead centrelines stay, mm.
     curves : sequence of PlaneCurve
-        Beads that leave the gaps.
+        Existing beads.
     beads : Beads
         Spacing, allowed gap and shortest length, mm.
     ring : int
-        Number that the curves get.
+        Contour index of the new curves.
     ends : sequence of Region, optional
-        Regions that lines fill later (`sparse.Frame`); gaps there do not count.
+        Regions that lines fill later (`sparse.Frame`); gaps in these regions do not count.
 
     Returns
     -------
     list of PlaneCurve
-        Of kind 'closing'.
+        New beads of kind 'closing'.
     """
     gaps = open_regions(curves, inner, beads)
     if ends:
@@ -508,8 +555,8 @@ def closing_beads(
 def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
     """Return beads along the centrelines of regions narrower than a bead, longest first.
 
-    No bead starts inside another. Raises InfeasibleError THIN_REGION if thin regions are not
-    allowed.
+    Later beads fill only the area that earlier beads leave open. Raises InfeasibleError THIN_REGION
+    if `beads.thin` is 'refuse'.
     """
     curves: list[PlaneCurve] = []
     for region in thin:
@@ -544,15 +591,19 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
                     remaining += piece.without(
                         along([(points, closed)], beads.inset, beads.chord_error), beads.gap
                     )
-            # the narrowing rest at the end of a bead is far narrower than the narrowest bead; a
-            # threshold near its width would give equal sections different beads
+            # the tapered remainder at the end of a bead is far narrower than the narrowest bead;
+            # with a threshold near the width of the remainder, equal sections would get different
+            # beads
             remaining = select_wider(remaining, max(beads.gap, beads.thinnest), beads.chord_error)
     return curves
 
 
 def dot(region: Region, beads: Beads) -> PlaneCurve:
-    """A short bead in the middle of a region narrower than a bead and about as long as wide: its length, and its width where
-    it would be too short, are such that the region is filled."""
+    """Return a short bead at the centre of a compact region narrower than a bead.
+
+    The deposited area equals the region area: the bead gets the required length at nominal width.
+    If this length is below `beads.shortest`, the bead gets that length and a smaller width.
+    """
     long = max(region.area / (2.0 * beads.inset), beads.shortest)
     share = region.area / (2.0 * beads.inset * long)
     share = min(max(share, beads.narrowest), 1.0)
@@ -567,21 +618,22 @@ def dot(region: Region, beads: Beads) -> PlaneCurve:
 def bare_parts(
     region: Region, curves: Sequence[PlaneCurve], beads: Beads
 ) -> list[tuple[Region, float]]:
-    """Return the pieces of a region too narrow for any bead.
+    """Return the pieces of a region that stay bare because they are too narrow for a bead.
 
     Parameters
     ----------
     region : Region
         The region, mm.
     curves : sequence of PlaneCurve
-        Its beads; without any the region is one piece.
+        Beads of the region; without beads the whole region is one piece.
     beads : Beads
         Width and chord error, mm.
 
     Returns
     -------
     list of tuple of Region and float
-        Pieces, and the distance that each reaches from the beads, mm: more than a bead is wide.
+        Pieces, and the maximum distance of each piece from the beads, mm. This distance exceeds a
+        bead width.
     """
     if not curves:
         return [(region, region.extent)]
@@ -592,7 +644,7 @@ def bare_parts(
     places = np.vstack([_places(curve, beads.inset) for curve in curves])
     border_places = np.vstack([dense(border, beads.inset) for border in region.borders()])
     if cKDTree(places).query(border_places)[0].max() < 3.0 * beads.inset - error:
-        return []  # a bare piece would reach to a place of the border that is farther out
+        return []  # the border of a bare piece would have a point farther from the beads
     reached = along(lines, beads.inset, error)
     bare = []
     for piece in region.without(reached, least_area=LEAST_BARE * beads.inset**2):
@@ -608,38 +660,38 @@ def bare_parts(
 
 
 def _places(curve: PlaneCurve, step: float) -> Array:
-    """Places (n, 2) along a curve, at most `step` mm apart."""
+    """Sample points (n, 2) along a curve, at most `step` mm apart."""
     return divided_by_step(curve.closed_points()[0], step)[0]
 
 
 def outermost(
     region: Region, inner: tuple[Region, ...], beads: Beads
 ) -> tuple[tuple[Region, ...], list[PlaneCurve]]:
-    """Return the regions inside the outermost bead, and beads in regions too thin for it.
+    """Select the regions bounded by the outermost beads, and fill thin regions with single beads.
 
-    These are necks, or the whole region. Places hardly wider than a bead, as where ribs meet, are
-    left to the beads along the middle of the ribs.
+    Spots hardly wider than a bead, such as rib junctions, get no contour; beads along the
+    centrelines of the ribs fill them.
 
     Parameters
     ----------
     region : Region
         The region, mm.
     inner : tuple of Region
-        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+        The region shrunk by `beads.inset`, mm; bead centrelines stay inside.
     beads : Beads
-        Width, shortest length and what to do in thin places.
+        Width, shortest length and treatment of thin regions.
 
     Returns
     -------
     inner : tuple of Region
-        Those with borders that are long enough for a bead.
+        Regions of `inner` whose borders are long enough for a bead.
     thin : list of PlaneCurve
-        Beads in thin places.
+        Beads in thin regions.
 
     Raises
     ------
     InfeasibleError
-        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
+        THIN_REGION if `beads.thin` is 'refuse' and the region is locally narrower than a bead.
     """
     if beads.thin != "refuse":
         long = select_longer(inner, beads.shortest)
@@ -649,8 +701,8 @@ def outermost(
     reached = grow_regions(inner, beads.inset, beads.chord_error)
     uncovered, hair = region.without(reached), HAIR_SHARE * beads.chord_error
     if any(piece.extent > beads.inset and len(piece.grown(-hair, hair)) > 1 for piece in uncovered):
-        # beads touch the border, where rounding leaves slits that join corners in one section and not
-        # in an equal one
+        # beads touch the border there; rounding can leave slits that join corners in one section
+        # but not in an equal section
         reached = grow_regions(inner, beads.inset + hair, beads.chord_error)
         uncovered = region.without(reached)
     return inner, single_beads(
@@ -659,8 +711,10 @@ def outermost(
 
 
 def _is_neck(piece: Region, reached: Sequence[Region], beads: Beads) -> bool:
-    """Whether a piece without beads joins two places with beads, or protrudes like ribs and blades: longer than a bead is wide, it is
-    wider than the narrowest bead, or nearly as thick as a bead all along. A corner is shorter.
+    """Whether a piece without beads is a neck between two filled regions, or a rib or blade.
+
+    A rib or blade protrudes farther than a bead width. In addition, the mean thickness is close to
+    the bead width, or the far part is wider than the narrowest bead. A corner protrudes less.
     """
     adjacent = [region for region in reached if region.distance(piece) < 2.0 * beads.chord_error]
     width = 2.0 * beads.inset
@@ -678,7 +732,10 @@ def _is_neck(piece: Region, reached: Sequence[Region], beads: Beads) -> bool:
 
 
 def _along_border(region: Region) -> tuple[Array, bool]:
-    """The border (n, 2) of a sliver from one of its ends to the other, and whether it is closed: the way round a hole."""
+    """Return the border (n, 2) of a sliver from end to end, and whether the path is closed.
+
+    A sliver with a hole is annular; its path is the closed outer border.
+    """
     border, *holes = region.borders()
     if holes:
         return border, True
@@ -704,7 +761,7 @@ def _spine(region: Region, beads: Beads, min_width: float) -> tuple[Array, bool]
 
 
 def _smooth(points: Array, closed: bool, tolerance: float) -> Array:
-    """The path without the ripple that it has from single places."""
+    """Smooth the ripple of a sampled path."""
     line = np.vstack([points, points[:1]]) if closed else points
     if len(line) > 4:
         inner = (line[:-2] + 2.0 * line[1:-1] + line[2:]) / 4.0
@@ -714,7 +771,7 @@ def _smooth(points: Array, closed: bool, tolerance: float) -> Array:
 
 
 def _dab(region: Region, beads: Beads) -> Array:
-    """Two places (2, 2) in the middle of a region too round for a path, along it."""
+    """Return two points (2, 2) along the long axis at the centre of a region too round for a path."""
     core = max(region.grown(-0.5 * beads.gap, beads.chord_error), key=lambda region_: region_.area)
     border = region.borders()[0]
     direction = np.linalg.svd(border - border.mean(axis=0), full_matrices=False)[2][0]
@@ -724,8 +781,11 @@ def _dab(region: Region, beads: Beads) -> Array:
 
 
 def _lengthened(points: Array, beads: Beads, inner: Sequence[Region]) -> Array:
-    """An open bead gone on at both ends, along itself and then along the border of its room, until it is long enough; as it
-    is where the room is too small."""
+    """Extend an open bead at both ends until its length is `beads.shortest`.
+
+    Extensions run straight ahead, then along the border of `inner`. In a region that is too small
+    the bead stays shorter.
+    """
     for _ in range(MAX_EXTENSIONS):
         lack = beads.shortest - length(points, False)
         if lack <= 0.0:
@@ -747,14 +807,14 @@ def _lengthened(points: Array, beads: Beads, inner: Sequence[Region]) -> Array:
 
 
 def move_into_regions(points: Array, inner: Sequence[Region]) -> Array:
-    """Move points outside of all regions to the nearest of them.
+    """Move points that are outside all regions to the nearest region.
 
     Parameters
     ----------
     points : (n, 2) array
         mm.
     inner : sequence of Region
-        The regions; without any the points stay.
+        The regions, mm; if empty the points stay.
 
     Returns
     -------
@@ -773,31 +833,31 @@ def move_into_regions(points: Array, inner: Sequence[Region]) -> Array:
     return moved
 
 
-REACH = 3.0  # spacings around a window that decide about its open regions
+REACH = 3.0  # in spacings; beads within this distance of a window determine its open regions
 
 
 def strip_closing(
     strip: Strip, curves: Sequence[PlaneCurve], beads: Beads, ring: int, kind: str
 ) -> list[PlaneCurve]:
-    """Return beads in what curves leave open in a strip, cut where windows meet.
+    """Place beads in the open regions of a strip; the beads are cut where windows meet.
 
     Parameters
     ----------
     strip : Strip
         The strip.
     curves : sequence of PlaneCurve
-        Its beads, on the unrolled plane.
+        Existing beads of the strip, on the unrolled plane.
     beads : Beads
         Spacing, allowed gap and shortest length, mm.
     ring : int
-        Number that the curves get.
+        Contour index of the new curves.
     kind : str
-        Kind of the curves.
+        Kind of the new curves.
 
     Returns
     -------
     list of PlaneCurve
-        On the unrolled plane, mm.
+        New beads on the unrolled plane, mm.
     """
     return [
         replace(curve, points=points, sheet=sheet)
@@ -817,15 +877,15 @@ def open_windows(
     strip : Strip
         The strip.
     curves : sequence of PlaneCurve
-        Its beads, on the unrolled plane.
+        Beads of the strip, on the unrolled plane.
     beads : Beads
         Spacing and allowed gap, mm.
 
     Returns
     -------
     list of tuple of Window, list of Region and tuple of Region
-        Windows with room for beads, their open regions, and the allowed positions of bead
-        centrelines, both unrolled about the middle of the window.
+        Windows with space for beads, their open regions, and the regions in which bead centrelines
+        stay. The regions are unrolled about the centre of the window.
     """
     windows = []
     for window, adjacent in near_windows(strip, curves, REACH * beads.spacing):
@@ -846,7 +906,7 @@ def open_windows(
 def near_windows(
     strip: Strip, curves: Sequence[PlaneCurve], reach: float
 ) -> Iterator[tuple[Window, list[PlaneCurve]]]:
-    """Yield the windows of a strip with the sections of curves near each.
+    """Yield the windows of a strip with the nearby sections of curves.
 
     Parameters
     ----------
@@ -855,14 +915,14 @@ def near_windows(
     curves : sequence of PlaneCurve
         Beads on the unrolled plane.
     reach : float
-        Distance from a window within which sections count, mm.
+        Maximum distance of sections from a window, mm.
 
     Yields
     ------
     window : Window
         The window.
     curves : list of PlaneCurve
-        Sections unrolled about its middle, mm, without shares.
+        Sections unrolled about the centre of the window, mm, without bead shares.
     """
     curves = [
         replace(curve, points=strip.period.unwrap_curve(curve.points, curve.sheet, curve.turns))

@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""All contours of a region in one closed bead: neighbours opened side by side and joined by two parallel links at 45 deg.
+"""Connect all contours of a region to one closed bead.
 
-Two closed curves joined so are one closed curve again, whatever contours do: those that split, those round holes, and thin
-loops about what would be beads in the middle. Nothing crosses; every second contour runs the other way.
+Neighbouring contours are opened side by side and joined by two parallel links at 45 deg. Two closed
+curves joined in this way form one closed curve. This also holds for contours that split, contours
+around holes, and thin loops that replace centreline beads. Links do not cross; every second contour
+is reversed.
 """
 
 from __future__ import annotations
@@ -29,13 +31,13 @@ from .centre import (
     start_curve,
 )
 
-# ---- Closed curves by arc length, and the places where two of them run side by side
+# ---- Closed curves by arc length, and where two closed curves run side by side
 
-MARK = 0.25  # of the reach, distance between samples of a ring in the search for adjacent rings
+MARK = 0.25  # fraction of the reach; sample distance on rings in the search for adjacent rings
 
 
 class AdjacentRings(NamedTuple):
-    """Two rings by number, and arcs (n,) mm of the first that are near the second."""
+    """Indices of two rings, and arc lengths (n,), mm, at which the first is near the second."""
 
     from_ring: int
     to_ring: int
@@ -43,7 +45,7 @@ class AdjacentRings(NamedTuple):
 
 
 class Ring:
-    """A closed curve (n, 2), and its occupied intervals of arc length, mm."""
+    """Closed curve (n, 2), mm, with the arc-length intervals that openings occupy."""
 
     def __init__(self, points: Array) -> None:
         self.points = points
@@ -76,7 +78,7 @@ class Ring:
         arcs : (n,) array
             Arc lengths, mm.
         step : float
-            Length of ring that a direction is the mean of, mm.
+            Length over which directions are averaged, mm.
 
         Returns
         -------
@@ -87,7 +89,7 @@ class Ring:
         return np.asarray(ahead / np.maximum(np.hypot(*ahead.T), 1e-300)[:, None])
 
     def foot(self, points: Array) -> tuple[Array, Array]:
-        """Find the places of the ring nearest to points.
+        """Project points onto the ring.
 
         Parameters
         ----------
@@ -97,9 +99,9 @@ class Ring:
         Returns
         -------
         arcs : (n,) array
-            Arc lengths of the nearest places, mm.
+            Arc lengths of the projections, mm.
         distances : (n,) array
-            Distances of the points from them, mm.
+            Distances of the points from the ring, mm.
         """
         feet = nearest(self.points, points, closed=True)
         return self.arc[feet.edge] + feet.share * np.diff(self.arc)[feet.edge], feet.distance
@@ -110,14 +112,14 @@ class Ring:
         Parameters
         ----------
         start, end : float
-            Arc lengths, mm, any number of times round.
+            Arc lengths, mm; they wrap around the ring.
         sense : int
-            1 with the ring, -1 against it.
+            1 in the direction of the ring, -1 against it.
 
         Returns
         -------
         (m, 2) array
-            Points in the order of travel, both ends included, mm.
+            Points in the order of motion, including both ends, mm.
         """
         if sense < 0:
             return self.piece(end, start, 1)[::-1]
@@ -136,19 +138,19 @@ class Ring:
         )
 
     def is_free(self, start: float, end: float) -> bool:
-        """Whether nothing of the arc from start to end is taken."""
+        """Whether the arc from start to end, mm, overlaps no occupied interval."""
         return not any(
             (low - start) % self.length < end - start or (start - low) % self.length < high - low
             for low, high in self._taken
         )
 
     def take(self, start: float, end: float) -> None:
-        """Occupy the arc from start to end."""
+        """Mark the arc from start to end, mm, as occupied."""
         self._taken.append((start, end))
 
 
 def side_by_side(rings: Sequence[Ring], reach: float) -> list[AdjacentRings]:
-    """All pairs of rings that come nearer to each other than `reach` mm, both ways round."""
+    """Find all pairs of rings that are locally closer than `reach` mm, in both orders."""
     marks = [np.arange(0.0, ring.length, MARK * reach) for ring in rings]
     points = np.vstack([ring.points_at(arcs) for ring, arcs in zip(rings, marks)])
     number: Index = np.repeat(np.arange(len(rings)), [len(arcs) for arcs in marks])
@@ -168,7 +170,7 @@ def side_by_side(rings: Sequence[Ring], reach: float) -> list[AdjacentRings]:
 
 
 def crossed(line: Array, polyline: Array) -> bool:
-    """Return whether a straight line crosses a polyline.
+    """Whether a straight line crosses a polyline.
 
     Parameters
     ----------
@@ -180,7 +182,7 @@ def crossed(line: Array, polyline: Array) -> bool:
     Returns
     -------
     bool
-        True if an edge crosses the line, its ends included.
+        True if an edge of the polyline crosses the line or touches an end of the line.
     """
     direction = line[1] - line[0]
     side = direction[0] * (polyline[:, 1] - line[0, 1]) - direction[1] * (
@@ -194,12 +196,16 @@ def crossed(line: Array, polyline: Array) -> bool:
     return bool(((share >= 0.0) & (share <= 1.0)).any())
 
 
-# ---- The contours, and the links that join them
+# ---- Contours, and the links that join them
 
 
 @dataclass(frozen=True)
 class Levels:
-    """regions[k]: the regions whose borders are the contours k; gaps[k]: the open regions inside that have room for the allowed gap."""
+    """Contours of a region, level by level.
+
+    regions[k]: regions whose borders are the contours of level k. gaps[k]: open regions inside
+    these contours that are wider than the allowed gap.
+    """
 
     regions: tuple[tuple[Region, ...], ...]
     gaps: tuple[tuple[Region, ...], ...]
@@ -207,29 +213,30 @@ class Levels:
 
 
 def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
-    """Return the contours of a region, level by level from outside in, with the gaps inside each.
+    """Compute the contours of a region, level by level from outside in, and the gaps inside them.
 
-    Each contour is parallel to the border, not to the contour before, so that errors do not add.
-    Contours shorter than `beads.shortest` are left out, for the beads in the middle.
+    Each contour is offset from the border, not from the previous contour, so that errors do not
+    accumulate. Contours shorter than `beads.shortest` are dropped; centreline beads fill their
+    area.
 
     Parameters
     ----------
     region : Region
         The region to fill, mm.
     inner : tuple of Region
-        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+        The region shrunk by `beads.inset`, mm; bead centrelines stay inside.
     beads : Beads
         Spacing, width, gap and chord error, mm.
 
     Returns
     -------
     Levels
-        Regions bounded by contours and open regions of each level, and beads in thin places.
+        Regions bounded by contours and open regions of each level, and beads in thin regions.
 
     Raises
     ------
     InfeasibleError
-        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
+        THIN_REGION if `beads.thin` is 'refuse' and the region is locally narrower than a bead.
     """
     half, error = 0.5 * beads.spacing, beads.chord_error
     inner, thin = outermost(region, inner, beads)
@@ -247,33 +254,33 @@ def levels(region: Region, inner: tuple[Region, ...], beads: Beads) -> Levels:
 
 
 def contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
-    """Return closed contours from outside in, then the beads in their middle.
+    """Fill a region with closed contours from outside in, then with centreline beads in the gaps.
 
     Parameters
     ----------
     region : Region
         The region to fill, mm.
     inner : tuple of Region
-        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+        The region shrunk by `beads.inset`, mm; bead centrelines stay inside.
     beads : Beads
         Spacing, width, gap and chord error, mm.
 
     Returns
     -------
     list of PlaneCurve
-        Beads in the plane of the region; short ones included.
+        Beads in the plane of the region, including beads shorter than `beads.shortest`.
 
     Raises
     ------
     InfeasibleError
-        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
+        THIN_REGION if `beads.thin` is 'refuse' and the region is locally narrower than a bead.
     """
     contour_levels = levels(region, inner, beads)
     return rounds(contour_levels, beads) + centres(contour_levels, beads)
 
 
 def rounds(contour_levels: Levels, beads: Beads) -> list[PlaneCurve]:
-    """The contours, from outside in."""
+    """Return the contours, from outside in."""
     return [
         curve
         for k, regions in enumerate(contour_levels.regions)
@@ -282,7 +289,7 @@ def rounds(contour_levels: Levels, beads: Beads) -> list[PlaneCurve]:
 
 
 def centres(contour_levels: Levels, beads: Beads) -> list[PlaneCurve]:
-    """The beads in the gaps of contours, and in thin places."""
+    """Return the beads in thin regions and in the gaps between contours."""
     curves = list(contour_levels.thin)
     for k, gaps in enumerate(contour_levels.gaps):
         curves += [
@@ -292,27 +299,26 @@ def centres(contour_levels: Levels, beads: Beads) -> list[PlaneCurve]:
     return curves
 
 
-REACH = 1.7  # spacings; contours farther apart are not joined
-TRIES = 64  # places at which two contours may be joined
-THINNEST = 0.3  # of the width; minimum width of a bead
-LOOP = (
-    0.05,
-    0.25,
-)  # of the spacing: half the width that a loop about a middle bead encloses, least and largest
-LINK_LENGTH, SHARE = (
-    0.8,
-    0.2,
-)  # of the width at which the allowed gap stays open next to links; of the length of a contour
-INSIDE_SHARE = 1e-4  # of a link, cut off at its ends in the check
+REACH = 1.7  # in spacings; maximum distance of contours to join
+TRIES = 64  # number of candidate positions for a link between two contours
+THINNEST = 0.3  # minimum bead share
+# in spacings; minimum and maximum half width of a loop that replaces a centreline bead
+LOOP = (0.05, 0.25)
+# width of an opening: fraction of the width at which links leave the allowed gap open, and maximum
+# fraction of the contour length
+LINK_LENGTH, SHARE = 0.8, 0.2
+INSIDE_SHARE = 1e-4  # fraction of a link that is excluded at each end in the crossing check
 
 
 class Slant(NamedTuple):
     """Conditions for the position of a link.
 
-    min_cosine: between the contours. straight: least straight share of an opening. ahead: how far
-    ahead links end, as a share of the distance (1 is 45 deg). uneven: allowed deviation of the
-    distance, as a share of the spacing. clearance: on either side of an opening. opening: share of
-    the widest possible one. margin: between links and other contours.
+    min_cosine: minimum cosine of the angle between the contours. straight: minimum ratio of chord
+    to length of an opening. ahead: advance of links along the contour as a fraction of the contour
+    distance (1 is 45 deg). uneven: maximum change of the contour distance along an opening, in
+    spacings. clearance: clearance on either side of an opening, in spacings. opening: width of the
+    opening as a fraction of the maximum. margin: distance between links and other contours, in
+    spacings.
     """
 
     min_cosine: float
@@ -324,7 +330,7 @@ class Slant(NamedTuple):
     margin: float = 0.2
 
 
-SLANTS = (  # the best first
+SLANTS = (  # from the best to the last resort
     Slant(0.94, 0.985, 1.0),
     Slant(0.8, 0.95, 1.0),
     Slant(0.7, 0.9, 0.4),
@@ -336,8 +342,11 @@ SLANTS = (  # the best first
 
 
 class Link(NamedTuple):
-    """An opening of a contour (from `leaves`, a stretch ahead) joined to another ring, entered at `enters` and left at `exits`, run
-    with the given sense; arc lengths, mm.
+    """Two parallel link lines that join an opening of a contour to an opening of another ring.
+
+    leaves, returns: arc lengths, mm, on the contour, where the path leaves and returns. ring: index
+    of the other ring. enters, exits: arc lengths, mm, on the other ring. sense: direction of motion
+    along the other ring, 1 or -1.
     """
 
     leaves: float
@@ -349,7 +358,11 @@ class Link(NamedTuple):
 
 
 class _Found(NamedTuple):
-    """A link, the ring that it leaves, and what decides between links: how far off the spacing, how far along the ring."""
+    """Candidate link from the ring `from_ring`.
+
+    rank: deviation of the contour distance from the spacing, then arc length along the ring, mm;
+    the candidate with the lowest rank wins.
+    """
 
     rank: tuple[float, float]
     from_ring: int
@@ -357,29 +370,29 @@ class _Found(NamedTuple):
 
 
 def connect_contours(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
-    """Return one closed bead through the contours of a region.
+    """Connect the contours of a region to one closed bead.
 
-    Curves without a position for links stay separate beads, as does the only bead of a region too
-    narrow for contours.
+    Curves without a valid link position stay separate beads. A region too narrow for contours gets
+    separate centreline beads only.
 
     Parameters
     ----------
     region : Region
         The region to fill, mm.
     inner : tuple of Region
-        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+        The region shrunk by `beads.inset`, mm; bead centrelines stay inside.
     beads : Beads
         Spacing, width, gap and chord error, mm.
 
     Returns
     -------
     list of PlaneCurve
-        The connected bead first, if any, then separate ones; none is shorter than `beads.shortest`.
+        The connected bead, if any, then separate beads; none is shorter than `beads.shortest`.
 
     Raises
     ------
     InfeasibleError
-        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
+        THIN_REGION if `beads.thin` is 'refuse' and the region is locally narrower than a bead.
     """
     contour_levels = levels(region, inner, beads)
     loose = centres(contour_levels, beads)
@@ -406,8 +419,11 @@ def connect_contours(region: Region, inner: tuple[Region, ...], beads: Beads) ->
 
 
 def _half(curve: PlaneCurve, contours: list[PlaneCurve], beads: Beads) -> float:
-    """How far (mm) from a bead in the middle the sides of a loop about it run, so that each is in the middle of its half of
-    the gap between contours; 0 where it is closed as it is."""
+    """Return the half width, mm, of a loop that replaces a centreline bead.
+
+    Each side of the loop is centred in one half of the gap between contours. A closed bead needs no
+    loop and gets a half width of 0.
+    """
     if curve.closed:
         return 0.0
     distance = nearest_among([(contour.points, True) for contour in contours], curve.points)[1]
@@ -416,7 +432,7 @@ def _half(curve: PlaneCurve, contours: list[PlaneCurve], beads: Beads) -> float:
 
 
 def _loop(curve: PlaneCurve, half: float, beads: Beads) -> PlaneCurve:
-    """A closed curve, or a thin loop about an open one."""
+    """Return a thin loop around an open curve; return a closed curve unchanged."""
     if curve.closed:
         return curve
     outlines = along([(curve.points, False)], half, beads.chord_error)
@@ -424,7 +440,10 @@ def _loop(curve: PlaneCurve, half: float, beads: Beads) -> PlaneCurve:
 
 
 def _join(rings: list[Ring], links: list[list[Link]], beads: Beads) -> set[int]:
-    """Join rings to the first one, and to rings already joined, as long as positions remain; the numbers of the joined rings."""
+    """Join rings to the first ring and to joined rings while valid link positions remain.
+
+    Adds the links to `links` and returns the indices of the joined rings.
+    """
     joined, entered = {0}, {0: 1}
     adjacent_pairs: dict[int, list[AdjacentRings]] = {}
     for pair in side_by_side(rings, REACH * beads.spacing):
@@ -470,8 +489,10 @@ def _place(
     sense: int,
     placed: list[Array],
 ) -> _Found | None:
-    """The link from the first ring of a pair, run with `sense`, to the second: the nearest to the spacing and the first along its
-    ring; None without any position. placed: the present links, (2, 2) each.
+    """Find the best link from the first ring of a pair, traversed with `sense`, to the second ring.
+
+    The best link has the contour distance closest to the spacing, then the lowest arc length.
+    Returns None if no position is valid. placed: lines (2, 2) of existing links.
     """
     from_ring, to_ring = rings[pair.from_ring], rings[pair.to_ring]
     spacing, gap = beads.spacing, slant.clearance * beads.spacing
@@ -495,15 +516,14 @@ def _place(
     shift = np.minimum(slant.ahead * 0.5 * (distance + distance_ahead), SHARE * to_ring.length)
     enters, exits = feet + turn * shift, feet_ahead + turn * shift
     span = np.remainder(turn * (exits - enters), to_ring.length)
-    if not slant.ahead:  # a corner of a small contour may be the nearest to both
+    if not slant.ahead:  # both ends may project to one corner of a small contour
         exits = np.where(span < 0.3 * wide, enters + turn * wide, exits)
         span = np.remainder(turn * (exits - enters), to_ring.length)
     good = (np.abs(lean) >= slant.min_cosine) & (distance > 0.15 * spacing)
     good &= (span < (1.0 + 2.0 * slant.uneven) * wide) & (span > 0.3 * wide)
     good &= np.abs(distance - distance_ahead) < slant.uneven * spacing
-    good &= (
-        np.hypot(*(second - first).T) > slant.straight * wide
-    )  # an opening round a corner would leave it bare
+    # an opening across a corner would leave the corner bare
+    good &= np.hypot(*(second - first).T) > slant.straight * wide
     good &= (
         np.hypot(*(to_ring.points_at(exits) - to_ring.points_at(enters)).T) > slant.straight * span
     )
@@ -534,7 +554,7 @@ def _place(
 
 
 def _lines(from_ring: Ring, to_ring: Ring, link: Link) -> list[Array]:
-    """The two lines (2, 2) of a link."""
+    """Return the two lines (2, 2) of a link."""
     ends = to_ring.points_at(np.array([link.enters, link.exits]))
     from_points = from_ring.points_at(np.array([link.leaves, link.returns]))
     return [np.stack([from_points[0], ends[0]]), np.stack([ends[1], from_points[1]])]
@@ -548,8 +568,11 @@ def _is_clear(
     placed: list[Array],
     margin: float,
 ) -> bool:
-    """Whether nothing comes between the lines of a link: no other ring, no other link, and neither of the rings it joins
-    but where they are opened."""
+    """Whether the lines of a link cross neither each other, other links nor the joined rings.
+
+    The openings of the joined rings do not count. All other rings must be at least `margin` mm
+    away.
+    """
     from_ring, to_ring = rings[pair.from_ring], rings[pair.to_ring]
     lines = _lines(from_ring, to_ring, link)
     share = np.linspace(0.0, 1.0, 7)[:, None]
@@ -578,7 +601,7 @@ def _is_clear(
 
 
 def _take(from_ring: Ring, to_ring: Ring, link: Link) -> None:
-    """The openings of a link are taken."""
+    """Mark the openings of a link as occupied on both rings."""
     from_ring.take(min(link.leaves, link.returns), max(link.leaves, link.returns))
     span = (link.sense * (link.enters - link.exits)) % to_ring.length
     start = link.exits if link.sense > 0 else link.enters
@@ -586,7 +609,10 @@ def _take(from_ring: Ring, to_ring: Ring, link: Link) -> None:
 
 
 def _share(rings: list[Ring], number: int, half: float, beads: Beads) -> float:
-    """The share of the usual width that the two sides of a loop, `half` mm from its middle, have between its neighbours."""
+    """Return the bead share with which a ring fits between the neighbouring rings.
+
+    half: half width of the loop, mm; 0 for a closed bead that needs no loop.
+    """
     ring = rings[number]
     points = ring.points_at(np.linspace(0.0, ring.length, TRIES, endpoint=False))
     low, high = points.min(axis=0) - beads.spacing, points.max(axis=0) + beads.spacing
@@ -606,7 +632,7 @@ def _share(rings: list[Ring], number: int, half: float, beads: Beads) -> float:
 
 
 def _walked(rings: list[Ring], links: list[list[Link]], shares: list[float]) -> PlaneCurve:
-    """The whole, from the start of the first ring, each ring with its share of the width."""
+    """Build the connected bead from the start of the first ring; shares: bead share of each ring."""
     sections: list[Array] = []
     share: list[Array] = []
 
@@ -615,7 +641,7 @@ def _walked(rings: list[Ring], links: list[list[Link]], shares: list[float]) -> 
         share.append(np.full(len(sections[-1]), shares[number]))
 
     def walk(number: int, start: float, distance: float, sense: int) -> None:
-        """Along a ring for `distance` mm from an arc length, and through all that is joined to it."""
+        """Follow a ring for `distance` mm from arc length `start`, including its joined rings."""
         ring, position = rings[number], start
         for link in sorted(
             links[number], key=lambda link: (sense * (link.leaves - start)) % ring.length

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Coverage of a region by its beads: missed area and stray area."""
+"""Measure how beads cover a region: missed, stray and over-deposited area."""
 
 from __future__ import annotations
 
@@ -16,14 +16,18 @@ from ..geometry.regions.strip import Strip
 from ..types import Array
 from .centre import Beads, PlaneCurve, near_windows, split_by_width
 
-COARSE = 0.01  # of half a bead; finest chord error of beads round a hub
-DOT = 1e-6  # of a dot's length: the line about which its disc is drawn
+COARSE = 0.01  # in half bead widths; minimum chord error of beads around a hub
+DOT = 1e-6  # fraction of a dot's length; length of the line whose offset is the disc of the dot
 
-Line = tuple[Array, bool]  # points (n, 2), and whether they close
+Line = tuple[Array, bool]  # points (n, 2), and whether the line is closed
 
 
 class Cover(NamedTuple):
-    """Areas, mm^2: of regions, their missed area, the stray area of beads, and the area covered inside and outside."""
+    """Areas, mm^2.
+
+    area: regions. missed: regions without bead. outside: stray beads. covered: beads in total,
+    overlaps counted once.
+    """
 
     area: float = 0.0
     missed: float = 0.0
@@ -31,16 +35,16 @@ class Cover(NamedTuple):
     covered: float = 0.0
 
     def scaled(self, share: float) -> Cover:
-        """The cover of a layer with another height, as a share."""
+        """Multiply all areas by `share`, such as for another layer height."""
         return Cover(*(share * area for area in self))
 
     def over(self, area: float) -> float:
-        """Over-deposited area of beads of an area, mm^2."""
+        """Return the over-deposited area, mm^2, of beads whose deposited area is `area` mm^2."""
         return area - self.covered
 
 
 def total(covers: Sequence[Cover]) -> Cover:
-    """The sum over several regions."""
+    """Sum the covers of several regions."""
     return Cover(*map(math.fsum, zip(*covers))) if covers else Cover()
 
 
@@ -54,20 +58,18 @@ def measure_cover(
     region : Region or Strip
         The region, mm; a strip is measured window by window.
     curves : sequence of PlaneCurve
-        Middles of the beads in the plane of the region.
+        Centrelines of the beads in the plane of the region.
     beads : Beads
-        The usual width and the chord error, mm.
+        Nominal width and chord error, mm.
     density : float, optional
-        Share of the area to fill; below 1 open areas are intended and count as not missed.
+        Fraction of the area to fill. Below 1, open areas are intended and no area counts as missed.
 
     Returns
     -------
     Cover
         Areas of the region, missed, outside and covered, mm^2.
     """
-    if isinstance(
-        region, Strip
-    ):  # window by window; beads of regions round a hub are as wide as usual
+    if isinstance(region, Strip):  # beads around a hub have the nominal width
         beads = replace(beads, chord_error=max(beads.chord_error, COARSE * beads.inset))
         cover = total(
             [
@@ -91,8 +93,9 @@ def _cover_regions(
     beads: Beads,
     pane: Sequence[Region],
 ) -> Cover:
-    """The cover of regions of the plane, limited to a pane if given. widths: lines of beads, and the share of the usual width of
-    each.
+    """Measure the cover of plane regions, limited to a pane if given.
+
+    widths: lines of each bead, and the width of each line as a fraction of the nominal width.
     """
     lines = [line for region_lines, _ in widths for line in region_lines]
     half = beads.inset * np.array([share for _, shares in widths for share in shares])
@@ -104,7 +107,7 @@ def _cover_regions(
 
 
 def _lines(curves: Sequence[PlaneCurve], chord_error: float) -> tuple[list[Line], list[float]]:
-    """Beads as wide as usual in lines, and the share of the usual width of each."""
+    """Return beads of nominal width as lines, each with bead share 1."""
     lines = [
         (simplified(curve.points, chord_error, curve.closed), curve.closed) for curve in curves
     ]
@@ -112,7 +115,10 @@ def _lines(curves: Sequence[PlaneCurve], chord_error: float) -> tuple[list[Line]
 
 
 def _widths(curve: PlaneCurve, beads: Beads) -> tuple[list[Line], list[float]]:
-    """A bead as lines of constant width, and the share of the usual width of each. A dot is a disc as large as its fed volume."""
+    """Return a bead as lines of constant width, and the bead share of each line.
+
+    A dot becomes a disc with the deposited area of the dot.
+    """
     if curve.dot:
         share = 1.0 if curve.share is None else curve.share[0]
         fed = 2.0 * beads.inset * share * length(curve.points, curve.closed)

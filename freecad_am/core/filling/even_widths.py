@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads narrower or wider than usual: so that contours come out even over the thickness of a region, and where neighbours leave
-less than their usual room, so that layers do not get higher there.
+"""Adjust bead widths.
+
+Contours get a width such that a whole number of beads fits the thickness of a region. Beads closer
+together than the spacing are narrowed, so that the layer does not get too high.
 """
 
 from __future__ import annotations
@@ -18,34 +20,39 @@ from ..geometry.regions.region import DIGITS, WIDTH, Region, select_significant
 from ..types import Array, Index, Mask
 from .centre import Beads, PlaneCurve
 
-THICKNESS_MARGIN = 1.002  # of the thickness, in addition to the error of its measure: a contour in the middle is not a thin loop
-PLACES = 0.25  # of the spacing, distance between samples of widths
-CENTRES = ("centre", "closing")  # kinds of beads that fill gaps between others
-STEP = 0.2  # of the spacing, distance between samples of room
-ROUND = 1.6  # arc over chord; a bead returns to itself after more than half a circle
-SHARE_TOLERANCE = 0.04  # of the usual width; shares within this of a straight line need no point
+# factor on the thickness beyond its measurement error, so that the innermost contour does not
+# become a thin loop
+THICKNESS_MARGIN = 1.002
+PLACES = 0.25  # in spacings; sample distance of widths
+CENTRES = ("centre", "closing")  # kinds of beads that fill gaps between other beads
+STEP = 0.2  # in spacings; sample distance of the free width
+ROUND = 1.6  # minimum ratio of arc to chord; a bead this curved can be its own neighbour
+SHARE_TOLERANCE = 0.04  # tolerance of bead shares in the linear interpolation between points
+# priority of kinds; a bead of lower rank keeps its width, unlisted kinds have MIDDLE_RANK
 KIND_RANKS = {
     "contour": 0,
     "connected": 0,
     "spiral": 0,
     "line": 1,
     "zigzag": 1,
-}  # who keeps its room; all others come last
+}
 MIDDLE_RANK = 2
 MOVED = ("contour", "connected", "spiral")
-SMOOTHED = (
-    1.0  # of the spacing, along a bead to either side, over which widths and moves are averaged
-)
-PARALLEL_COSINE = (
-    0.95  # cosine of a turn; where a bead turns less it is moved by the mean of its edges
-)
-MAX_MOVE_RATIO = 2.0  # times how far its edges move; no corner moves farther
-ALONG = 0.02  # sine of the angle to the lines of a zigzag; edges turned more are links
+# in spacings; length along a bead, to either side, over which widths and shifts are averaged
+SMOOTHED = 1.0
+# cosine of the angle between two edges; at smaller angles the point gets the mean shift of both
+# edges
+PARALLEL_COSINE = 0.95
+MAX_MOVE_RATIO = 2.0  # maximum ratio of the shift of a corner to the shifts of its edges
+ALONG = 0.02  # sine of the angle to the lines of a zigzag; edges at larger angles are links
 
 
 class _Edges(NamedTuple):
-    """Short edges of beads: their middles (n, 2), unit directions (n, 2), arc lengths (n,) mm, beads (n,) by number; lengths (m,) mm
-    of the closed beads, infinite for open ones; half the length (n,) mm of each edge.
+    """Short edges of beads.
+
+    middles: (n, 2) midpoints, mm. directions: (n, 2) unit vectors. arcs: (n,) arc lengths of the
+    midpoints, mm. bead: (n,) bead index of each edge. around: (m,) lengths of the beads, mm,
+    infinite for open beads. halves: (n,) half lengths of the edges, mm.
     """
 
     middles: Array
@@ -59,23 +66,24 @@ class _Edges(NamedTuple):
 def fit_beads(
     region: Region, beads: Beads, min_share: float, max_share: float
 ) -> tuple[Beads, float]:
-    """Fit a whole number of beads into the thickest place of a region.
+    """Adjust the bead width so that a whole number of beads fits the maximum thickness of a region.
 
     Parameters
     ----------
     region : Region
         The region, mm.
     beads : Beads
-        The usual beads.
+        Beads of nominal width.
     min_share, max_share : float
-        Least and greatest share of the usual width; equal ones change nothing.
+        Minimum and maximum bead share; equal values disable the adjustment.
 
     Returns
     -------
     beads : Beads
-        Beads with spacing, width and gap times the share; the usual ones if no number fits.
+        Beads with spacing, width and gap scaled by the bead share; unchanged if no number of beads
+        fits.
     share : float
-        The share of the usual width, as near to 1 as possible.
+        Bead share closest to 1 that fits; 1 if none fits.
     """
     if min_share == max_share:
         return beads, 1.0
@@ -108,27 +116,28 @@ def share_widths(
     min_share: float,
     max_share: float,
 ) -> Iterator[PlaneCurve]:
-    """Yield curves with their share of the usual width at each point.
+    """Yield curves with the bead share at each point.
 
-    It is the fitted share, for middle beads reduced to the room between their neighbours.
+    Contours get the fitted bead share. Centreline beads get the width of the space between their
+    neighbours.
 
     Parameters
     ----------
     region : Region
         The filled region, mm.
     curves : sequence of PlaneCurve
-        Beads that fill it.
+        Beads that fill the region.
     beads : Beads
         The fitted beads, see `fit_beads`.
     share : float
-        Their share of the usual width.
+        Bead share of the fitted beads.
     min_share, max_share : float
-        Bounds of the shares of middle beads; equal ones change nothing.
+        Minimum and maximum bead share of centreline beads; equal values disable the adjustment.
 
     Yields
     ------
     PlaneCurve
-        The curves in their order; middle beads have more points, at most PLACES spacings apart.
+        The curves in the given order; centreline beads get points at most PLACES spacings apart.
     """
     other_lines = [(curve.points, curve.closed) for curve in curves if curve.kind not in CENTRES]
     for curve in curves:
@@ -158,10 +167,11 @@ def share_widths(
 
 
 def _places(curve: PlaneCurve, step: float) -> Array:
-    """The points (n, 2) of a curve and more, at most `step` mm apart."""
+    """Return the points of a curve with points added, (n, 2), at most `step` mm apart."""
     if curve.closed:
         return dense(curve.points, step)
-    # an open one forth and back is a ring, whose first half is the way forth
+    # `dense` takes rings: an open curve traversed forwards and back is a ring; keep its forward
+    # half
     points = dense(np.vstack([curve.points, curve.points[-2:0:-1]]), step)
     return points[: int(np.argmin(np.abs(points - curve.points[-1]).sum(axis=1))) + 1]
 
@@ -169,28 +179,28 @@ def _places(curve: PlaneCurve, step: float) -> Array:
 def narrow_beads(
     curves: Sequence[PlaneCurve], beads: Beads, angle: float, min_share: float
 ) -> tuple[PlaneCurve, ...]:
-    """Narrow beads to the room between their neighbours.
+    """Narrow beads to the space between their neighbours.
 
-    A bead reaches halfway to neighbours of its kind and up to neighbours of higher rank: contours
-    before lines before middle beads. Links of zigzags deposit the area beyond the ends of their
-    lines.
+    A bead extends halfway to neighbours of equal priority, and up to the edge of neighbours of
+    higher priority. Contours have the highest priority, then lines, then centreline beads. Links of
+    zigzags fill the area beyond the line ends.
 
     Parameters
     ----------
     curves : sequence of PlaneCurve
-        Beads of one region, one or more.
+        Beads of one region, at least one.
     beads : Beads
         Spacing and width, mm.
     angle : float
         Direction of the lines of zigzags from x of the plane, rad.
     min_share : float
-        Least share of the usual width.
+        Minimum bead share.
 
     Returns
     -------
     tuple of PlaneCurve
-        The curves with shares of at most 1 at their points, moved to the middle of their room
-        where nothing holds them; dots come last, unchanged.
+        The curves with bead shares of at most 1. Contours, and lines that do not end on contours,
+        are centred between their neighbours. Dots come last, unchanged.
     """
     dots = [curve for curve in curves if curve.dot]
     if dots:  # dots are isolated and already have their width
@@ -218,7 +228,7 @@ def narrow_beads(
     )
     share = np.where(zigzags & turned, 2.0 * widths.min(axis=1) / beads.spacing, share)
     share = np.round(np.clip(share, min_share, 1.0), DIGITS)
-    outer = 2.0 * beads.inset / beads.spacing  # the outermost keep their outer edge on the border
+    outer = 2.0 * beads.inset / beads.spacing  # keeps the edge of outermost beads on the border
     factor = np.array(
         [(outer if curve.ring == 0 else 1.0) if _may_move(curve) else 0.0 for curve in curves]
     )
@@ -231,8 +241,10 @@ def narrow_beads(
 
 
 def _smoothed(line: Array, values: Array, closed: bool, reach: float) -> Array:
-    """The values (n - 1,) of the edges of a line (n, 2), averaged over `reach` mm to either side: a bead whose width changes
-    at once has a kink in its path, or a dent in its side."""
+    """Average the edge values (n - 1,) of a line (n, 2) over `reach` mm to either side.
+
+    An abrupt change of width would cause a kink in the path or a dent in the side of the bead.
+    """
     arc = arcs(line)
     length = arc[-1]
     reach = min(reach, 0.5 * length)
@@ -249,8 +261,9 @@ def _smoothed(line: Array, values: Array, closed: bool, reach: float) -> Array:
 
 
 def _may_move(curve: PlaneCurve) -> bool:
-    """Whether a narrow bead is centred in its own room: not the lines of a zigzag, which its links join, nor lines that end on
-    contours.
+    """Whether a narrowed bead may shift to be centred between its neighbours.
+
+    Lines of zigzags stay because links join them, and lines that end on contours stay.
     """
     return curve.kind in MOVED or (curve.kind == "line" and curve.ring == 0)
 
@@ -269,7 +282,10 @@ def _edges(lines: Sequence[Array], closed: Sequence[bool]) -> _Edges:
 
 
 def _free_widths(edges: _Edges, rank: Index, spacing: float) -> Array:
-    """Room (n, 2) in mm to the left and to the right of edges, at most half the spacing."""
+    """Return the free half width (n, 2), mm, left and right of edges, at most half the spacing.
+
+    rank: (m,) priority of each bead, see `KIND_RANKS`.
+    """
     half = 0.5 * spacing
     free = np.full((len(edges.middles), 2), half)
     i, j = _neighbours(edges, spacing).T
@@ -277,12 +293,11 @@ def _free_widths(edges: _Edges, rank: Index, spacing: float) -> Array:
     foot = np.clip(
         -np.einsum("ni,ni->n", gap, edges.directions[j]), -edges.halves[j], edges.halves[j]
     )
-    gap += foot[:, None] * edges.directions[j]  # the nearest place of the other edge
+    gap += foot[:, None] * edges.directions[j]  # to the nearest point of edge j
     aside = edges.directions[i, 0] * gap[:, 1] - edges.directions[i, 1] * gap[:, 0]
     side = (aside < 0.0).astype(np.intp)
-    radius = (gap**2).sum(axis=1) / np.maximum(
-        2.0 * np.abs(aside), 1e-9 * spacing
-    )  # of the circle that touches both
+    # radius of the circle that touches both edges
+    radius = (gap**2).sum(axis=1) / np.maximum(2.0 * np.abs(aside), 1e-9 * spacing)
     lot = rank[edges.bead]
     for level in range(MIDDLE_RANK + 1):
         in_rank = lot[i] == level
@@ -297,7 +312,10 @@ def _free_widths(edges: _Edges, rank: Index, spacing: float) -> Array:
 
 
 def _neighbours(edges: _Edges, spacing: float) -> Index:
-    """Pairs (m, 2), both ways, of edges nearer to each other than the spacing, except consecutive ones."""
+    """Find pairs (m, 2) of edges closer than the spacing, in both orders.
+
+    Edges of the same bead count only if the bead turns back between them (`ROUND`).
+    """
     pairs = cKDTree(edges.middles).query_pairs(spacing, output_type="ndarray")
     i, j = pairs.T
     chord = np.hypot(*(edges.middles[i] - edges.middles[j]).T)
@@ -310,13 +328,15 @@ def _neighbours(edges: _Edges, spacing: float) -> Index:
 def _with(
     curve: PlaneCurve, line: Array, corners: Mask, share: Array, aside: Array, spacing: float
 ) -> PlaneCurve:
-    """A curve with the shares (n - 1,) of the edges of its points (n, 2), moved to the left by `aside` (n - 1,) mm, reduced to its
-    corners (n,) and the points that resolve the shares and the move.
+    """Return a curve with the bead shares (n - 1,) of the edges of a line (n, 2).
+
+    Edges shift to the left by `aside` (n - 1,) mm. The result keeps the corners (n,) of the line
+    and the points that resolve bead shares and shifts.
     """
     if share.min() > 1.0 - SHARE_TOLERANCE:
         return replace(curve, share=None)
     if aside.any():
-        for _ in range(2):  # twice, so that the way has no kinks where an average begins
+        for _ in range(2):  # a single moving average would leave kinks in the path
             share = _smoothed(line, share, curve.closed, SMOOTHED * spacing)
             aside = _smoothed(line, aside, curve.closed, SMOOTHED * spacing)
     ends = (
@@ -336,7 +356,7 @@ def _with(
 
 
 def _moves(line: Array, aside: Array, closed: bool) -> Array:
-    """How (n, 2) mm the points of a line (n, 2) move, so that its edges move to the left by `aside` (n - 1,) mm."""
+    """Return the point shifts (n, 2), mm, that move the edges of a line left by `aside` (n - 1,) mm."""
     direction = np.diff(line, axis=0)
     direction /= np.maximum(np.hypot(*direction.T), 1e-300)[:, None]
     normal = np.stack([-direction[:, 1], direction[:, 0]], axis=1)
@@ -348,7 +368,7 @@ def _moves(line: Array, aside: Array, closed: bool) -> Array:
     sine = left_in[:, 0] * left_out[:, 1] - left_in[:, 1] * left_out[:, 0]
     sum_ = left_in + left_out
     mean = (0.5 * (aside_in + second))[:, None] * sum_ / np.maximum(1.0 + cosine, 0.1)[:, None]
-    # where both edges move square to themselves by their own amounts
+    # intersection of both edges, each shifted along its normal
     turned = np.where(np.abs(sine) > 1e-9, sine, 1.0)
     x = (aside_in * left_out[:, 1] - second * left_in[:, 1]) / turned
     y = (second * left_in[:, 0] - aside_in * left_out[:, 0]) / turned

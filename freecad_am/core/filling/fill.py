@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One entry to all patterns, with their common steps: room for bead middles, thin regions, walls, gap-closing beads, short beads."""
+"""Fill regions with any pattern.
+
+All patterns share these steps: inset the bead centrelines, fill thin regions, add walls, close gaps
+and drop short beads.
+"""
 
 from __future__ import annotations
 
@@ -35,43 +39,42 @@ from .connected import centres, connect_contours, contours, levels
 from .sparse import Infill, frame, lines, sparse
 from .strip_lines import lines_along, lines_round
 
-# ---- Contours linked to spirals: once quite round at the border, then almost round and over to the
-# next contour by a short line, and at last quite round again, so that neither end leaves a wedge
-# open
+# ---- Contours linked to spirals: the first and the last contour are complete, so that neither end
+# leaves an open wedge. Contours in between stop short of a full lap, and a short straight link
+# leads to the next contour.
 
-PROBES = 64  # samples of a ring in the search for its neighbours
-PARALLEL_GAP = (
-    0.02  # relative to the spacing; a ring follows another that it is that close to parallel to
-)
-LEAST_LENGTH = 4.0  # spacings; contours shorter than that are not linked
-LINK = 3.0  # spacings; longest link of spirals and, without a given one, of zigzags
+PROBES = 64  # samples per ring in the search for neighbouring rings
+# in spacings; tolerance of the distance between two rings that count as parallel neighbours
+PARALLEL_GAP = 0.02
+LEAST_LENGTH = 4.0  # in spacings; shorter contours are not linked
+LINK = 3.0  # in spacings; maximum link length of spirals, and the default for zigzags
 
 
 def spiral(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[PlaneCurve]:
     """Return spirals from each outer contour and each hole.
 
-    A spiral goes on while contours follow one another singly. Where contours split or join, new
-    curves begin. A contour without neighbours stays closed. Gaps of contours are filled as in
-    `contours`.
+    A spiral continues inwards while each contour has exactly one neighbour on the next level. A new
+    curve begins where contours split or join. A contour without neighbours stays closed. Gaps
+    between contours are filled as in `contours`.
 
     Parameters
     ----------
     region : Region
         The region to fill, mm.
     inner : tuple of Region
-        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+        The region shrunk by `beads.inset`, mm; bead centrelines stay inside.
     beads : Beads
         Spacing, width, gap and chord error, mm.
 
     Returns
     -------
     list of PlaneCurve
-        Spirals from outside in, then middle beads and beads that close gaps.
+        Spirals from outside in, then centreline beads and gap-closing beads.
 
     Raises
     ------
     InfeasibleError
-        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
+        THIN_REGION if `beads.thin` is 'refuse' and the region is locally narrower than a bead.
     """
     contour_levels = levels(region, inner, beads)
     rings = [
@@ -101,7 +104,7 @@ def spiral(region: Region, inner: tuple[Region, ...], beads: Beads) -> list[Plan
 def _followers(
     outer_rings: Sequence[Array], inner_rings: Sequence[Array], spacing: float
 ) -> dict[int, int]:
-    """Pairs of consecutive rings of two levels, where each ring has a single neighbour on the other level."""
+    """Map outer rings to inner rings, where both have only each other as neighbour."""
     adjacent = np.zeros((len(outer_rings), len(inner_rings)), dtype=bool)
     for j, ring in enumerate(inner_rings):
         probes = ring[np.unique(np.linspace(0, len(ring) - 1, PROBES).astype(int))]
@@ -118,8 +121,11 @@ def _followers(
 def _linked(
     chain: Sequence[Array], regions: Sequence[Sequence[Region]], beads: Beads
 ) -> list[Array]:
-    """The rings up to the last link, each begun where the link arrives and ended where the next leaves: the first where it began, the
-    others a spacing before, so that links are side by side. A ring without an outgoing link is whole.
+    """Cut the rings of a chain at their links, up to the last possible link.
+
+    A ring starts where the incoming link arrives. The first ring ends at its start point; later
+    rings end one spacing before theirs, so that links run side by side. A ring without an outgoing
+    link stays complete.
     """
     ring = beads.ring(chain[0])
     sections: list[Array] = []
@@ -155,22 +161,24 @@ def _inside(points: Array, regions: Sequence[Region]) -> bool:
 
 # ---- All patterns
 
-AFRESH = 4  # contours made from the same borders; farther in, windows would get too narrow and errors are small yet
+# contours offset from the same borders; more would make the windows too narrow, while the error of
+# a restart after this many is still small
+AFRESH = 4
 
 
 def strip_contours(
     strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads
 ) -> list[PlaneCurve]:
-    """Return contours as in `contours`: from borders and holes inwards, then beads in the gaps.
+    """Fill a strip with contours, from its borders and holes inwards, then with beads in the gaps.
 
-    A strip narrower than a bead has one bead in its middle.
+    A strip narrower than a bead gets a single bead along its centreline.
 
     Parameters
     ----------
     strip : Strip
-        The region round the hub.
+        The region around the hub.
     inner : tuple of Strip or Region
-        Allowed positions of bead middles: the strip shrunk by `beads.inset`.
+        The strip shrunk by `beads.inset`, mm; bead centrelines stay inside.
     beads : Beads
         Spacing, width, gap and chord error, mm.
 
@@ -219,11 +227,11 @@ def strip_contours(
 
 
 def _centre(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
-    """A bead round the hub in the middle of a thin strip."""
+    """Return a bead around the hub along the centreline of a thin strip."""
     points = spine_round(
         strip, 0.25 * beads.gap, FINE * beads.spacing, beads.chord_error, beads.spacing
     )
-    if points is None:  # somewhere too narrow for a bead
+    if points is None:  # the strip is locally too narrow for a bead
         return centre_beads(halves(strip), beads, ring, ())
     return [
         PlaneCurve(
@@ -236,29 +244,29 @@ def _centre(strip: Strip, beads: Beads, ring: int) -> list[PlaneCurve]:
     ]
 
 
-LESS = 0.98  # of the area of a region; beads that feed less do not fill it
-EXACT = 1e-4  # of half a bead's width
+LESS = 0.98  # fraction of the region area; beads with less deposited area do not fill the region
+EXACT = 1e-4  # in half bead widths; tolerance of the depth of a ring
 
 
 def balanced(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> list[PlaneCurve]:
-    """Replace a single curve that feeds a small region too little by a ring or a dot.
+    """Replace a single curve that underfills a small region by a ring or a dot.
 
-    Only a region without holes and no larger than a circle with a bead width as radius is changed.
+    Only regions without holes qualify, up to the area of a circle whose radius is the bead width.
 
     Parameters
     ----------
     region : Region
         The filled region, mm.
     curves : sequence of PlaneCurve
-        Beads that fill it.
+        Beads that fill the region.
     beads : Beads
         Width and shortest length of beads, mm.
 
     Returns
     -------
     list of PlaneCurve
-        The curves, or one ring that feeds the area of the region; a dot if that ring is shorter
-        than `beads.shortest`.
+        The curves, or one ring whose deposited area equals the region area; a dot if this ring is
+        shorter than `beads.shortest`.
     """
     if len(curves) > 1 or any(curve.dot for curve in curves) or len(region.borders()) > 1:
         return list(curves)
@@ -266,7 +274,7 @@ def balanced(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> list
     if region.area > math.pi * (2.0 * beads.inset) ** 2 or fed >= LESS * region.area:
         return list(curves)
     if not region.grown(-beads.inset, beads.chord_error):
-        return list(curves)  # narrower than a bead, which has rules of its own
+        return list(curves)  # `single_beads` fills regions narrower than a bead
     ring = _ring(region, beads)
     if ring is None:
         return list(curves)
@@ -276,7 +284,10 @@ def balanced(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> list
 
 
 def _ring(region: Region, beads: Beads) -> Array | None:
-    """The parallel curve (n, 2) inside the border of a region that feeds its area; None unless it is one piece."""
+    """Return the offset curve (n, 2) of the border whose deposited area equals the region area.
+
+    Returns None unless the curve is a single piece.
+    """
 
     def inside(depth: float) -> Array | None:
         regions = region.grown(-depth, beads.chord_error)
@@ -292,9 +303,10 @@ def _ring(region: Region, beads: Beads) -> Array | None:
 
 
 PATTERNS = tuple(FILLS)
-# that follow the border: a region, its inner ones and beads -> beads
+# patterns that follow the border: (region, inner regions, bead options) -> beads
 ON_BORDERS = {"contours": contours, "connected": connect_contours, "spiral": spiral}
-# at 100 % inside of contours: a frame, beads, angle, walls and longest link -> beads
+# patterns inside contours at 100 % density: (frame, bead options, angle, walls, longest link) ->
+# beads
 IN_FRAMES = {
     "lines": lines,
     "zigzag": lines,
@@ -304,7 +316,7 @@ IN_FRAMES = {
     "gyroid": lines,
 }
 SOLID = Infill()
-Gaps = list[tuple[Array, float]]  # a place (2,) in each, and how wide it is, mm
+Gaps = list[tuple[Array, float]]  # a point (2,) in each gap and the gap width, mm
 
 
 def fill(
@@ -316,28 +328,28 @@ def fill(
     longest_link: float = 0.0,
     infill: Infill = SOLID,
 ) -> tuple[PlaneCurve, ...]:
-    """Return the beads that fill a region in one of PATTERNS, from outside in.
+    """Fill a region with beads in one of PATTERNS, from outside in.
 
-    Grid, triangles, honeycomb and gyroid are lines if the whole is filled. Round a hub, lines run
-    round it if the angle is nearer to that and along it otherwise; spirals are contours there, and
-    every other pattern is lines.
+    At density 1, grid, triangles, honeycomb and gyroid become lines. In a strip around a hub, lines
+    run around the hub or along it, whichever is closer to `angle`. There, patterns that follow the
+    border become contours, and all other patterns become lines.
 
     Parameters
     ----------
     region : Region or Strip
-        What to fill, mm; a strip goes round a hub.
+        The region to fill, mm; a strip runs around a hub.
     beads : Beads
-        Spacing, width and gap of beads, mm, and how closed ones begin.
+        Spacing, width and gap of beads, mm, and the start of closed beads.
     pattern : str, optional
         One of PATTERNS.
     angle : float, optional
         Direction of lines and zigzags from x of the plane, rad.
     walls : float, optional
-        Number of contours round the others, infinity for contours only.
+        Number of contours around the pattern; infinity for contours only.
     longest_link : float, optional
-        Longest link of zigzags, mm; 0: 3 spacings.
+        Maximum link length of zigzags, mm; 0: 3 spacings.
     infill : Infill, optional
-        How much of the area inside the walls is filled; all by default.
+        Density inside the walls; solid by default.
 
     Returns
     -------
@@ -347,9 +359,9 @@ def fill(
     Raises
     ------
     InputError
-        PATTERN for another pattern, MISSING_LIBRARY.
+        PATTERN if the pattern is unknown, MISSING_LIBRARY.
     InfeasibleError
-        THIN_REGION.
+        THIN_REGION if `beads.thin` is 'refuse' and the region is locally narrower than a bead.
     """
     if pattern not in PATTERNS:
         raise InputError(
@@ -389,21 +401,21 @@ def fill(
 
 
 def open_places(region: Region | Strip, curves: Sequence[PlaneCurve], beads: Beads) -> Gaps:
-    """Find the gaps within reach of beads that are wider than the allowed one.
+    """Find the gaps within reach of beads that are wider than `beads.gap`.
 
     Parameters
     ----------
     region : Region or Strip
         The filled region, mm.
     curves : sequence of PlaneCurve
-        Beads that fill it.
+        Beads that fill the region.
     beads : Beads
         Spacing, width and allowed gap, mm.
 
     Returns
     -------
     list of tuple of (2,) array and float
-        A point of each gap, mm, unrolled about 0 for a strip, and the width of the gap, mm.
+        A point in each gap and the gap width, mm. Points of a strip are unrolled about 0.
     """
     if isinstance(region, Strip):
         return [

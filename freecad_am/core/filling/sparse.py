@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Partial filling: walls, an open pattern inside of them, and solid filling near tops and bottoms."""
+"""Sparse infill: walls, an open pattern inside them, and solid infill near top and bottom surfaces."""
 
 from __future__ import annotations
 
@@ -24,16 +24,18 @@ from ..types import Array
 from .centre import Beads, PlaneCurve, closing_beads, contours_of, outermost
 from .zigzag import in_rows
 
-FAMILIES = {"lines": 1, "zigzag": 1, "grid": 2, "triangles": 3}  # of parallel lines, evenly turned
-GYROID_LENGTH = 15.449443  # mean length of the sections of a unit gyroid (2 pi wide), within its square of 4 pi^2
-SHARPEST = 6.0  # factor of the chords per period of the gyroid, the root of period by chord error, before simplification
-ROUNDING = 3e-12  # of the largest coordinate
+# number of families of parallel lines, at equal angles
+FAMILIES = {"lines": 1, "zigzag": 1, "grid": 2, "triangles": 3}
+GYROID_LENGTH = 15.449443  # mean section length of a unit gyroid in one period square (side 2 pi)
+# chords per gyroid period before simplification: sqrt(SHARPEST * period / chord error)
+SHARPEST = 6.0
+ROUNDING = 3e-12  # fraction of the maximum coordinate; points this close to a height count as below
 
 
 def families(
     region: Region, pattern: str, spacing: float, density: float, angle: float
 ) -> Iterator[list[list[Array]]]:
-    """Yield the lines of a straight pattern, family by family.
+    """Yield the lines of a straight pattern, one family at a time.
 
     Parameters
     ----------
@@ -44,14 +46,14 @@ def families(
     spacing : float
         Spacing of beads, mm.
     density : float
-        Share of the area that the families fill together.
+        Fraction of the area that all families fill together.
     angle : float
         Direction of the first family from x of the plane, rad.
 
     Yields
     ------
     list of list of (2, 2) array
-        Row by row the pieces of lines in the region, mm.
+        Line segments in the region, row by row, mm.
     """
     count = FAMILIES[pattern]
     for number in range(count):
@@ -59,7 +61,7 @@ def families(
 
 
 def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
-    """Return the pieces of parallel lines in a region.
+    """Clip parallel lines to a region.
 
     Parameters
     ----------
@@ -73,7 +75,7 @@ def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
     Returns
     -------
     list of list of (2, 2) array
-        Row by row the pieces in the direction of the lines, mm.
+        Segments in the direction of the lines, row by row, mm.
     """
     borders = [rotate_points(border, -angle) for border in region.borders()]
     low, high = float(borders[0][:, 1].min()), float(borders[0][:, 1].max())
@@ -88,22 +90,22 @@ def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
 
 
 def crossings(borders: list[Array], level: float) -> Array:
-    """Return where borders cross a height.
+    """Return the x coordinates at which borders cross the line y = `level`.
 
-    Points at that height within rounding errors count as below it, so that a border along it is on
-    the same side whatever its last bits.
+    Border points at this height within rounding errors count as below. Thus a border along the line
+    is on the same side regardless of its last bits.
 
     Parameters
     ----------
     borders : list of (n, 2) array
-        Closed borders, mm, their first points not repeated.
+        Closed borders, mm, without repeated first point.
     level : float
         The height y, mm.
 
     Returns
     -------
     (m,) array
-        The x of the crossings, mm, ascending; an even number.
+        x of the crossings, mm, ascending; m is even.
     """
     positions = []
     for border in borders:
@@ -117,26 +119,27 @@ def crossings(borders: list[Array], level: float) -> Array:
 
 
 def honeycomb(region: Region, spacing: float, density: float, angle: float) -> list[Array]:
-    """Return lines that bound hexagons about the region.
+    """Return the lines of a honeycomb that covers the region.
 
-    Two lines along the same side are a spacing apart. A side of a mm, flat ones and slanted ones in
-    turn: 4 a of bead on 3 a of line, lines a sqrt(3) / 2 + spacing apart.
+    Flat and slanted sides of length a alternate along a line. Thus 4 a of bead cover a length of 3
+    a, at a pitch of a sqrt(3) / 2 + spacing. Two lines that share a side are one spacing apart
+    there.
 
     Parameters
     ----------
     region : Region
-        The region, mm; lines extend beyond its box.
+        The region, mm; lines extend beyond its bounding box.
     spacing : float
         Spacing of beads, mm.
     density : float
-        Share of the area that the lines fill.
+        Fraction of the area that the lines fill.
     angle : float
         Direction of the lines from x of the plane, rad.
 
     Returns
     -------
     list of (n, 2) array
-        The lines, mm, not cut at the border.
+        The lines, mm, not clipped to the region.
     """
     side = (4.0 / (3.0 * density) - 1.0) * spacing * 2.0 / math.sqrt(3.0)
     slant = 0.5 * math.sqrt(3.0) * side
@@ -157,27 +160,27 @@ def honeycomb(region: Region, spacing: float, density: float, angle: float) -> l
 
 
 def gyroid_period(spacing: float, density: float) -> float:
-    """Period, mm, of a gyroid whose sections have the requested density in the mean over the heights."""
+    """Return the gyroid period, mm, for which the mean density over all heights is `density`."""
     return GYROID_LENGTH * spacing / (2.0 * math.pi * density)
 
 
 def gyroid(
     region: Region, spacing: float, density: float, angle: float, height: float, chord_error: float
 ) -> list[Array]:
-    """Return the section at a height of sin x cos y + sin y cos z + sin z cos x = 0.
+    """Return the section of the gyroid sin x cos y + sin y cos z + sin z cos x = 0 at a height.
 
-    For a given z each line is a function of x, or of y, whichever its normal is nearer to: A cos y
-    + B sin y = C is solved for y, so that points are exactly on the surface. Lines meet only where
-    z is an odd multiple of pi / 4.
+    At a given z, the equation has the form A cos y + B sin y = C, or the same form in x, and is
+    solved for y(x) or x(y). Points are therefore exactly on the surface. Lines meet only where z is
+    an odd multiple of pi / 4.
 
     Parameters
     ----------
     region : Region
-        The region, mm; lines extend beyond its box.
+        The region, mm; lines extend beyond its bounding box.
     spacing : float
         Spacing of beads, mm.
     density : float
-        Share of the area that lines fill in the mean over the heights.
+        Fraction of the area that lines fill, mean over all heights.
     angle : float
         Direction of x of the gyroid from x of the plane, rad.
     height : float
@@ -188,7 +191,7 @@ def gyroid(
     Returns
     -------
     list of (n, 2) array
-        The lines, mm, not cut at the border.
+        The lines, mm, not clipped to the region.
     """
     unit = gyroid_period(spacing, density) / (2.0 * math.pi)
     z = height / unit
@@ -219,21 +222,24 @@ def gyroid(
 
 
 def _box(region: Region, angle: float) -> tuple[Array, Array]:
-    """Lowest and highest coordinates (2,) of a region in axes turned by an angle, rad."""
+    """Return minimum and maximum coordinates (2,) of a region in axes rotated by `angle` rad."""
     border = rotate_points(region.borders()[0], -angle)
     return border.min(axis=0), border.max(axis=0)
 
 
-LINK_INSET_SPACINGS = 0.4  # of the spacing; a link on the edge of a contour's bead is half on it, one at 0.5 leaves its corners open
-MAX_NARROWING, MAX_WIDENING = (
-    0.01,
-    0.002,
-)  # of the spacing; lines are moved no more than that so that they come out even
+# distance of links from the edge of the contour bead: at 0 half of the link overlaps the contour,
+# at 0.5 its corners stay open
+LINK_INSET_SPACINGS = 0.4
+# in spacings; maximum change of the spacing to fit a whole number of lines
+MAX_NARROWING, MAX_WIDENING = 0.01, 0.002
 
 
 class Frame(NamedTuple):
-    """Room for lines. curves: the contours round the lines, if any; regions: the borders between which lines are spread; ends: the
-    regions that lines run through, which reach onto the contour; thin: beads in regions narrower than a bead.
+    """Space for lines.
+
+    curves: contours around the lines, if any. regions: regions whose extent determines the heights
+    of the lines. ends: regions that the lines cross; they overlap the innermost contour. thin:
+    beads in regions narrower than a bead.
     """
 
     curves: list[PlaneCurve]
@@ -243,28 +249,28 @@ class Frame(NamedTuple):
 
 
 def frame(region: Region, inner: tuple[Region, ...], beads: Beads, walls: int) -> Frame:
-    """Return the room for lines: half a bead inside the border, or a spacing inside the last wall.
+    """Return the space for lines: half a bead inside the border, or a spacing inside the last wall.
 
     Parameters
     ----------
     region : Region
         The region to fill, mm.
     inner : tuple of Region
-        Allowed positions of bead middles: the region shrunk by `beads.inset`.
+        The region shrunk by `beads.inset`, mm; bead centrelines stay inside.
     beads : Beads
         Spacing, width and chord error, mm.
     walls : int
-        Number of contours deposited first; lines end on the last.
+        Number of contours deposited first; lines end on the innermost contour.
 
     Returns
     -------
     Frame
-        Contours, regions for lines and their ends, and beads in thin places.
+        Contours, regions for lines and line ends, and beads in thin regions.
 
     Raises
     ------
     InfeasibleError
-        THIN_REGION if `beads.thin` is 'refuse' and a place is narrower than a bead.
+        THIN_REGION if `beads.thin` is 'refuse' and the region is locally narrower than a bead.
     """
     half, error = 0.5 * beads.spacing, beads.chord_error
     inner, thin = outermost(region, inner, beads)
@@ -290,20 +296,20 @@ def frame(region: Region, inner: tuple[Region, ...], beads: Beads, walls: int) -
 def lines(
     framed: Frame, beads: Beads, angle: float, walls: int, longest_link: float | None
 ) -> list[PlaneCurve]:
-    """Return lines in a frame, every other one reversed, or linked to zigzags.
+    """Fill a frame with lines, every second line reversed, or with zigzags.
 
-    First and last line are half a bead inside the border (with walls: a spacing inside of the
-    last), and the rest at the spacing from these. If the breadth is not a multiple of the spacing
-    the lines move evenly by at most MAX_NARROWING and MAX_WIDENING; otherwise the remainder is in
-    the middle and has its own line. With walls, lines end on the last.
+    The first and the last line are half a bead inside the border, or one spacing inside the last
+    wall. The distance between lines changes by at most MAX_NARROWING and MAX_WIDENING to fit a
+    whole number of lines. If this is not enough, the lines keep the spacing, and the remainder at
+    the centre gets an additional line. With walls, lines end on the last wall.
 
-    Links run along the border of the beads' room, so that no link is outside; next to contours
-    links are inside of their beads, to reduce over-deposition.
+    Links follow the border of `framed.ends`, so that no link leaves the region. Next to contours,
+    links are inset from the contour beads to reduce over-deposition.
 
     Parameters
     ----------
     framed : Frame
-        The room for lines, see `frame`.
+        The space for lines, see `frame`.
     beads : Beads
         Spacing and shortest length of beads, mm.
     angle : float
@@ -311,7 +317,7 @@ def lines(
     walls : int
         Number of contours of the frame.
     longest_link : float or None
-        Longest link, mm; None: no line is linked.
+        Maximum link length, mm; None: separate lines.
 
     Returns
     -------
@@ -325,12 +331,12 @@ def lines(
 
 
 def rows(framed: Frame, beads: Beads, angle: float) -> list[list[Array]]:
-    """Return the segments of lines in a frame, level by level.
+    """Return the line segments in a frame, level by level.
 
     Parameters
     ----------
     framed : Frame
-        The room for lines, see `frame`.
+        The space for lines, see `frame`.
     beads : Beads
         The spacing, mm.
     angle : float
@@ -339,11 +345,10 @@ def rows(framed: Frame, beads: Beads, angle: float) -> list[list[Array]]:
     Returns
     -------
     list of list of (2, 2) array
-        Segments of each level in the direction of the lines, mm; empty if the frame has no room.
+        Segments of each level in the direction of the lines, mm; empty if the frame has no space.
     """
-    if (
-        not framed.regions or not framed.ends
-    ):  # too narrow for lines; such regions get beads along their middle
+    # regions too narrow for lines get beads along their centreline
+    if not framed.regions or not framed.ends:
         return []
     borders = [
         rotate_points(border, -angle) for region in framed.ends for border in region.borders()
@@ -362,24 +367,24 @@ def rows(framed: Frame, beads: Beads, angle: float) -> list[list[Array]]:
 
 
 def levels_between(low: float, high: float, beads: Beads) -> Array:
-    """Return the heights of lines between two borders, spread as `lines` says.
+    """Return the heights of lines between two borders, spaced as in `lines`.
 
     Parameters
     ----------
     low, high : float
-        Heights of the borders, mm, across the lines.
+        Heights of the borders, perpendicular to the lines, mm.
     beads : Beads
         The spacing, mm.
 
     Returns
     -------
     (n,) array
-        Heights, mm, ascending; slightly inside the borders, or one halfway between close borders.
+        Heights, mm, ascending, slightly inside the borders. Borders that nearly coincide get a
+        single line halfway.
     """
     spacing, breadth = beads.spacing, high - low
-    hair = 1e-7 * spacing + 1e-12 * max(
-        abs(low), abs(high)
-    )  # lines along the border cross it for sure
+    # inset that makes sure that the outermost lines cross the region
+    hair = 1e-7 * spacing + 1e-12 * max(abs(low), abs(high))
     if breadth <= 4.0 * hair:
         return np.array([0.5 * (low + high)])
     count = step_count(breadth, (1.0 + MAX_WIDENING) * spacing)
@@ -401,16 +406,18 @@ def levels_between(low: float, high: float, beads: Beads) -> Array:
     return clipped
 
 
-LEAST_HEIGHT = 2.0  # spacings; where less is between tops and bottoms beads cover the whole
+LEAST_HEIGHT = 2.0  # in spacings; sparse regions narrower than this are filled solid
 
 
 @dataclass(frozen=True)
 class Infill:
-    """How much of the area inside of the walls is filled.
+    """Infill of the area inside the walls.
 
-    density: its share, length of beads times spacing. height: mm of the layer above the origin of a gyroid. angle: rad, of
-    patterns that rest on the layer below: grid, triangles, honeycomb, gyroid. buried: regions not near a top or a bottom; the
-    rest is filled solid. None: there is neither.
+    density: filled fraction of the area; the filled area is bead length times spacing. height:
+    height of the layer above the gyroid origin, mm. angle: direction of grid, triangles, honeycomb
+    and gyroid, rad, the same in all layers so that beads rest on the layer below. buried: regions
+    away from top and bottom surfaces; the remaining area is filled solid. None: all of the area is
+    buried.
     """
 
     density: float = 1.0
@@ -429,14 +436,14 @@ def sparse(
     longest_link: float | None,
     infill: Infill,
 ) -> list[PlaneCurve]:
-    """Return the filling inside of walls, see `Infill`, and beads that close gaps between walls.
+    """Fill the area inside the walls as `infill` specifies, and close gaps between walls.
 
     Parameters
     ----------
     framed : Frame
-        Walls and the room for lines, see `frame`.
+        Walls and the space for lines, see `frame`.
     inner : sequence of Region
-        Allowed positions of bead middles, mm.
+        Regions in which bead centrelines stay, mm.
     beads : Beads
         Spacing, width, gap and chord error, mm.
     pattern : str
@@ -446,14 +453,15 @@ def sparse(
     walls : int
         Number of contours of the frame.
     longest_link : float or None
-        Longest link of zigzags, mm, as in `lines`.
+        Maximum link length of zigzags, mm, as in `lines`.
     infill : Infill
         Density, height, angle and buried regions.
 
     Returns
     -------
     list of PlaneCurve
-        Beads without the walls: those that close gaps, solid regions, then the pattern.
+        Gap-closing beads, beads of solid regions, then beads of the pattern; walls are not
+        included.
     """
     curves = (
         closing_beads(inner, framed.thin + framed.curves, beads, walls, framed.ends)
@@ -471,8 +479,9 @@ def sparse(
 def _divided(
     ends: Sequence[Region], buried: Sequence[Region] | None, beads: Beads
 ) -> tuple[Sequence[Region], Sequence[Region]]:
-    """The partly filled and the solid regions inside of walls; solid ones extend by a spacing, so that they end on beads of the
-    layer below.
+    """Split the regions inside the walls into sparse and solid regions.
+
+    Solid regions are extended by one spacing, so that they end on beads of the layer below.
     """
     if buried is None:
         return ends, ()
@@ -488,7 +497,7 @@ def _divided(
 def _fill_solid(
     region: Region, beads: Beads, angle: float, ring: int, longest_link: float | None
 ) -> list[PlaneCurve]:
-    """Lines, or zigzags, over a region whose border they end on, and beads in their gaps."""
+    """Fill a region with lines or zigzags that end on its border, and close their gaps."""
     inner = region.grown(-0.5 * beads.spacing, beads.chord_error)
     curves = in_rows(
         rows(Frame([], inner, (region,), []), beads, angle), (region,), beads, ring, longest_link
@@ -505,7 +514,7 @@ def _pattern(
     longest_link: float | None,
     infill: Infill,
 ) -> list[PlaneCurve]:
-    """The beads of a pattern in a region that they end on the border of."""
+    """Fill a region with the beads of a pattern, which end on its border."""
     spacing, density = beads.spacing, infill.density
     if pattern == "contours":
         pitch = spacing / density
@@ -538,7 +547,7 @@ def _pattern(
 def _rounds(
     region: Region, beads: Beads, ring: int, inset: float, pitch: float
 ) -> list[PlaneCurve]:
-    """Contours at a pitch, the first at an inset from the border of a region, mm."""
+    """Fill a region with contours at `pitch` mm, the first `inset` mm inside the border."""
     curves, k = [], 0
     while inner := shrink_region(region, inset + k * pitch, beads.chord_error):
         curves += contours_of(inner, beads, ring + k)

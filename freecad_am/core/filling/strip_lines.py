@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lines round a hub and along it, in regions that run all the way round."""
+"""Fill strips around a hub with lines that run around the hub or along it."""
 
 from __future__ import annotations
 
@@ -18,14 +18,16 @@ from ..types import Array, Mask
 from .centre import Beads, PlaneCurve, contours_of, long_enough, strip_closing
 from .sparse import levels_between
 
-PROBE, HALVES = (
-    0.1,
-    10,
-)  # of the spacing, between samples of lines inside; and number of halvings
+# in spacings, distance between samples along a line; bisection steps to locate the end of a line
+PROBE, HALVES = 0.1, 10
 
 
 class _Frame(NamedTuple):
-    """curves: contours round the lines; ends: what lines run through; inset: mm of the outermost lines from the borders."""
+    """Space for lines.
+
+    curves: contours around the lines. ends: regions that the lines cross. inset: distance of the
+    outermost lines from the borders, mm.
+    """
 
     curves: list[PlaneCurve]
     ends: tuple[Strip | Region, ...]
@@ -33,7 +35,7 @@ class _Frame(NamedTuple):
 
 
 def _frame(inner: tuple[Strip | Region, ...], beads: Beads, walls: int) -> _Frame:
-    """See `lines.frame`."""
+    """Return the space for lines inside the walls, as `sparse.frame`."""
     half, error = 0.5 * beads.spacing, beads.chord_error
     if not walls:
         return _Frame([], inner, beads.inset)
@@ -47,23 +49,23 @@ def _frame(inner: tuple[Strip | Region, ...], beads: Beads, walls: int) -> _Fram
 def lines_round(
     strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads, walls: int, density: float
 ) -> list[PlaneCurve]:
-    """Return lines round the hub, spread as in `lines`.
+    """Fill a strip with lines around the hub, spaced as in `sparse.lines`.
 
-    The outermost are half a bead inside the borders' farthest places. Lines are closed where
-    nothing interrupts them.
+    The outermost lines are half a bead inside the extreme heights of the borders. A line is closed
+    unless it leaves the strip.
 
     Parameters
     ----------
     strip : Strip
-        The region round the hub.
+        The region around the hub.
     inner : tuple of Strip or Region
-        Allowed positions of bead middles: the strip shrunk by `beads.inset`.
+        The strip shrunk by `beads.inset`, mm; bead centrelines stay inside.
     beads : Beads
         Spacing, width, gap and chord error, mm.
     walls : int
-        Number of contours round the lines.
+        Number of contours around the lines.
     density : float
-        Share of the area to fill; below 1 lines are a spacing divided by it apart.
+        Fraction of the area to fill; below 1 the distance between lines is spacing / density.
 
     Returns
     -------
@@ -96,23 +98,23 @@ def lines_round(
 def lines_along(
     strip: Strip, inner: tuple[Strip | Region, ...], beads: Beads, walls: int, density: float
 ) -> list[PlaneCurve]:
-    """Return lines along generatrices, evenly round the hub and no farther apart than the spacing.
+    """Fill a strip with lines along generatrices, evenly distributed around the hub.
 
-    On a cone that is where they are farthest from the apex, and they come nearer to each other
-    towards it. Every other one runs the other way.
+    The distance between lines is at most the spacing. On a cone the lines converge towards the
+    apex, so this limit applies to the end farthest from the apex. Every second line is reversed.
 
     Parameters
     ----------
     strip : Strip
-        The region round the hub.
+        The region around the hub.
     inner : tuple of Strip or Region
-        Allowed positions of bead middles: the strip shrunk by `beads.inset`.
+        The strip shrunk by `beads.inset`, mm; bead centrelines stay inside.
     beads : Beads
         Spacing, width, gap and chord error, mm.
     walls : int
-        Number of contours round the lines.
+        Number of contours around the lines.
     density : float
-        Share of the area to fill; below 1 lines are a spacing divided by it apart.
+        Fraction of the area to fill; below 1 the distance between lines is spacing / density.
 
     Returns
     -------
@@ -148,7 +150,11 @@ def lines_along(
 
 
 def _levels(low: float, high: float, beads: Beads, density: float) -> Array:
-    """Heights of lines: even between the borders, or as far apart as the density asks for, the same in all layers."""
+    """Return the heights of lines.
+
+    At density 1 the lines are evenly spaced between the borders. Below 1 the density sets the
+    pitch, and all layers have lines at the same heights.
+    """
     if density == 1.0:
         return levels_between(low, high, beads)
     pitch = beads.spacing / density
@@ -179,14 +185,17 @@ class _Inside:
                 self.unrolled += regions([uv + np.array([k * turn, 0.0]) for uv in borders])
 
     def contains(self, uv: Array) -> Mask:
-        """Mask of the points (u, v) (n, 2) within one turn inside any region."""
+        """Return a mask of the points (u, v) (n, 2) inside any region; u is within one turn."""
         inside = np.zeros(len(uv), dtype=bool)
         for region in self.unrolled:
             inside |= region.contains(uv)
         return inside
 
     def border(self, u: Array, within: Array, beyond: Array) -> Array:
-        """Heights (n,), inside, where generatrices leave between a height inside and one outside."""
+        """Bisect the heights (n,) at which generatrices leave the regions; return the inner bounds.
+
+        within, beyond: heights (n,) inside and outside.
+        """
         for _ in range(HALVES):
             middle = 0.5 * (within + beyond)
             inside = self.contains(np.stack([u, middle], axis=1))
@@ -195,7 +204,10 @@ class _Inside:
 
 
 def _runs(inside: Mask, closed: bool = True) -> list[tuple[int, int]]:
-    """First and one past the last of each run of members; one across the end of a closed list goes past its length."""
+    """Return start and stop of each run of at least two members.
+
+    In a closed list, a run across the end stops beyond the length of the list.
+    """
     count = len(inside)
     if inside.all():
         return [(0, count)]
@@ -209,7 +221,7 @@ def _runs(inside: Mask, closed: bool = True) -> list[tuple[int, int]]:
 
 
 def _stretch(strip: Strip) -> float:
-    """How much longer a turn is where it is longest than at the reference."""
+    """Return the ratio of the longest turn around the hub to the turn at the reference height."""
     return (
         1.0
         if math.isinf(strip.period.apex)

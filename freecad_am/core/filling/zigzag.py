@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads of parallel lines: separate, or linked to zigzags, from the end of one along the border to the next."""
+"""Make beads from parallel lines: separate beads, or zigzags whose links follow the border."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from ..geometry.regions.region import Region, simplified
 from ..types import Array
 from .centre import Beads, PlaneCurve
 
-LINK = 3.0  # maximum length of a link, in spacings
-# length of a link relative to its chord; a longer link stays on the border, because an inset link
+LINK = 3.0  # in spacings; maximum link length
+# ratio of link length to chord; a link above this ratio stays on the border, because an inset link
 # might leave the region
 BOWED = 1.02
-FLOOR = 4.0  # minimum edge length, in chord errors
+FLOOR = 4.0  # in chord errors; minimum edge length
 
 
 def in_rows(
@@ -27,22 +27,22 @@ def in_rows(
     longest_link: float | None,
     inside: float = 0.0,
 ) -> list[PlaneCurve]:
-    """Return beads of lines that end on the borders of regions: separate, or linked to zigzags.
+    """Make beads from lines that end on region borders: separate beads, or zigzags.
 
     Parameters
     ----------
     rows : sequence of sequence of (n, 2) array
-        Lines row by row, mm, all in one direction; of two points to link them.
+        Lines row by row, mm, all in one direction. Links need lines of two points.
     ends : sequence of Region
-        Regions along whose borders links run.
+        Regions whose borders the links follow.
     beads : Beads
         Spacing, chord error and shortest length of beads, mm.
     ring : int
-        Number of the contour that the lines are at, stored in the curves.
+        Contour index stored in the curves.
     longest_link : float or None
-        Longest link, mm; None: separate lines, every other row reversed.
+        Maximum link length, mm; None: separate lines, every second row reversed.
     inside : float, optional
-        Distance of links from a border square to the lines, mm.
+        Inset of links from a border that is perpendicular to the lines, mm.
 
     Returns
     -------
@@ -78,7 +78,10 @@ def _chain(
     min_edge: float,
     inside: float,
 ) -> Array:
-    """A zigzag from the first line open in a row up, without edges shorter than `min_edge` mm; takes its lines off the list."""
+    """Chain a zigzag upwards from the first unused line of a row.
+
+    The zigzag has no edges shorter than `min_edge` mm. Its lines are removed from `open_`.
+    """
     line_ = levels[row][open_[row].pop(0)]
     sections, far_end = [line_], 1
     while row + 1 < len(levels):
@@ -103,8 +106,10 @@ def _chain(
 def _moved_inside(
     line: Array, link: Array, following: Array, inside: float
 ) -> tuple[Array, Array, Array]:
-    """A line (2, 2), the link (n, 2) after it and the line after that, moved back along the lines by `inside` mm if the border is
-    square to them, and less the more it is slanted, because the gap at their ends grows.
+    """Shift a link (n, 2), with the ends of the lines it joins, back along the lines (2, 2).
+
+    The shift is `inside` mm where the border is perpendicular to the lines. It decreases with the
+    slant of the border, because a slanted border leaves a larger gap at the ends of the lines.
     """
     back = line[0] - line[1]
     long = float(np.hypot(*back))
@@ -126,8 +131,9 @@ def _moved_inside(
 
 
 def _clean(link: Array, min_edge: float) -> Array:
-    """The inner points of a link, which begins and ends on lines, without points that hardly turn it and points within `min_edge`
-    mm of others: such a short edge would turn the travel direction without travel.
+    """Simplify the inner points (m, 2) of a link and remove edges shorter than `min_edge` mm.
+
+    Such an edge would change the direction of motion over almost no distance.
     """
     points = simplified(link, min_edge / FLOOR)
     points_ = [points[0]]
@@ -141,7 +147,7 @@ def _clean(link: Array, min_edge: float) -> Array:
 
 
 def _link(start: Array, end: Array, borders: Sequence[Array], limit: float) -> Array | None:
-    """The shorter path (n, 2) along a border from one point to the other; None if none is below the limit."""
+    """Return the shorter border path (n, 2) between two points; None if longer than `limit` mm."""
     if float(np.hypot(*(end - start))) > limit:
         return None
     ends = np.stack([start, end])
@@ -165,7 +171,7 @@ def _way(
     share: float,
     share_at: float,
 ) -> Array:
-    """From a place on edge `leaves` on along a ring to one on edge `arrives`."""
+    """Follow a ring forwards from `start` on edge `leaves` to `end` on edge `arrives`."""
     count = (arrives - leaves) % len(border)
     if count == 0 and share_at < share:
         count = len(border)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The centre line of a bent solid: from its base, from the middle of one section to the
-middle of the next.
-"""
+"""Guides of bent solids: chains of edges, or the centre line through the centroids of sections."""
 
 from __future__ import annotations
 
@@ -27,27 +25,26 @@ from ..parameters.filled import SolidParameters
 from ..types import Array, Index
 from .stacking import prepare_stack
 
-TOUCHING = 1e-3  # mm between the ends of edges that meet
-CORNER_RAD = np.radians(1.0)
-MIN_LENGTH_MM = 1e-3  # mm; shorter edges, and guides, are none
-MAX_TURN_RAD = np.radians(120.0)  # a corner that turns by more leads back
+TOUCHING = 1e-3  # mm; maximum gap between edges that meet
+CORNER_RAD = np.radians(1.0)  # minimum angle of a corner
+MIN_LENGTH_MM = 1e-3  # mm; shorter edges are ignored
+MAX_TURN_RAD = np.radians(120.0)  # maximum angle of a corner that does not double back
 WHERE = "strategy.guide"
 
 
 class Nodes(NamedTuple):
-    """Points (n, 3) mm of a curve and unit vectors (n, 3) along it."""
+    """Points (n, 3), mm, of a curve and unit tangents (n, 3)."""
 
     points: Array
     tangents: Array
 
     def reversed(self) -> Nodes:
-        """The same curve in the opposite direction."""
+        """Return the curve in the opposite direction."""
         return Nodes(self.points[::-1], -self.tangents[::-1])
 
 
 def chain_edges(edges: Sequence[Nodes]) -> Nodes:
-    """Return one curve of edges in any order and direction; it runs as the first given edge
-    does.
+    """Chain edges in any order and direction to one curve in the direction of the first edge.
 
     Raises InputError GUIDE_OPEN, GUIDE_CLOSED, GUIDE_CORNER, GUIDE_DOUBLES_BACK.
     """
@@ -135,21 +132,24 @@ def _refuse_corners(chain: Sequence[Nodes]) -> None:
             )
 
 
-STEP_SHARE = 0.25  # of the size of a section, from one to the next
-REACH = 1.5  # of the size of the last section; what reaches farther from the middle belongs to another part of the solid
-ENDED = 0.6  # of the area of the last section; less is where the solid ends
-MAX_SECTIONS = 2000  # sections
-ROUNDS = 6  # in which planes are set normal to the line through their middles
-SMOOTH = 2.0  # sizes of a section; the line does not swing within less
-MIRRORED = 16  # sections before the first and after the last one, as it were
-FACING = 0.98  # cosine between the direction of the line and the face in which a solid ends
-NODES = 8  # of the line from one section to the next
-LED = 0.9  # of the volume that the line has to lead through
+STEP_SHARE = 0.25  # in section sizes; distance between sections
+REACH = 1.5  # in sizes of the last section; loops that extend farther belong to another part
+ENDED = 0.6  # fraction of the area of the last section; a smaller section is beyond the end
+MAX_SECTIONS = 2000  # maximum number of sections
+ROUNDS = 6  # iterations that set the section planes normal to the line through the centroids
+SMOOTH = 2.0  # in section sizes; wavelength below which the line is smoothed
+MIRRORED = 16  # number of sections mirrored at the start and at the end of the line
+FACING = 0.98  # minimum cosine between the line and the normal of the end face
+NODES = 8  # nodes of the line per section
+LED = 0.9  # minimum fraction of the volume that the line covers
 
 
 class Section(NamedTuple):
-    """What a plane cuts near a point: its middle (3,), its area, mm2, how far it reaches from the middle, mm, and the unit
-    normal (3,) of the plane."""
+    """Section of a solid by a plane near a point.
+
+    middle: (3,) centroid, mm. area: mm2. reach: maximum distance from the centroid, mm. normal:
+    (3,) unit normal of the plane.
+    """
 
     middle: Array
     area: float
@@ -158,24 +158,24 @@ class Section(NamedTuple):
 
 
 class _Plane(NamedTuple):
-    """A point and the unit normal (3,)."""
+    """Point (3,) and unit normal (3,) of a plane."""
 
     point: Array
     normal: Array
 
     def above(self, points: Array) -> Array:
-        """Return the heights (...,) mm of points (..., 3) above the plane."""
+        """Return the heights (...,), mm, of points (..., 3) above the plane."""
         heights: Array = (points - self.point) @ self.normal
         return heights
 
     def mirrored(self, points: Array) -> Array:
-        """Return points (n, 3) mirrored in the plane."""
+        """Mirror points (n, 3) at the plane."""
         mirror_images: Array = points - 2.0 * self.above(points)[:, None] * self.normal
         return mirror_images
 
 
 class _Solid:
-    """A mesh to be cut by one plane after the other."""
+    """Mesh prepared for sections by planes."""
 
     def __init__(self, bodies: Sequence[Body]) -> None:
         counts = np.cumsum([0, *(len(body.vertices) for body in bodies)])
@@ -186,8 +186,9 @@ class _Solid:
         self.edges = Edges(self.triangles)
 
     def section(self, point: Array, normal: Array, reach: float | None) -> Section | None:
-        """Return the section by the plane through a point, within `reach` mm of it; unlimited for
-        None.
+        """Return the section by a plane through a point, or None if there is no section.
+
+        Only loops within `reach` mm of the point count; None: all loops.
         """
         above = (self.vertices - point) @ normal
         side = above[self.triangles] >= 0.0
@@ -236,7 +237,7 @@ class _Solid:
         )
 
     def end(self, last_section: Section) -> _Plane | None:
-        """Return the flat face in which the solid ends after a section; None if it has none."""
+        """Return the plane of the flat end face after a section; None if there is none."""
         corner = self.vertices[self.triangles]
         doubled = doubled_areas(corner)
         size = np.linalg.norm(doubled, axis=1)
@@ -262,14 +263,14 @@ class _Solid:
 
 
 def centre_line(bodies: Sequence[Body], start: Array, direction: Array, depth: float) -> Nodes:
-    """Return the line through the middles of a solid's sections normal to it.
+    """Find the centre line of a solid, through the centroids of the sections normal to the line.
 
-    It begins where the solid is on the base plane.
+    The line begins on the base plane.
 
     Parameters
     ----------
     bodies : sequence of Body
-        The solid; several cannot have a centre line.
+        The solid; several solids have no centre line.
     start : (3,) array
         A point of the base plane, mm.
     direction : (3,) array
@@ -285,7 +286,7 @@ def centre_line(bodies: Sequence[Body], start: Array, direction: Array, depth: f
     Raises
     ------
     InputError
-        GUIDE_NOT_FOUND if the sections form no such line.
+        GUIDE_NOT_FOUND if the sections do not form such a line.
     """
     solid = _Solid(bodies)
     name = bodies[0].name if len(bodies) == 1 else f"{len(bodies)} solids"
@@ -327,7 +328,7 @@ def _not_found(name: str, why: str) -> InputError:
 
 
 def _trace_sections(solid: _Solid, first_section: Section, direction: Array) -> list[Section]:
-    """Return the sections from the first one to the end of the solid."""
+    """Trace the sections from the first section to the end of the solid."""
     sections, normal = [first_section], direction
     stride = STEP_SHARE * first_section.reach
     while len(sections) < MAX_SECTIONS:
@@ -341,7 +342,7 @@ def _trace_sections(solid: _Solid, first_section: Section, direction: Array) -> 
             chord = (section.middle - last_section.middle) / max(
                 float(np.linalg.norm(section.middle - last_section.middle)), 1e-9
             )
-            turned = 2.0 * (chord @ normal) * chord - normal  # as along an arc
+            turned = 2.0 * (chord @ normal) * chord - normal  # end tangent of an arc over the chord
             ahead = chord + 0.5 * (turned - chord)
             ahead /= np.linalg.norm(ahead)
             section = solid.section(section.middle, ahead, REACH * last_section.reach)
@@ -357,8 +358,9 @@ def _trace_sections(solid: _Solid, first_section: Section, direction: Array) -> 
 
 
 def _smooth_line(solid: _Solid, sections: Sequence[Section], start: _Plane) -> tuple[Nodes, Array]:
-    """Return the smooth line through the middles of sections normal to it, from the base plane,
-    and the areas of the sections.
+    """Return the smooth line from the base plane through section centroids, and the section areas.
+
+    The sections are iteratively set normal to the line.
     """
     middles = np.array([section.middle for section in sections])
     size = float(np.mean([section.reach for section in sections]))
@@ -391,11 +393,11 @@ def _smooth_line(solid: _Solid, sections: Sequence[Section], start: _Plane) -> t
 
 
 def _fit_line(middles: Array, start: _Plane, end: _Plane | None) -> tuple[CubicSpline, Array]:
-    """Return a smooth line past points (n, 3), and the positions of the points along it.
+    """Fit a smooth line to points (n, 3); return the line and the positions of the points along it.
 
-    It is as near to them as its third differences allow (Whittaker 1923), so that its
-    curvature changes without oscillation. Planes in which the solid ends are mirrors of the
-    line, so that it is normal to them.
+    The fit penalises third differences (Whittaker 1923), so that the curvature does not oscillate.
+    The line is mirrored at the planes in which the solid ends, so that it is normal to these
+    planes.
     """
     count = min(MIRRORED, len(middles))
     mirrored_end = np.zeros((0, 3)) if end is None else end.mirrored(middles[-count:][::-1])
@@ -412,7 +414,8 @@ def _evaluate(line: CubicSpline, positions: Array) -> tuple[Array, Array]:
     return points, along / np.linalg.norm(along, axis=1, keepdims=True)
 
 
-MIN_RISE_SHARE = 1e-6  # of its length; a guide whose ends are no farther apart along the direction runs as it was chosen
+# fraction of the chord between the ends; a guide that descends by no more keeps its given direction
+MIN_RISE_SHARE = 1e-6
 
 
 def prepare_guided(
@@ -422,10 +425,10 @@ def prepare_guided(
     label: str,
     issues: tuple[Issue, ...] = (),
 ) -> SolidsOnHub:
-    """Return bodies along a guide of edges, by default their centre line.
+    """Place bodies on a guide of edges, by default their centre line.
 
-    The guide begins at the end that is lower along `strategy.direction`; the frame has its Z
-    along the guide at the first layer. A note reports a centre line.
+    The guide begins at the lower end along `strategy.direction`. Z of the frame is along the guide
+    at the first layer. A note reports a centre line.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A curved piece of a layer with its picture on the plane: places of the one brought to the other."""
+"""Chart of a curved piece of a layer: map points between the plane and the part."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ from ..geometry.step_count import step_counts
 from ..types import Array, Index, Mask
 from .surface import Wrapped
 
-CELL = 1.5  # typical edges; side of the squares that triangles are sorted into
-OUTSIDE = -1e-6  # least share of a corner for a place that is in a triangle
+CELL = 1.5  # in typical edges; side of the squares of the search grid
+OUTSIDE = -1e-6  # minimum barycentric coordinate of a point inside a triangle
 
 
 class Place(NamedTuple):
-    """Positions in a picture: the triangle (n,) and the shares (n, 3) of its corners, negative
-    outside it.
+    """Locations in a chart: triangles (n,) and barycentric coordinates (n, 3).
+
+    A coordinate is negative outside the triangle.
     """
 
     triangle: Index
@@ -31,18 +32,26 @@ class Place(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """mesh: the piece, mm in the part. flat: (n, 2) mm, its vertices on the plane, triangles counter-clockwise."""
+    """Piece of a layer and its flattening.
+
+    Attributes
+    ----------
+    mesh : Mesh
+        The piece in the part, mm.
+    flat : (n, 2) array
+        Vertices on the plane, mm; triangles are counter-clockwise.
+    """
 
     mesh: Mesh
     flat: Array
 
     def wrap(self, points: Array) -> Array:
-        """Return the points in the part for points of the picture.
+        """Map points of the chart into the part.
 
         Parameters
         ----------
         points : (n, 2) array
-            Points of the picture, mm; outside it the nearest triangle is extended.
+            Points on the plane, mm; outside the chart the nearest triangle is extended.
 
         Returns
         -------
@@ -52,12 +61,12 @@ class Chart:
         return self.to_part(self.find(points))
 
     def to_part(self, location: Place) -> Array:
-        """Return the points in the part at locations in the picture.
+        """Map locations in the chart into the part.
 
         Parameters
         ----------
         location : Place
-            Triangles and shares of n points.
+            Triangles and barycentric coordinates of n points.
 
         Returns
         -------
@@ -70,12 +79,12 @@ class Chart:
         return wrapped
 
     def heading(self, location: Place) -> Array:
-        """Return the direction in the part of the picture's x.
+        """Return the direction in the part of the x axis of the chart.
 
         Parameters
         ----------
         location : Place
-            Triangles and shares of n points.
+            Triangles and barycentric coordinates of n points.
 
         Returns
         -------
@@ -91,7 +100,7 @@ class Chart:
         return heading
 
     def find(self, points: Array) -> Place:
-        """Find the triangles of points of the plane.
+        """Locate points of the plane in the chart.
 
         Parameters
         ----------
@@ -101,7 +110,8 @@ class Chart:
         Returns
         -------
         Place
-            The triangle of each point, the nearest one outside the picture, and the position in it.
+            Triangle and barycentric coordinates of each point; outside the chart the nearest
+            triangle.
         """
         square, is_covered = self._squares.find_square(points)
         count = self._squares.count[square]
@@ -134,7 +144,7 @@ class Chart:
         return np.stack([1.0 - to_b - to_c, to_b, to_c], axis=1)
 
     def _nearest(self, points: Array) -> Index:
-        """Return the triangles (n,) with the nearest middles."""
+        """Return the triangles (n,) with the nearest centroids."""
         triangles: Index = self._middles.query(points)[1].astype(np.intp)
         return triangles
 
@@ -149,10 +159,10 @@ class Chart:
 
 
 class _Squares:
-    """Triangles (m, 3, 2) sorted into squares of a plane.
+    """Search grid of triangles (m, 3, 2) on the plane.
 
-    triangles: (k,), consecutive for each square; first, count: (s,) where they begin and how
-    many they are.
+    triangles: (k,) grouped by square. first, count: (s,) first index and number of the triangles of
+    each square.
     """
 
     def __init__(self, corners: Array, size: float) -> None:
@@ -175,8 +185,9 @@ class _Squares:
         self.first = np.cumsum(self.count) - self.count
 
     def find_square(self, points: Array) -> tuple[Index, Mask]:
-        """Return the square (n,) of points (n, 2), and whether it exists and has triangles; if not,
-        any square.
+        """Return the squares (n,) of points (n, 2), and whether these contain points and triangles.
+
+        A point outside the grid gets the nearest square.
         """
         cell = np.floor((points - self.low) / self.size).astype(np.intp)
         is_inside = ((cell >= 0) & (cell < self.shape)).all(axis=1)
@@ -186,7 +197,7 @@ class _Squares:
 
 
 MIN_HORIZONTAL = (
-    0.9  # of 1; a normal nearer to X than that takes Y for what its first direction follows
+    0.9  # maximum X component of a normal; above it, Y replaces X as reference direction
 )
 
 Same = TypeVar("Same", bound="Charted")
@@ -194,10 +205,9 @@ Same = TypeVar("Same", bound="Charted")
 
 @dataclass(frozen=True, eq=False)
 class Charted:
-    """A layer on a chart of one of its pieces.
+    """Layer on the chart of one of its pieces, a `LayerSurface`.
 
-    As `LayerSurface`; distances and angles in its picture are those in the part, except for
-    the stretch.
+    Distances and angles on the plane equal those in the part up to the stretch of the chart.
     """
 
     chart: Chart
@@ -205,41 +215,41 @@ class Charted:
     @property
     @abstractmethod
     def look(self) -> float:
-        """Length of edge, mm, between tests for bending."""
+        """Sample distance along edges in the test for bending, mm."""
 
     @abstractmethod
     def in_part(self, location: Place) -> tuple[Array, Array]:
-        """Return the points in the part of beads at locations of the chart.
+        """Map locations in the chart to bead points in the part.
 
         Parameters
         ----------
         location : Place
-            Triangles and shares of n points.
+            Triangles and barycentric coordinates of n points.
 
         Returns
         -------
         points : (n, 3) array
             Points in the part, mm.
         normals : (n, 3) array
-            Unit normals of the layer there.
+            Unit normals of the layer.
         """
 
     @property
     def period(self) -> None:
-        """None: nothing goes around the layer; pieces that would are cut."""
+        """None: the layer does not close; closed pieces are cut open."""
         return None
 
     @property
     def bends_freely(self) -> bool:
-        """False: it bends as the faces do."""
+        """False: the layer bends as the faces do."""
         return False
 
     def unroll(self, points: Array) -> Array:
-        """(n, 2) mm, the nearest places of the chart."""
+        """Return the nearest vertices of the chart, (n, 2), mm."""
         return self.chart.flat[np.asarray(self.chart.mesh.tree.query(points)[1], dtype=np.intp)]
 
     def wrap(self, flat: Array) -> Wrapped:
-        """Return a curve through the chart at the position of its beads."""
+        """Map a curve of the chart to bead points in the part."""
         location = self.chart.find(flat)
         points, normals = self.in_part(location)
         axis_x, axis_y = self.axes(normals)
@@ -251,10 +261,10 @@ class Charted:
         )
 
     def heights(self, flat: Array) -> None:
-        """Return None: the layer height is the same everywhere."""
+        """Return None: the layer height is constant."""
 
     def for_sheet(self: Same, flat: Array, sheet: float) -> Same:
-        """Return the same surface: it does not overlap itself."""
+        """Return this surface, which does not overlap itself on the plane."""
         return self
 
     def plane_rotation(self, azimuth: float) -> float:
@@ -262,7 +272,7 @@ class Charted:
         return 0.0
 
     def pieces(self, flat: Array, chord_error: float) -> Index:
-        """Return the number of pieces each edge needs for its bend, sampled every `look` mm."""
+        """Return the number of pieces of each edge that keeps the chord error, mm."""
         edge = np.diff(flat, axis=0)
         length = np.linalg.norm(edge, axis=1)
         looks = step_counts(length, self.look, 2)
@@ -289,14 +299,14 @@ class Charted:
         return np.asarray(count.astype(np.intp))
 
     def axes(self, normals: Array) -> tuple[Array, Array]:
-        """As `axes`."""
+        """Return the part's X and Y projected onto the layer, see `chart.axes`."""
         return axes(normals)
 
 
 def axes(normals: Array) -> tuple[Array, Array]:
     """Return the part's X and Y projected onto layers.
 
-    Where a normal is along X, the part's Y replaces X.
+    Where a normal is nearly along X, the part's Y replaces X.
 
     Parameters
     ----------
@@ -308,7 +318,7 @@ def axes(normals: Array) -> tuple[Array, Array]:
     x : (n, 3) array
         Unit vectors within the layer.
     left : (n, 3) array
-        Unit vectors to their left.
+        Unit vectors to the left of x.
     """
     steep: Array = np.abs(normals[:, :1]) < MIN_HORIZONTAL
     along = np.where(steep, np.eye(3)[0], np.eye(3)[1])

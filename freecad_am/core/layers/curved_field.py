@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The fields of curved layers: distance through the part from its start (geodesic), or
-straight from there (offset).
-"""
+"""Slice solids into curved layers by the distance from the start, through the part or straight."""
 
 from __future__ import annotations
 
@@ -22,15 +20,15 @@ from .surface import Slice
 
 # ---- A piece of a curved layer through a solid as a surface to fill
 
-CHORD = 1.0  # steps of the grid between tests of an edge
+CHORD = 1.0  # in grid steps; sample distance along an edge
 
 
 @dataclass(frozen=True, eq=False)
 class ChartLayer(Charted):
-    """A layer on the chart of a piece, where the part was cut.
+    """Layer on the chart of a piece of the cut.
 
-    distance: mm through the part to its beads. Its stretch is at most
-    `geodesic.Piece.stretch`.
+    distance: distance from the start to the beads of the layer, mm. The stretch of the chart is at
+    most `geodesic.Piece.stretch`.
     """
 
     field: GeodesicField
@@ -38,49 +36,50 @@ class ChartLayer(Charted):
 
     @property
     def look(self) -> float:
-        """A step of the grid."""
+        """Sample distance along edges, mm: one grid step."""
         return CHORD * self.field.grid.step
 
     @property
     def bends_freely(self) -> bool:
-        """True: it bends where paths through the part turn corners."""
+        """True: the layer bends where paths through the part turn around corners."""
         return True
 
     def in_part(self, location: Place) -> tuple[Array, Array]:
-        """Map the chart onto the cut, and from there through the part to the position of the beads."""
+        """Map the chart onto the cut, then along the gradient of the field to the bead points."""
         cut = self.chart.to_part(location)
         return self.field.onto(cut, self.distance), self.field.directions(cut)
 
 
-FINE, COARSE = 0.4, 0.8  # layer heights from node to node: as a rule, at most
-MAX_NODES = 2_000_000  # nodes, where that keeps below COARSE
+FINE, COARSE = 0.4, 0.8  # in layer heights; normal and maximum distance between grid nodes
+MAX_NODES = (
+    2_000_000  # approximate maximum number of nodes; the distance grows up to COARSE instead
+)
 
 
 def step_of(volume: float, layer_height: float) -> float:
-    """Mm from node to node for solids of a volume, mm3."""
+    """Return the distance between grid nodes, mm, for solids with a total volume, mm3."""
     return max(FINE * layer_height, float(np.cbrt(volume / MAX_NODES)))
 
 
-CONTACT_HEIGHTS = (
-    0.05  # layer heights from the plane or the substrate; facets this near to it are on it
-)
-UNREACHED = 0.002  # share of a part that no way need lead to: rounding at corners
-FACETS = 1.5  # chord errors between triangles of a face, however made
-REPORTED_DISTORTION = 0.05  # distortion of a piece above which it is reported
+# in layer heights; maximum distance of a start facet from the base plane or the substrate
+CONTACT_HEIGHTS = 0.05
+UNREACHED = 0.002  # maximum fraction of a part that no path reaches, from rounding at corners
+FACETS = 1.5  # in chord errors; maximum distance between two triangulations of a face
+REPORTED_DISTORTION = 0.05  # minimum distortion of a piece that is reported
 
 
 def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iterator[Slice]:
-    """Yield the curved layers of a group of solids, outwards from their start.
+    """Yield the curved layers of a group of solids, outwards from the start.
 
-    The start is the base plane and the surroundings they touch, or start faces. A layer in
-    pieces gives several slices of one number.
+    The start consists of the faces in contact with the base plane and the surroundings, or of start
+    faces. A layer in several pieces yields several slices with the same number.
 
     Parameters
     ----------
     solids : SolidsOnHub
-        All solids, with the surroundings.
+        All solids and their surroundings.
     group : Group
-        The group.
+        The group to slice.
     strategy : SolidParameters
         Layer height, cut and chord error.
 
@@ -155,7 +154,7 @@ def slices(solids: SolidsOnHub, group: Group, strategy: SolidParameters) -> Iter
 
 
 def _refuse(strategy: SolidParameters) -> None:
-    """Raise InputError NOT_FOR_FAMILY for parameters that only plane layers have."""
+    """Raise InputError NOT_FOR_FAMILY for parameters that only planar layers support."""
     for key, is_set, instead in (
         ("margin", strategy.margin != 0.0, "0 mm"),
         ("solid_layers", strategy.solid_layers != 0, "0"),
@@ -180,7 +179,8 @@ def _field(
     tolerance = CONTACT_HEIGHTS * strategy.layer_height
     if start_faces is None:
         below = [triangles for triangles in substrate if triangles[:, :, 2].min() < -tolerance]
-        # the lowest point of a part on a body that reaches below it is in the air, not on the platform
+        # a part on a body that extends below the base plane stands on this body, not on the
+        # platform
         is_carried = any(
             len(_find_start_faces(solid, below, tolerance, plane=False)) for solid in solids
         )
@@ -231,8 +231,9 @@ def _field(
 def _find_start_faces(
     solid: SolidMesh, substrate: Sequence[Array], tolerance: float, plane: bool = True
 ) -> Array:
-    """Return the triangles (k, 3, 3) of a solid on the plane z = 0 facing down, or on triangles
-    of the substrate, to `tolerance` mm.
+    """Return the triangles (k, 3, 3) of a solid that touch the substrate, within `tolerance` mm.
+
+    If `plane` is set, downward triangles on the plane z = 0 also count.
     """
     corners = solid.vertices[solid.triangles]
     is_start = (
@@ -251,6 +252,6 @@ def _find_start_faces(
 
 
 def _to(triangles: Array, points: Array, tolerance: float) -> Array:
-    """Return signed distances (n,) mm of points from triangles (k, 3, 3)."""
+    """Return the signed distances (n,), mm, of points from triangles (k, 3, 3)."""
     under = SolidMesh(triangles.reshape(-1, 3), np.arange(3 * len(triangles)).reshape(-1, 3))
     return Search(under, 4.0 * tolerance).signed(points)[0]

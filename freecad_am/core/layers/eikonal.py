@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Distance through a solid, on a grid: |grad u| = 1 inside, u given at seeds.
+"""Solve the eikonal equation in a solid on a grid: |grad u| = 1, u given at seeds.
 
-Solved by the fast iterative method (Jeong and Whitaker 2008), which updates whole fronts
-at once, with Godunov's upwind scheme. A second pass, band by band outwards, uses second
-differences where they exist (Sethian 1999, 4.1).
+The fast iterative method (Jeong and Whitaker 2008) updates complete fronts at once with Godunov's
+upwind scheme. A second pass, band by band outwards, uses second-order differences where possible
+(Sethian 1999, 4.1).
 """
 
 from __future__ import annotations
@@ -17,15 +17,20 @@ import numpy as np
 from ..types import Array, Index, Mask
 
 MARGIN_NODES = (
-    3  # nodes about the solid's box, for fields that are carried on a little past its surface
+    3  # nodes around the bounding box, for fields that are extrapolated beyond the surface
 )
-# of a step; offset of the columns of nodes from round coordinates, so that they do not run along drawn edges
+# in grid steps; offset of the node columns from round coordinates, so that no column coincides with
+# an edge of the model
 OFFSET_SHARE = np.array([0.0311457, 0.0213793, 0.0171353])
 
 
 @dataclass(frozen=True, eq=False)
 class Voxels:
-    """origin: (3,) mm, the place of node (0, 0, 0). step: mm between nodes. solid: (nx, ny, nz), whether it is inside."""
+    """Grid of nodes.
+
+    origin: (3,) position of node (0, 0, 0), mm. step: distance between nodes, mm. solid: (nx, ny,
+    nz) whether each node is inside.
+    """
 
     origin: Array
     step: float
@@ -33,7 +38,7 @@ class Voxels:
 
     @cached_property
     def nodes(self) -> Index:
-        """The nodes inside (n,), as numbers of the flat grid."""
+        """Flat grid indices (n,) of the nodes inside."""
         inside: Index = np.flatnonzero(self.solid)
         return inside
 
@@ -43,7 +48,7 @@ class Voxels:
         Parameters
         ----------
         nodes : (n,) int array
-            Numbers in the flat grid.
+            Flat grid indices.
 
         Returns
         -------
@@ -56,7 +61,7 @@ class Voxels:
         return positions
 
     def strides(self) -> tuple[int, int, int]:
-        """Return by how much the number of a node grows with each coordinate.
+        """Return the steps of the flat grid index along each axis.
 
         Returns
         -------
@@ -68,19 +73,19 @@ class Voxels:
 
 
 def voxels(vertices: Array, triangles: Index, step: float) -> Voxels:
-    """Return the grid of a closed mesh.
+    """Voxelise a closed mesh.
 
-    A node is inside where the mesh winds around it at least once: overlapping bodies are one,
-    cavities are left out.
+    A node is inside if the winding number of the mesh is at least 1. Overlapping bodies therefore
+    count as one solid, and cavities are outside.
 
     Parameters
     ----------
     vertices : (n, 3) array
         Vertices, mm.
     triangles : (m, 3) int array
-        Counter-clockwise seen from outside.
+        Triangles, counter-clockwise seen from outside.
     step : float
-        Distance from node to node, mm.
+        Distance between nodes, mm.
 
     Returns
     -------
@@ -100,10 +105,10 @@ def voxels(vertices: Array, triangles: Index, step: float) -> Voxels:
 
 
 def _crossings(corners: Array, shape: Index) -> tuple[Index, Array, Array]:
-    """Return where vertical columns of nodes cross triangles (m, 3, 3) given in steps.
+    """Intersect vertical columns of nodes with triangles (m, 3, 3), in grid steps.
 
-    Returns the column's number, the height in steps, and 1 where the column leaves the solid,
-    -1 where it enters.
+    Returns the column indices, the heights in grid steps, and 1 where a column leaves the solid, -1
+    where it enters.
     """
     low = np.maximum(np.ceil(corners[:, :, :2].min(axis=1)).astype(np.intp), 0)
     count = np.maximum(np.floor(corners[:, :, :2].max(axis=1)).astype(np.intp) - low + 1, 0)
@@ -116,7 +121,7 @@ def _crossings(corners: Array, shape: Index) -> tuple[Index, Array, Array]:
     )
     offset = corners[triangle, :, :2] - node[:, None]
     next_offset = np.roll(offset, -1, axis=1)
-    # the column against each edge: twice the area, exactly the same for both triangles at the edge
+    # doubled area of column and edge, exactly equal for both triangles at the edge
     area = np.roll(_side(offset, next_offset), -1, axis=1)
     sense = np.where((area >= 0.0).all(axis=1), 1.0, 0.0) - np.where(
         (area < 0.0).all(axis=1), 1.0, 0.0
@@ -133,7 +138,10 @@ def _crossings(corners: Array, shape: Index) -> tuple[Index, Array, Array]:
 
 
 def _side(start: Array, end: Array) -> Array:
-    """Twice the area of the origin with edges from start to end (..., 2); exactly opposite for an edge turned round."""
+    """Return the doubled signed area of the triangle origin, start, end (..., 2).
+
+    Swapping start and end changes exactly the sign.
+    """
     turned = (start[..., 0] > end[..., 0]) | (
         (start[..., 0] == end[..., 0]) & (start[..., 1] > end[..., 1])
     )
@@ -144,16 +152,16 @@ def _side(start: Array, end: Array) -> Array:
     return side
 
 
-CONVERGED = 1e-9  # of a step; a node that comes no nearer than that is done
-BAND = 0.5  # of a step; nodes whose distances differ by less depend on one another
-ROUNDS = 3  # in a band
+CONVERGED = 1e-9  # in grid steps; a node whose distance decreases by less has converged
+BAND = 0.5  # in grid steps; width of a band of distances whose nodes are updated together
+ROUNDS = 3  # iterations per band
 
 
 class Links(NamedTuple):
-    """Nodes inside the solid, numbered consecutively.
+    """Nodes inside the solid, with consecutive indices.
 
-    nodes: (n,) in the flat grid. neighbours: (6, n) behind and ahead along x, y and z; n if that
-    node is outside.
+    nodes: (n,) flat grid indices. neighbours: (6, n) indices of the neighbours behind and ahead
+    along x, y and z; n if the neighbour is outside.
     """
 
     nodes: Index
@@ -167,12 +175,12 @@ class Links(NamedTuple):
         side : int
             Row of `neighbours`: behind or ahead along x, y or z.
         nodes : (k,) array of int
-            Numbers of the nodes.
+            Indices of the nodes.
 
         Returns
         -------
         (k,) array of int
-            Numbers of the second neighbours; n where none exists.
+            Indices of the second neighbours; n where none exists.
         """
         column = np.append(self.neighbours[side], len(self.nodes))
         second: Index = column[column[nodes]]
@@ -180,7 +188,7 @@ class Links(NamedTuple):
 
 
 def links(grid: Voxels) -> Links:
-    """Return the neighbours of all nodes inside."""
+    """Find the neighbours of all nodes inside."""
     nodes = grid.nodes
     number = np.full(grid.solid.size + 1, len(nodes), dtype=np.intp)
     number[nodes] = np.arange(len(nodes))
@@ -191,27 +199,27 @@ def links(grid: Voxels) -> Links:
 
 
 def arrival(linked: Links, step: float, seeds: Index, values: Array) -> Array:
-    """Return the distances of nodes from seeds, through the solid.
+    """Compute the distances of nodes from seeds through the solid.
 
     Parameters
     ----------
     linked : Links
         The n nodes inside and their neighbours.
     step : float
-        Distance from node to node, mm.
+        Distance between nodes, mm.
     seeds : (k,) int array
         Nodes with known distances.
     values : (k,) array
-        Their distances, mm.
+        Distances of the seeds, mm.
 
     Returns
     -------
     (n,) array
-        Distances, mm; infinite where no path leads.
+        Distances, mm; infinite for nodes that no path reaches.
 
     Notes
     -----
-    Solves norm(grad u) = 1 with Godunov's upwind scheme, then with second differences.
+    Solves norm(grad u) = 1 with Godunov's upwind scheme, then with second-order differences.
     """
     u = np.full(len(linked.nodes) + 1, np.inf)
     u[seeds] = values
@@ -229,7 +237,7 @@ def arrival(linked: Links, step: float, seeds: Index, values: Array) -> Array:
 
 
 def _find_active(linked: Links, nodes: Index, fixed: Mask) -> Index:
-    """Return the nodes adjacent to the given ones, without fixed nodes."""
+    """Return the neighbours of nodes, without fixed nodes."""
     marked = np.zeros(len(fixed), dtype=bool)
     marked[linked.neighbours[:, nodes]] = True
     active_nodes: Index = np.flatnonzero(marked & ~fixed)
@@ -237,13 +245,14 @@ def _find_active(linked: Links, nodes: Index, fixed: Mask) -> Index:
 
 
 def _godunov(behind: Array, ahead: Array, step: float) -> Array:
-    """The distance (k,) that neighbours (3, k) behind and ahead along the three axes give a node."""
+    """Return the Godunov update (k,) from values (3, k) of neighbours behind and ahead, per axis."""
     return _root(np.minimum(behind, ahead), np.full(behind.shape, step))
 
 
 def _root(values: Array, steps: Array) -> Array:
-    """Return the larger root u (k,) of sum ((u - v) / h)^2 = 1 over the v (3, k) below u, with
-    steps h.
+    """Return the larger root u (k,) of sum ((u - v) / h)^2 = 1 over the values v (3, k) below u.
+
+    h: steps (3, k).
     """
     order = np.argsort(values, axis=0, kind="stable")
     v, h = np.take_along_axis(values, order, axis=0), np.take_along_axis(steps, order, axis=0)
@@ -251,9 +260,8 @@ def _root(values: Array, steps: Array) -> Array:
     weight = np.zeros(v.shape[1])
     first_moment = np.zeros(v.shape[1])
     second_moment = np.zeros(v.shape[1])
-    base = np.where(
-        np.isfinite(v[0]), v[0], 0.0
-    )  # relative to the smallest value: far from the seeds squares would lose digits
+    # relative to the minimum value, because squares lose digits far from the seeds
+    base = np.where(np.isfinite(v[0]), v[0], 0.0)
     for k in range(3):
         use = (root_value > v[k]) & np.isfinite(v[k])
         relative = np.where(use, v[k] - base, 0.0)
@@ -268,7 +276,7 @@ def _root(values: Array, steps: Array) -> Array:
 
 
 def _refine_second_order(linked: Links, step: float, u: Array, fixed: Mask) -> Array:
-    """Return the same distances (n + 1,) with second differences, from the seeds outwards."""
+    """Refine the distances (n + 1,) with second-order differences, from the seeds outwards."""
     free = np.flatnonzero(~fixed & np.isfinite(u))
     order = free[np.argsort(u[free], kind="stable")]
     band = np.floor(u[order] / (BAND * step))
@@ -286,10 +294,10 @@ def _refine_second_order(linked: Links, step: float, u: Array, fixed: Mask) -> A
 def _upwind(
     linked: Links, step: float, first_order: Array, sharp: Array, nodes: Index
 ) -> tuple[Array, Array]:
-    """Return the upwind value along each axis and its step, (3, k).
+    """Return the upwind values and steps along each axis, (3, k).
 
-    They are of second order where the second node is no farther from the seeds. `first_order`
-    decides which neighbour is upwind.
+    The differences are of second order if the second neighbour is no farther from the seeds than
+    the first. `first_order` determines the upwind neighbour.
     """
     values, steps = np.full((3, len(nodes)), np.inf), np.full((3, len(nodes)), step)
     for axis in range(3):

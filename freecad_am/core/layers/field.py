@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The field of layers that cuts a group of solids, and the solids that are cut together."""
+"""Select the field of layers for each group of solids, and the solids that are cut together."""
 
 from __future__ import annotations
 
@@ -23,8 +23,11 @@ from .surface import Slice, mark_buried, report_overhangs
 
 
 class Stack(NamedTuple):
-    """Solids that are filled as one: what messages call them, their layers, and the numbers of their group and of their own
-    in that."""
+    """Solids that are filled together.
+
+    name: name in messages. layers: the layers of the solids. group: index of the group. solid:
+    index within the group.
+    """
 
     name: str
     layers: Iterable[Slice]
@@ -33,8 +36,9 @@ class Stack(NamedTuple):
 
 
 def stacks(solids: SolidsOnHub, strategy: FilledParameters) -> Iterator[Stack]:
-    """Yield all solids, group by group: each separately on a cylinder or cone, and fused ones
-    together on a plane.
+    """Yield the stacks of all solids, group by group.
+
+    On a cylinder or cone each solid is a separate stack. On a plane fused solids form one stack.
     """
     for number, group in enumerate(solids.groups):
         if isinstance(group.base.surface, Developable):
@@ -47,7 +51,7 @@ def stacks(solids: SolidsOnHub, strategy: FilledParameters) -> Iterator[Stack]:
 def _stacks_of_group(
     solids: SolidsOnHub, number: int, group: Group, strategy: SolidParameters
 ) -> Iterator[Stack]:
-    """Yield the solids of a group, by number, that is on a plane or at the start of a guide."""
+    """Yield the stacks of a group on a plane or along a guide; `number` is the group index."""
     if strategy.has_curved_layers:
         yield Stack(group.bodies[0].name, curved.slices(solids, group, strategy), number, 0)
         return
@@ -66,9 +70,9 @@ def _stacks_of_group(
 
 
 def footprints(group: Group, chord_error: float) -> list[list[Array]]:
-    """Return where each solid of a group leaves its base.
+    """Return the footprint of each solid of a group on its base.
 
-    On planes the cut is a chord error above the base.
+    On planes the solids are cut one chord error above the base.
 
     Parameters
     ----------
@@ -80,7 +84,7 @@ def footprints(group: Group, chord_error: float) -> list[list[Array]]:
     Returns
     -------
     list of list of (k, 3) array
-        Closed curves of each solid in part coordinates, mm, first point not repeated.
+        Closed curves of each solid in part coordinates, mm, without repeated first point.
 
     Raises
     ------

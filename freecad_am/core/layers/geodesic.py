@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers by distance through the solid from its start: each is on the one below, so that
-nothing needs support.
+"""Layers of constant distance from the start, measured through the solid.
+
+Each layer lies on the layer below, so that no support is needed.
 """
 
 from __future__ import annotations
@@ -24,12 +25,13 @@ from .eikonal import Links, Voxels, arrival, links, voxels
 from .margins import BORDER
 from .parted_chart import MAX_OVERLAP_SHARE, align_to_x, flatten, stretch_of
 
-AT_END = 0.08  # share of an edge; a surface that crosses it nearer to an end crosses it there: no triangle is all sliver
+AT_END = 0.08  # fraction of an edge; minimum distance of a crossing from its ends, to avoid slivers
 
 
 def _tetrahedra() -> Index:
-    """Return the corners (6, 4, 3) of the tetrahedra of a cube: the paths from (0, 0, 0) to (1,
-    1, 1) along its edges.
+    """Return the corners (6, 4, 3) of the tetrahedra that divide a unit cube.
+
+    Each tetrahedron is a path from (0, 0, 0) to (1, 1, 1) along the edges of the cube.
     """
     tetrahedra = []
     for order in permutations(range(3)):
@@ -46,7 +48,7 @@ TETRAHEDRA = _tetrahedra()
 
 
 class Cubes:
-    """The cubes of a field (nx, ny, nz) whose corners are all known, in the order of their least values."""
+    """Cubes of a field (nx, ny, nz) with known values at all corners, ordered by minimum value."""
 
     def __init__(self, field: Array, origin: Array, step: float) -> None:
         self.field, self.origin, self.step = field.ravel(), origin, step
@@ -55,10 +57,8 @@ class Cubes:
         low, high = field[:-1, :-1, :-1], field[:-1, :-1, :-1]
         for corner in np.ndindex(2, 2, 2):
             corner_values = field[tuple(slice(c, n - 1 + c) for c, n in zip(corner, field.shape))]
-            low, high = (
-                np.minimum(low, corner_values),
-                np.maximum(high, corner_values),
-            )  # nan where any corner is not known
+            # NaN if any corner is unknown
+            low, high = np.minimum(low, corner_values), np.maximum(high, corner_values)
         known_cubes = np.argwhere(~np.isnan(low))
         self._first: Index = known_cubes @ self._strides
         low, high = low[tuple(known_cubes.T)], high[tuple(known_cubes.T)]
@@ -66,9 +66,7 @@ class Cubes:
         self._first, self._low, self._high = self._first[order], low[order], high[order]
 
     def level(self, value: float) -> Mesh:
-        """Return the surface where the field has the value; triangles are counter-clockwise seen
-        from the higher side.
-        """
+        """Return the isosurface of a value, with triangles counter-clockwise from the higher side."""
         end = int(np.searchsorted(self._low, value, side="left"))
         cubes = self._first[:end][self._high[:end] >= value]
         corners = (cubes[:, None, None] + TETRAHEDRA @ self._strides).reshape(-1, 4)
@@ -80,7 +78,8 @@ class Cubes:
             _double(corners, high, count == 2),
         ]
         pairs = np.concatenate(kinds)
-        # every pair of a triangle begins on the same side: the higher one, except about a low corner
+        # all pairs of a triangle begin on one side: the higher side, except around a single low
+        # corner
         sign = np.repeat([1.0, -1.0, 1.0], [len(pairs_of_kind) for pairs_of_kind in kinds])
         edges, edge_index = np.unique(
             np.sort(pairs.reshape(-1, 2), axis=1), axis=0, return_inverse=True
@@ -102,10 +101,10 @@ class Cubes:
         return points
 
     def _orient(self, vertices: Array, faces: Index, adjacent: Index, sign: Array) -> Mesh:
-        """Orient triangles by `adjacent`, a node (n,) of each triangle's tetrahedron on the higher
-        side where sign is 1.
+        """Orient triangles counter-clockwise as seen from the higher side.
 
-        The slope of the field does not show the side at a ridge.
+        adjacent: (n,) a node of the tetrahedron of each triangle, on the higher side if sign is 1.
+        The gradient of the field would not determine the side at a ridge.
         """
         a, b, c = (vertices[faces[:, k]] for k in range(3))
         node = self.origin + self.step * np.stack(np.unravel_index(adjacent, self.shape), axis=1)
@@ -114,7 +113,7 @@ class Cubes:
         return Mesh(vertices, faces)
 
     def sample(self, points: Array) -> tuple[Array, Array]:
-        """Return values and slopes of the field at points.
+        """Interpolate values and gradients of the field at points.
 
         Parameters
         ----------
@@ -124,9 +123,9 @@ class Cubes:
         Returns
         -------
         value : (n,) array
-            Interpolated from the eight nodes around; NaN if any is unknown.
+            Trilinear interpolation of the eight surrounding nodes; NaN if any node is unknown.
         slope : (n, 3) array
-            Derivatives, per mm.
+            Gradients, per mm.
         """
         position = (points - self.origin) / self.step
         cell = np.clip(np.floor(position).astype(np.intp), 0, np.array(self.shape) - 2)
@@ -146,9 +145,7 @@ class Cubes:
 
 
 def _single(corners: Index, is_single: Mask, selected: Mask) -> Index:
-    """Return pairs (k, 3, 2) of nodes: the edges from the single corner on one side to the other
-    three.
-    """
+    """Return node pairs (k, 3, 2): the edges from the single corner on one side to the other three."""
     corners, is_single = corners[selected], is_single[selected]
     row = np.arange(len(corners))
     k = np.argmax(is_single, axis=1)
@@ -158,9 +155,7 @@ def _single(corners: Index, is_single: Mask, selected: Mask) -> Index:
 
 
 def _double(corners: Index, high: Mask, selected: Mask) -> Index:
-    """Return pairs (2 k, 3, 2): the four edges from two high corners to the two others, as two
-    triangles.
-    """
+    """Return node pairs (2 k, 3, 2): four edges from two high to two low corners, as two triangles."""
     corners, high = corners[selected], high[selected]
     row = np.arange(len(corners))[:, None]
     order = np.argsort(~high, axis=1, kind="stable")
@@ -169,13 +164,13 @@ def _double(corners: Index, high: Mask, selected: Mask) -> Index:
     return np.concatenate([np.stack([ac, ad, bd], axis=1), np.stack([ac, bd, bc], axis=1)])
 
 
-LAYERS = 2  # of nodes past the surface
+LAYERS = 2  # number of node layers beyond the surface
 
 
 def extrapolate(grid: Voxels, linked: Links, values: Array) -> Array:
     """Extend a field by LAYERS of nodes beyond the solid.
 
-    The value at a new node is the mean of the linear extrapolations from its known neighbours.
+    The value at a new node is the weighted mean of linear extrapolations from known neighbours.
 
     Parameters
     ----------
@@ -184,7 +179,7 @@ def extrapolate(grid: Voxels, linked: Links, values: Array) -> Array:
     linked : Links
         The n nodes inside.
     values : (n,) array
-        Their values; infinite where unknown.
+        Values at the nodes; infinite where unknown.
 
     Returns
     -------
@@ -224,10 +219,11 @@ def _add_layer(grid: Voxels, field: Array, is_known: Mask) -> tuple[Array, Mask]
 
 
 def gradients(linked: Links, values: Array, step: float) -> Array:
-    """Return the slopes of values at the nodes inside.
+    """Return the gradients of values at the nodes inside.
 
-    Both neighbours along each axis give the slope, or the one that exists; without either, the
-    slopes of the adjacent nodes; 0 if these have none either.
+    The slope along an axis is the mean of the backward and forward differences, or the single known
+    difference. A node without neighbours on this axis gets the mean slope of the adjacent nodes, or
+    0.
 
     Parameters
     ----------
@@ -241,7 +237,7 @@ def gradients(linked: Links, values: Array, step: float) -> Array:
     Returns
     -------
     (n, 3) array
-        Slopes, per mm.
+        Gradients, per mm.
     """
     padded = np.append(values, np.nan)
     slopes = np.zeros((len(values), 3))
@@ -256,7 +252,7 @@ def gradients(linked: Links, values: Array, step: float) -> Array:
 
 
 def _mean(values: Array) -> Array:
-    """Return the mean (n,) of the known values (k, n); NaN where none is known."""
+    """Return the mean (n,) of the known values (k, n); NaN where no value is known."""
     is_known = np.isfinite(values)
     count = is_known.sum(axis=0)
     mean: Array = np.where(
@@ -265,17 +261,18 @@ def _mean(values: Array) -> Array:
     return mean
 
 
-EXACT_STEPS = 2.5  # steps; nodes this close to the start get their distance from its triangles
-DEEP = 3  # nodes; farther inside, the distance to the surface is not needed
-STRETCH = 0.15  # maximum stretch or compression of a piece; beyond it the piece is flattened in two
-HALVINGS = 6
-MARGIN = 2.0  # steps by which pieces extend past the cut between them
+EXACT_STEPS = 2.5  # in grid steps; closer nodes get their distance from the start triangles
+DEEP = 3  # in nodes; depth below which the distance to the surface is not needed
+STRETCH = 0.15  # maximum stretch or compression of a piece; otherwise the piece is halved
+HALVINGS = 6  # maximum number of successive halvings of a piece
+MARGIN = 2.0  # in grid steps; length by which pieces extend beyond the cut between them
 
 
 class Piece(NamedTuple):
-    """A part of a layer on its chart, and the deposited regions of its picture.
+    """Piece of a layer.
 
-    stretch: the largest relative difference of lengths from those in the part.
+    chart: flattening of the piece. regions: regions to deposit on the plane, mm. stretch: maximum
+    relative change of lengths by flattening.
     """
 
     chart: Chart
@@ -285,11 +282,22 @@ class Piece(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class GeodesicField:
-    """The distance u mm through solids from their start.
+    """Distance u from the start, measured through solids.
 
-    cubes: u on a grid. depth: depth inside the solids, mm, on the nodes of the same grid.
-    gradient: the gradient of u, smoothed. top: the largest distance. unreached: share of the
-    solids that no path reaches.
+    Attributes
+    ----------
+    grid : Voxels
+        Grid of the solids.
+    cubes : Cubes
+        u on the grid, mm.
+    depth : Cubes
+        Depth inside the solids on the grid, mm.
+    gradient : tuple of Cubes
+        Components of the smoothed direction of the gradient of u.
+    top : float
+        Maximum of u, mm.
+    unreached : float
+        Fraction of the solids that no path reaches.
     """
 
     grid: Voxels
@@ -300,7 +308,7 @@ class GeodesicField:
     unreached: float
 
     def pieces(self, distance: float) -> Iterator[Piece]:
-        """Yield the surface in the solid at a distance, mm, in pieces that can be flattened."""
+        """Yield the isosurface of u at a distance, mm, in pieces that can be flattened."""
         mesh = self.cubes.level(distance)
         if not len(mesh.faces):
             return
@@ -310,7 +318,7 @@ class GeodesicField:
             yield from self._flattened(component, inside[vertex_numbers], HALVINGS)
 
     def onto(self, points: Array, distance: float) -> Array:
-        """Move points along the path through the solid to a distance.
+        """Move points along the gradient of u to a distance.
 
         Parameters
         ----------
@@ -322,7 +330,7 @@ class GeodesicField:
         Returns
         -------
         (n, 3) array
-            Points at which u is the distance, after three Newton steps.
+            Points at this distance after three Newton steps, mm.
         """
         for _ in range(3):
             value, slope = self.cubes.sample(points)
@@ -332,7 +340,7 @@ class GeodesicField:
         return points
 
     def directions(self, points: Array) -> Array:
-        """Return build directions: the smoothed direction of the fastest growth of u.
+        """Return build directions: the smoothed direction of the gradient of u.
 
         Parameters
         ----------
@@ -384,18 +392,18 @@ class _Half(NamedTuple):
 def field(
     solids: Sequence[SolidMesh], start: Array, step: float, through: bool = True
 ) -> GeodesicField:
-    """Return the distance through solids from their start.
+    """Compute the distance from the start through solids.
 
     Parameters
     ----------
     solids : sequence of SolidMesh
         The solids, which may touch or overlap.
     start : (k, 3, 3) array
-        Triangles at the start, mm.
+        Triangles of the start, mm.
     step : float
-        Distance from node to node, mm.
+        Distance between grid nodes, mm.
     through : bool, optional
-        Whether the distance is measured through the solid; otherwise straight.
+        Whether the distance is measured through the solid; otherwise it is measured straight.
 
     Returns
     -------
@@ -441,7 +449,7 @@ def field(
 
 
 def _seeds(start: Array, positions: Array, step: float) -> tuple[Index, Array]:
-    """Return nodes near the start and their distances from it."""
+    """Return the nodes near the start and their distances from the start, mm."""
     if not len(start):
         return np.zeros(0, dtype=np.intp), np.zeros(0)
     low = start.min(axis=(0, 1)) - EXACT_STEPS * step
@@ -455,8 +463,9 @@ def _seeds(start: Array, positions: Array, step: float) -> tuple[Index, Array]:
 
 
 def _start_distances(start: Array, positions: Array, step: float) -> Array:
-    """Return distances (n,) mm from the start; near it, negative on the side away from the
-    solid.
+    """Return distances (n,), mm, from the start.
+
+    Near the start, distances are negative on the side away from the solid.
     """
     start_mesh = SolidMesh(start.reshape(-1, 3), np.arange(3 * len(start)).reshape(-1, 3))
     distance = -Search(start_mesh, 2.0 * step).signed(positions)[0]
@@ -464,14 +473,15 @@ def _start_distances(start: Array, positions: Array, step: float) -> Array:
 
 
 def _outside(searches: Sequence[Search], points: Array) -> Array:
-    """Return distances (n,) mm outside all solids, negative inside one."""
+    """Return signed distances (n,), mm, from the union of solids, negative inside."""
     distances: Array = np.min([search.signed(points)[0] for search in searches], axis=0)
     return distances
 
 
 def _add_border_nodes(grid: Voxels, searches: Sequence[Search]) -> Voxels:
-    """Add the nodes less than half a step outside: corners in the paths are then, on average, at
-    their true position.
+    """Add the nodes less than half a step outside the solids.
+
+    The corners around which paths turn are then, on average, at their true position.
     """
     wide = grid.solid.copy()
     for axis in range(3):
@@ -483,11 +493,11 @@ def _add_border_nodes(grid: Voxels, searches: Sequence[Search]) -> Voxels:
 
 
 def _depths(grid: Voxels, wound: Mask, searches: Sequence[Search], carried: Array) -> Array:
-    """Return the depths (nx, ny, nz) mm of nodes in the solids, negative outside.
+    """Return the depths (nx, ny, nz), mm, of nodes in the solids, negative outside.
 
-    They are at most DEEP steps, and NaN where the field is not known. wound: nodes that the
-    solids wind around, which are inside whatever side the nearest triangle shows where a
-    solid cuts itself.
+    Depths are limited to DEEP steps and are NaN where the field is unknown. wound: nodes with a
+    non-zero winding number. They are inside even if the nearest triangle shows its outside, as
+    where a solid intersects itself.
     """
     depth = np.where(np.isnan(carried), np.nan, DEEP * grid.step).ravel()
     inner = grid.solid.copy()
@@ -507,7 +517,7 @@ def _depths(grid: Voxels, wound: Mask, searches: Sequence[Search], carried: Arra
 
 
 def _smooth_directions(linked: Links, direction: Array) -> Array:
-    """Return unit directions (n, 3) of the nodes, averaged twice with their neighbours."""
+    """Average the directions (n, 3) of nodes twice with their neighbours; return unit vectors."""
     for _ in range(2):
         unit = direction / np.maximum(np.linalg.norm(direction, axis=1, keepdims=True), 1e-300)
         padded = np.vstack([unit, np.zeros((1, 3))])
@@ -519,8 +529,9 @@ def _smooth_directions(linked: Links, direction: Array) -> Array:
 
 
 def _connected(mesh: Mesh, inside: Mask) -> Iterator[tuple[Mesh, Index]]:
-    """Yield the components of a mesh connected by vertices inside, each with its adjacent
-    triangles and vertex numbers.
+    """Yield the components of a mesh that are connected by edges between vertices inside.
+
+    Each component includes the adjacent triangles and comes with its vertex indices.
     """
     pairs = mesh.edges[inside[mesh.edges].all(axis=1)]
     n = len(inside)
@@ -534,7 +545,7 @@ def _connected(mesh: Mesh, inside: Mask) -> Iterator[tuple[Mesh, Index]]:
 
 
 def _halves(mesh: Mesh, inside: Array, margin: float) -> Iterator[_Half]:
-    """Yield a piece in two halves, across its longest side; both reach a little past the cut."""
+    """Halve a piece across its longest extent; both halves extend by `margin` mm beyond the cut."""
     is_inside = inside > 0.0
     middle = mesh.vertices[is_inside].mean(axis=0)
     axis = np.linalg.svd(mesh.vertices[is_inside] - middle, full_matrices=False)[2][0]
@@ -550,7 +561,7 @@ def _halves(mesh: Mesh, inside: Array, margin: float) -> Iterator[_Half]:
 
 
 def _loops(chart: Chart, inside: Array) -> tuple[Array, ...]:
-    """The loops (k, 2) about the part of a chart that is inside."""
+    """Return the loops (k, 2) around the region of a chart where `inside` is positive."""
     flat = Mesh(np.column_stack([chart.flat, np.zeros(len(chart.flat))]), chart.mesh.faces)
     lines = flat.level_lines(inside, np.arange(len(flat.faces)))
     return tuple(line.points[::-1, :2] for line in lines if line.closed and len(line.points) > 2)

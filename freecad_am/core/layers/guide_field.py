@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The field of planes normal to a guide curve: bodies cut layer by layer, each plane only
-through its own part of a body.
+"""Cut bodies by planes normal to a guide curve, each plane only through the nearest part of a body.
 
-A vertex belongs to the plane at its nearest position on the guide. That number, mm along
-the guide, replaces the height in sections by parallel planes: it decides which edges a
-plane cuts and how loops close, so that a plane that meets a bent part twice cuts it once.
-The edge and the plane give the point of intersection.
+A vertex belongs to the plane at the nearest position on the guide. This position, mm along the
+guide, replaces the height in sections by parallel planes. It decides which edges a plane cuts and
+how loops close. A plane that intersects a bent part twice therefore cuts it only once. The
+intersection point is computed from edge and plane.
 """
 
 from __future__ import annotations
@@ -30,25 +29,28 @@ from .surface import Slice, Wrapped
 
 @dataclass(frozen=True, eq=False)
 class AlongLayer(Flat):
-    """pose: (4, 4) of the plane in the frame of the field, Z along the guide. As `LayerSurface`; its height (mm) at a place
-    (x, y) of the plane is height + slope . (x, y)."""
+    """Plane normal to a guide, a `LayerSurface`.
+
+    pose: (4, 4) of the plane in the frame of the field, Z along the guide. The layer height, mm, at
+    a point (x, y) of the plane is height + slope . (x, y).
+    """
 
     pose: Array
     height: float
     slope: Array
 
     def unroll(self, points: Array) -> Array:
-        """Return points on the plane, (n, 2) mm."""
+        """Project points onto the plane, (n, 2), mm."""
         unrolled: Array = (points - self.pose[:3, 3]) @ self.pose[:3, :2]
         return unrolled
 
     def wrap(self, flat: Array) -> Wrapped:
-        """Return every point at its position on the plane."""
+        """Transform points of the plane to the frame of the field."""
         points = flat @ self.pose[:3, :2].T + self.pose[:3, 3]
         return Wrapped(points, np.tile(self.pose[:3, 2], (len(flat), 1)), np.zeros(len(flat)))
 
     def heights(self, flat: Array) -> Array:
-        """Return the distance from this plane to the next.
+        """Return the distance from this plane to the next plane.
 
         Parameters
         ----------
@@ -64,11 +66,11 @@ class AlongLayer(Flat):
         return heights
 
     def for_sheet(self, flat: Array, sheet: float) -> AlongLayer:
-        """Return the same plane."""
+        """Return this plane."""
         return self
 
     def axes(self, normals: Array) -> tuple[Array, Array]:
-        """The x and y of the plane."""
+        """Return the x and y axes of the plane."""
         count = len(normals)
         return np.tile(self.pose[:3, 0], (count, 1)), np.tile(self.pose[:3, 1], (count, 1))
 
@@ -83,8 +85,8 @@ def between(guide: Guide, low: float, high: float, share: float = 0.5) -> AlongL
     low, high : float
         Positions of the planes along the guide, mm.
     share : float, optional
-        Share of the distance at which the layer is cut; its height is measured along the
-        normal there.
+        Fraction of the distance at which the layer is cut. The layer height is measured along the
+        normal at this position.
 
     Returns
     -------
@@ -102,18 +104,20 @@ def between(guide: Guide, low: float, high: float, share: float = 0.5) -> AlongL
     return AlongLayer(start, height, slope)
 
 
-# between the planes at the ends of an edge; edges across a sharper bend are halved
+# cosine of the maximum angle between the planes at the ends of an edge; other edges are split
 BENDS = np.cos(np.radians(10.0))
-MAX_OUTSIDE_SHARE = 0.02  # of the extent of a section: how far the guide may be outside its hull
+# fraction of the extent of a section; maximum distance of the guide from the convex hull of the
+# section
+MAX_OUTSIDE_SHARE = 0.02
 HEIGHT = "LAYER_HEIGHT"
 
 
 class AlongCuts(PlaneCuts):
-    """A body in the frame of the guide, prepared for sections by planes normal to it.
+    """Body prepared for sections by planes normal to the guide.
 
-    `loops` gives points (m, 2) in the frames of the planes. The height of a vertex is how far
-    (mm) along the guide its plane is; edges are short enough that planes change little along
-    each. Raises InputError GUIDE_TIGHT.
+    `loops` returns points (m, 2) in the frames of the planes. The height of a vertex is the
+    position of its plane along the guide, mm. Edges are split until planes change little along each
+    edge. Raises InputError GUIDE_TIGHT.
     """
 
     def __init__(self, base: Base, body: Body) -> None:
@@ -205,9 +209,8 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
     for number, regions, issues in planes.cut_together(cuts, layers, strategy):
         surface = between(guide, number * height, (number + 1) * height, strategy.share_of_cut)
         layer = Slice(number, base, surface, regions, issues)
-        if guide.reaches(
-            (number + strategy.share_of_cut) * height
-        ):  # beyond, slanted ends may be to one side
+        # beyond the ends of the guide, slanted ends of the part may be beside the guide
+        if guide.reaches((number + strategy.share_of_cut) * height):
             _refuse_outside(layer)
         layers_cut.append(layer._replace(heights=_heights(layer), share_before=number / layers))
     _refuse_uneven(layers_cut, strategy)
@@ -215,7 +218,7 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> lis
 
 
 def _heights(layer: Slice) -> tuple[float, float, float]:
-    """The least, the mean and the largest height of a layer by the borders of its regions, mm."""
+    """Return the minimum, mean and maximum height of a layer within its borders, mm."""
     surface, borders = layer.surface, [border for border, _ in layer.borders]
     assert isinstance(surface, AlongLayer)
     high = np.concatenate([surface.heights(border) for border in borders])
@@ -232,7 +235,7 @@ def _heights(layer: Slice) -> tuple[float, float, float]:
 
 
 def _refuse_uneven(layers: Sequence[Slice], strategy: SolidParameters) -> None:
-    """Raise InfeasibleError LAYER_HEIGHT at the worst point of all layers."""
+    """Raise InfeasibleError LAYER_HEIGHT at the maximum deviation if it exceeds `band`."""
     height, max_difference = (
         strategy.layer_height,
         strategy.band * strategy.layer_height + strategy.chord_error * 1e-3,
@@ -279,8 +282,9 @@ def _refuse_uneven(layers: Sequence[Slice], strategy: SolidParameters) -> None:
 
 
 def _refuse_outside(layer: Slice) -> None:
-    """Raise InputError GUIDE_OUTSIDE if the guide crosses a plane, at its origin, outside the
-    hull of the section there.
+    """Raise InputError GUIDE_OUTSIDE if the guide is outside the convex hull of the section.
+
+    The guide intersects the plane at the origin of the plane.
     """
     from scipy.spatial import ConvexHull
 

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Regions of a layer from its loops and the loops of the layers below, grown by the
-machining margin.
-"""
+"""Build the regions of a layer from loops of this layer and the layers below, grown by the margin."""
 
 from __future__ import annotations
 
@@ -15,10 +13,8 @@ from ..issues import Issue
 from ..parameters.filled import SolidParameters
 from ..types import Array
 
-BORDER, ARCS = (
-    0.05,
-    0.2,
-)  # shares of the chord error: for borders without needless points, for fillings
+# fractions of the chord error: tolerance of simplified borders, and error of arcs of grown regions
+BORDER, ARCS = 0.05, 0.2
 
 Loops = TypeVar("Loops")
 
@@ -26,15 +22,15 @@ Loops = TypeVar("Loops")
 def within_margin(
     below: Sequence[Loops], height: float, margin: float, moved: Callable[[Loops, float], Loops]
 ) -> list[tuple[float, Loops]]:
-    """Return the loops that a layer with margin is grown from.
+    """Return the loops from which a layer with margin is grown, and their growths.
 
-    Growing within a layer covers the margin around the part; a surface that ends below has the
-    margin above it.
+    Growing the loops of the layer adds the margin beside the part. Growing the loops of layers
+    below adds the margin above surfaces that end below this layer.
 
     Parameters
     ----------
     below : sequence of Loops
-        Loops of the layers so far, the last one is the layer itself.
+        Loops of the layers up to and including this layer.
     height : float
         Layer height, mm.
     margin : float
@@ -45,7 +41,7 @@ def within_margin(
     Returns
     -------
     list of (float, Loops)
-        Growth in mm and loops, the layer itself first.
+        Growths, mm, and loops; those of this layer come first.
     """
     last_layer = len(below) - 1
     lots = [(margin, below[last_layer])]
@@ -60,7 +56,7 @@ def within_margin(
 def sections(
     cuts: Sequence[Iterator[list[Array]]], strategy: SolidParameters
 ) -> Iterator[tuple[int, tuple[Region, ...], tuple[Issue, ...]]]:
-    """Yield the layers of several bodies that have regions.
+    """Yield the regions of each layer of several bodies; empty layers are skipped.
 
     Parameters
     ----------
@@ -72,9 +68,9 @@ def sections(
     Yields
     ------
     number : int
-        Number of the layer.
+        Layer number.
     regions : tuple of Region
-        Its regions.
+        Regions of the layer, mm.
     issues : tuple of Issue
         Repairs.
     """
@@ -97,13 +93,13 @@ def regions_of(
     Parameters
     ----------
     lots : Sequence[tuple[float, Sequence[Array]]]
-        Growth in mm and loops (n, 2).
+        Growths, mm, and loops (n, 2), mm.
     margin : float
         Machining margin, mm.
     chord_error : float
         Chord error, mm.
     number : int
-        Number of the layer, for issues.
+        Layer number, for issues.
 
     Returns
     -------

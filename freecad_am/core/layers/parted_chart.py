@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A curved sheet in pieces that can be flattened: whole, opened along a line, or halved
-until each piece can.
+"""Split a curved sheet into pieces that can be flattened, and flatten them.
+
+A sheet stays whole, is cut open along a line, or is halved until each piece can be flattened.
 """
 
 from __future__ import annotations
@@ -18,15 +19,17 @@ from ..geometry.mesh.triangle_mesh import Mesh, chains
 from ..geometry.regions.region import regions
 from ..types import Array, Index, Mask
 
-FLAT_SHARE = 1e-6  # of the extent; a piece this near to a plane is projected onto it
-GOOD_STRETCH = 2e-3  # stretch that is irrelevant for beads; not improved further
-ROUNDS = 12
-MIN_WEIGHT = 0.02  # weight of an edge in blunt triangles, whose own would be negative
+FLAT_SHARE = 1e-6  # fraction of the extent; a piece this close to a plane is projected onto it
+GOOD_STRETCH = 2e-3  # negligible stretch for beads; a flattening this good is not improved further
+ROUNDS = 12  # as-rigid-as-possible iterations
+MIN_WEIGHT = 0.02  # minimum edge weight; obtuse triangles would have negative cotangent weights
 
 
 class Flattened(NamedTuple):
-    """points: (n, 2) mm of a mesh's vertices on the plane. min_stretch, max_stretch: (m,) of
-    each triangle.
+    """Flattened mesh.
+
+    points: (n, 2) vertices on the plane, mm. min_stretch, max_stretch: (m,) minimum and maximum
+    ratio of lengths for each triangle.
     """
 
     points: Array
@@ -35,9 +38,7 @@ class Flattened(NamedTuple):
 
 
 def flatten(mesh: Mesh) -> Flattened:
-    """Return a connected piece flattened, with counter-clockwise triangles kept
-    counter-clockwise, of the same area.
-    """
+    """Flatten a connected piece; area and orientation of the piece are preserved."""
     middle = mesh.vertices.mean(axis=0)
     offset = mesh.vertices - middle
     axes = np.linalg.svd(offset, full_matrices=False)[2]
@@ -57,21 +58,21 @@ def flatten(mesh: Mesh) -> Flattened:
 
 
 def align_to_x(mesh: Mesh, flat: Array) -> Array:
-    """Turn flat points so that x runs as the part's X does, as well as possible.
+    """Rotate flat points so that x is as close as possible to the part's X.
 
-    Where the piece is normal to X, the part's Y replaces X.
+    If the piece is normal to X, the part's Y replaces X.
 
     Parameters
     ----------
     mesh : Mesh
         The piece in the part.
     flat : (n, 2) array
-        Its vertices on the plane, mm.
+        Vertices of the piece on the plane, mm.
 
     Returns
     -------
     (n, 2) array
-        The points about the origin, turned.
+        The rotated points, centred at the origin, mm.
     """
     up = _area_vector(mesh)
     up /= max(float(np.linalg.norm(up)), 1e-300)
@@ -92,20 +93,19 @@ def align_to_x(mesh: Mesh, flat: Array) -> Array:
 
 
 def measure_stretch(mesh: Mesh, flat: Array) -> tuple[Array, Array]:
-    """Return the stretch of each triangle by flattening.
+    """Measure how flattening stretches each triangle.
 
     Parameters
     ----------
     mesh : Mesh
         The piece in the part, m triangles.
     flat : (n, 2) array
-        Its vertices on the plane, mm.
+        Vertices of the piece on the plane, mm.
 
     Returns
     -------
     low, high : (m,) array
-        Smallest and largest ratio of lengths; the smallest is negative where a triangle is
-        turned over.
+        Minimum and maximum ratio of lengths; `low` is negative for flipped triangles.
     """
     local = _corners(mesh)
     sides_in_part, sides_flat = _sides(local), _sides(flat[mesh.faces])
@@ -138,7 +138,7 @@ def _area_vector(mesh: Mesh) -> Array:
 
 
 def _corners(mesh: Mesh) -> Array:
-    """Return the corners (m, 3, 2) of each triangle in its own plane."""
+    """Return the corners (m, 3, 2) of each triangle in the plane of the triangle."""
     a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
     along, third_edge = b - a, c - a
     length = np.linalg.norm(along, axis=1)
@@ -151,14 +151,12 @@ def _corners(mesh: Mesh) -> Array:
 
 
 def _sides(corners: Array) -> Array:
-    """The two sides (m, 2, 2) from the first corner."""
+    """Return the two sides (m, 2, 2) of each triangle that start at the first corner."""
     return np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=1)
 
 
 def _cotangents(local: Array) -> Array:
-    """Return half the cotangent (m, 3) of the angle opposite to the side from corner k to the
-    next.
-    """
+    """Return half the cotangents (m, 3) of the angles opposite to the sides from k to k + 1."""
     cotangents = []
     for k in range(3):
         apex = local[:, (k + 2) % 3]
@@ -176,7 +174,7 @@ def _laplacian(mesh: Mesh, weights: Array) -> csc_matrix:
 
 
 def _map_conformally(mesh: Mesh, weights: Array) -> Array:
-    """Return the least squares conformal map (n, 2) of a piece; two distant vertices are pinned."""
+    """Compute the least squares conformal map (n, 2) of a piece, with two distant vertices pinned."""
     n = len(mesh.vertices)
     start, end = mesh.border_edges.T
     rows, columns = np.r_[start, end], np.r_[end, start]
@@ -194,7 +192,7 @@ def _map_conformally(mesh: Mesh, weights: Array) -> Array:
 
 
 def _scale_to_area(mesh: Mesh, flat: Array) -> Array:
-    """Return the flat points scaled to the area of the piece."""
+    """Scale the flat points to the area of the piece."""
     sides_in_part, sides_flat = (_sides(corners) for corners in (_corners(mesh), flat[mesh.faces]))
     size = [
         0.5 * np.abs(sides[:, 0, 0] * sides[:, 1, 1] - sides[:, 0, 1] * sides[:, 1, 0]).sum()
@@ -205,9 +203,7 @@ def _scale_to_area(mesh: Mesh, flat: Array) -> Array:
 
 
 def _make_rigid(mesh: Mesh, local: Array, weights: Array, flat: Array) -> Array:
-    """Return the flat points moved until each triangle is as nearly rotated, not stretched, as
-    the whole allows.
-    """
+    """Move the flat points as rigidly as possible: rotate triangles with minimum stretch."""
     n = len(flat)
     solver = splu(_laplacian(mesh, weights)[1:, 1:].tocsc())
     side = np.roll(local, -1, axis=1) - local
@@ -230,19 +226,18 @@ def _make_rigid(mesh: Mesh, local: Array, weights: Array, flat: Array) -> Array:
     return flat
 
 
-IGNORED_SHARE = 0.02  # share of the area whose stretch is ignored: slivers, and the tips of fans
-MAX_OVERLAP_SHARE = 0.01  # share of the area by which a picture may overlap itself
-HALVINGS = 8
-SNAP_SHARE, MIN_OFFSET_SHARE = (
-    0.3,
-    0.05,
-)  # typical edges; vertices this near to a cut are moved onto it, border vertices count as next to it
+IGNORED_SHARE = 0.02  # fraction of the area whose stretch is ignored: slivers and tips of fans
+MAX_OVERLAP_SHARE = 0.01  # fraction of the area; maximum overlap of a flattened piece with itself
+HALVINGS = 8  # maximum number of successive halvings of a piece
+# in typical edges; maximum distance of vertices that are snapped onto a cut, and minimum distance
+# that other vertices, such as those of the border, are taken to have
+SNAP_SHARE, MIN_OFFSET_SHARE = 0.3, 0.05
 
 
 def stretch_of(flat: Flattened, weight: Array) -> float:
-    """Return the stretch or squeeze that most triangles keep below.
+    """Return the stretch or compression that most triangles do not exceed.
 
-    Triangles with IGNORED_SHARE of the weight may exceed it.
+    The worst triangles, with IGNORED_SHARE of the weight, do not count.
 
     Parameters
     ----------
@@ -265,16 +260,16 @@ def stretch_of(flat: Flattened, weight: Array) -> float:
 
 
 def split_flattenable(mesh: Mesh, max_stretch: float, halvings: int = HALVINGS) -> Iterator[Mesh]:
-    """Yield connected pieces of a mesh that can be flattened.
+    """Split a mesh into connected pieces that can be flattened.
 
     Parameters
     ----------
     mesh : Mesh
         The mesh.
     max_stretch : float
-        Largest share by which flattening may stretch or squeeze.
+        Maximum relative stretch or compression by flattening.
     halvings : int, optional
-        How often a piece is halved; after that it is returned as it is.
+        Maximum number of successive halvings; after them a piece is yielded unchecked.
 
     Yields
     ------
@@ -320,12 +315,13 @@ def cut_mesh(
     across : (3,) array
         Unit normal of the plane.
     where : callable, optional
-        Returns for points (k, 3) of the cut whether it opens there; None for everywhere.
+        Returns for points (k, 3) of the cut whether the cut separates the mesh there; None:
+        everywhere.
 
     Returns
     -------
     Mesh
-        The mesh with double vertices along the cut.
+        The mesh with duplicate vertices along the cut.
     """
     value = (mesh.vertices - middle) @ across
     border = np.zeros(len(value), dtype=bool)
@@ -382,11 +378,11 @@ def cut_mesh(
 
 
 def _find_snapped(mesh: Mesh, value: Array, across: Array, border: Mask) -> Mask:
-    """Return which vertices (n,) are moved onto a cut, value (n,) mm from it along its normal
-    (3,).
+    """Return a mask (n,) of the vertices that snap onto a cut.
 
-    They are near it; of two joined by an edge that would nearly coincide there, only the
-    nearer one: a triangle without area cannot be flattened.
+    value: (n,) distances from the cut, mm. across: (3,) unit normal of the cut. Vertices close to
+    the cut snap. If two vertices of an edge would nearly coincide on the cut, only the closer
+    vertex snaps, because a triangle without area cannot be flattened.
     """
     snap_distance = SNAP_SHARE * mesh.typical_edge
     on = (np.abs(value) < snap_distance) & ~border
@@ -400,9 +396,7 @@ def _find_snapped(mesh: Mesh, value: Array, across: Array, border: Mask) -> Mask
 
 
 def _is_flattenable(mesh: Mesh, max_stretch: float) -> bool:
-    """Return whether a piece can be flattened within a share `max_stretch`, without overlapping
-    itself.
-    """
+    """Whether a piece can be flattened within `max_stretch` and without overlapping itself."""
     if not len(mesh.border_edges):
         return False
     flat = flatten(mesh)
@@ -416,7 +410,7 @@ def _is_flattenable(mesh: Mesh, max_stretch: float) -> bool:
 
 
 def borders(mesh: Mesh) -> list[Index]:
-    """Return the loops of the border of a mesh.
+    """Return the border loops of a mesh.
 
     Parameters
     ----------
@@ -426,7 +420,7 @@ def borders(mesh: Mesh) -> list[Index]:
     Returns
     -------
     list of (k,) array of int
-        Vertices of each loop, the mesh on the left.
+        Vertex indices of each loop, with the mesh on the left.
     """
     edges = mesh.border_edges
     following = np.full(len(mesh.vertices), -1, dtype=np.intp)
@@ -435,8 +429,9 @@ def borders(mesh: Mesh) -> list[Index]:
 
 
 def _open_ring(mesh: Mesh) -> Mesh | None:
-    """Return a piece that runs around an axis, cut along a half plane of the axis; None for any
-    other piece.
+    """Cut a piece that runs around an axis along a half plane through the axis.
+
+    Returns None for any other piece.
     """
     if len(borders(mesh)) < 2:
         return None
@@ -455,7 +450,7 @@ def _open_ring(mesh: Mesh) -> Mesh | None:
 
 
 def _longest_axis(mesh: Mesh) -> tuple[Array, Array]:
-    """Return the middle (3,) of a piece and the unit vector (3,) of its longest extent."""
+    """Return the centroid (3,) of a piece and the unit vector (3,) along its longest extent."""
     areas = mesh.areas
     corners = mesh.vertices[mesh.faces].mean(axis=1)
     middle = (areas[:, None] * corners).sum(axis=0) / areas.sum()

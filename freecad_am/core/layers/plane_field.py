@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The field of parallel planes: bodies on the lowest plane cut layer by layer, together or
-separately; the volumes of these layers.
-"""
+"""Cut bodies by parallel planes, together or separately, and compute the volumes of the layers."""
 
 from __future__ import annotations
 
@@ -26,11 +24,11 @@ from .surface import Slice, Wrapped
 
 
 class Flat:
-    """The part of `LayerSurface` that is the same for every plane."""
+    """Members of `LayerSurface` common to all planes."""
 
     @property
     def period(self) -> None:
-        """Nothing goes round it."""
+        """None: a plane does not close."""
         return None
 
     @property
@@ -43,54 +41,57 @@ class Flat:
         return 0.0
 
     def pieces(self, flat: Array, chord_error: float) -> Index:
-        """Chords are where they were."""
+        """Return 1 for each edge: edges stay straight."""
         return np.ones(len(flat) - 1, dtype=np.intp)
 
 
 @dataclass(frozen=True)
 class PlaneLayer(Flat):
-    """The plane at a height (mm) along the Z of its frame, with the x and y of the frame. As
-    `LayerSurface`.
+    """Plane at a height, mm, along the Z of its frame, a `LayerSurface`.
+
+    x and y of the plane are x and y of the frame.
     """
 
     height: float
 
     def unroll(self, points: Array) -> Array:
-        """(n, 2) mm."""
+        """Return x and y, (n, 2), mm."""
         return points[:, :2].copy()
 
     def wrap(self, flat: Array) -> Wrapped:
-        """Every point as it is, at the height."""
+        """Return the points at the height of the plane."""
         count = len(flat)
         points = np.column_stack([flat, np.full(count, self.height)])
         return Wrapped(points, np.tile([0.0, 0.0, 1.0], (count, 1)), np.zeros(count))
 
     def heights(self, flat: Array) -> None:
-        """Return None: the layer height is the same everywhere."""
+        """Return None: the layer height is constant."""
 
     def for_sheet(self, flat: Array, sheet: float) -> PlaneLayer:
-        """Return the same plane."""
+        """Return this plane."""
         return self
 
     def axes(self, normals: Array) -> tuple[Array, Array]:
-        """The x and y of the plane."""
+        """Return the x and y axes of the plane."""
         count = len(normals)
         return np.tile([1.0, 0.0, 0.0], (count, 1)), np.tile([0.0, 1.0, 0.0], (count, 1))
 
 
-CLEARANCE_SHARE = 0.02  # of the chord error, mm, minimum; clearance of a plane from faces in it
-ROUNDING = 4e-7  # of the extent of the body: rounding of vertices stored as 32-bit numbers
-EXACT = 1e-6  # of a layer
+CLEARANCE_SHARE = (
+    0.02  # fraction of the chord error; minimum clearance of a plane from coplanar faces
+)
+ROUNDING = 4e-7  # fraction of the maximum coordinate; rounding of vertices stored as 32-bit floats
+EXACT = 1e-6  # fraction of a layer; tolerance of layer counts
 MAX_RISE_SHARE = (
-    1e-3  # largest rise of a facet, as a share of its size, with which it counts as plane
+    1e-3  # fraction of the facet size; maximum rise of a facet that counts as horizontal
 )
 
 
 def count(top: float, strategy: SolidParameters) -> int:
     """Return the number of layers of a part that reaches to `top` mm above the first plane.
 
-    It counts the layers cut below the top, a cut at the top if layers are cut in their tops,
-    and the layers of the margin.
+    The count includes the layers cut below `top` and the layers of the margin. A cut exactly at
+    `top` counts if `cut_at` is 'top'.
     """
     levels = top / strategy.layer_height - strategy.share_of_cut
     layers_cut = (
@@ -106,7 +107,7 @@ def count(top: float, strategy: SolidParameters) -> int:
 def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Iterator[Slice]:
     """Yield the layers of bodies upwards, on planes above the base.
 
-    The planes are at 0, h, 2 h ... mm; layers without regions are left out.
+    The planes are at 0, h, 2 h ... mm; layers without regions are skipped.
 
     Parameters
     ----------
@@ -158,7 +159,7 @@ def slices(base: Base, bodies: Sequence[Body], strategy: SolidParameters) -> Ite
 def cut_together(
     cuts: Sequence[PlaneCuts], layers: int, strategy: SolidParameters
 ) -> Iterator[tuple[int, tuple[Region, ...], tuple[Issue, ...]]]:
-    """Yield the layers of bodies that have regions.
+    """Yield the regions of each layer of bodies; empty layers are skipped.
 
     Parameters
     ----------
@@ -172,9 +173,9 @@ def cut_together(
     Yields
     ------
     number : int
-        Number of the layer.
+        Layer number.
     regions : tuple of Region
-        Its regions.
+        Regions of the layer, mm.
     issues : tuple of Issue
         Repairs.
     """
@@ -185,10 +186,9 @@ def cut_together(
 
 
 def _off_faces(cut: PlaneCuts, heights: Array, strategy: SolidParameters) -> Array:
-    """Return the heights, moved slightly up where facets are in their planes, or down if layers
-    are cut in their tops.
+    """Move heights off coplanar facets, because rounding would decide a cut through such facets.
 
-    Rounding would decide a cut through such facets.
+    The heights move slightly upwards, or downwards if `cut_at` is 'top'.
     """
     aside = max(
         CLEARANCE_SHARE * strategy.chord_error,
@@ -206,15 +206,15 @@ def _off_faces(cut: PlaneCuts, heights: Array, strategy: SolidParameters) -> Arr
     return np.where(is_near, heights + (-2.0 if strategy.cut_at == "top" else 2.0) * aside, heights)
 
 
-# ---- Volume of a part between the planes of its layers, compared with the deposit there
+# ---- Volume of a part between layer planes, for comparison with the deposited volume
 
 
 class Slabs(NamedTuple):
-    """Volumes of each layer (k,), mm3: the part from its plane to the next, and the deposit on
-    it.
+    """Volumes of each layer (k,), mm3.
 
-    The part below the first half of a layer at its top is a separate layer, which may have no
-    deposit.
+    part_volume: volume of the part from the plane of the layer to the next plane. deposited: volume
+    of the deposit on the plane. An incomplete layer at the top of the part counts as a layer, even
+    without deposit.
     """
 
     part_volume: Array
@@ -222,15 +222,15 @@ class Slabs(NamedTuple):
 
 
 def group_of(solids: SolidsOnHub) -> Group | None:
-    """Return the bodies in plane layers; None for other layers."""
+    """Return the group of bodies in planar layers; None for other layers."""
     groups = solids.groups
     return groups[0] if len(groups) == 1 and isinstance(groups[0].base.surface, Plane) else None
 
 
 def slabs(group: Group, layer_height: float, points: Array, volumes: Array) -> Slabs:
-    """Return the volumes of bodies and deposit in plane layers.
+    """Return the volumes of bodies and deposit in planar layers.
 
-    Bodies that overlap count twice there.
+    Overlaps of bodies count twice.
 
     Parameters
     ----------
@@ -285,35 +285,34 @@ def volumes_below(vertices: Array, triangles: Index, heights: Sequence[float] | 
 
     Notes
     -----
-    By the divergence of (0, 0, z - height), which is 0 on the plane itself: each facet counts
-    by its part below.
+    Divergence theorem with the field (0, 0, z - height), which is 0 on the plane. Thus only the
+    part of each facet below the plane contributes.
     """
     corners = np.sort(vertices[triangles][..., 2], axis=1)
     edges = vertices[triangles][..., :2]
     across, along = edges[:, 1] - edges[:, 0], edges[:, 2] - edges[:, 0]
-    area = 0.5 * (
-        across[:, 0] * along[:, 1] - across[:, 1] * along[:, 0]
-    )  # as seen from above, with its sign
+    # signed area of the projection onto the plane
+    area = 0.5 * (across[:, 0] * along[:, 1] - across[:, 1] * along[:, 0])
     return np.array([_volume_below(corners, area, float(height)) for height in heights])
 
 
 def _volume_below(corners: Array, area: Array, height: float) -> float:
-    """Return the volume for facets whose corners (m, 3) rise from the first to the last."""
+    """Return the volume below `height` for facets with ascending corner heights (m, 3)."""
     low, middle, high = (corners[:, number] - height for number in range(3))
     fully_below = high <= 0.0
     total = float((area[fully_below] * (low + middle + high)[fully_below]).sum() / 3.0)
     cut = (low < 0.0) & ~fully_below
-    one_below = cut & (middle >= 0.0)  # a corner below
+    one_below = cut & (middle >= 0.0)  # one corner below
     share = low[one_below] ** 2 / ((middle - low)[one_below] * (high - low)[one_below])
     total += float((area[one_below] * share * low[one_below]).sum() / 3.0)
-    two_below = cut & (middle < 0.0)  # a corner above
+    two_below = cut & (middle < 0.0)  # one corner above
     share = high[two_below] ** 2 / ((high - low)[two_below] * (high - middle)[two_below])
     upper_moment = (low + middle + high)[two_below] - share * high[two_below]
     return total + float((area[two_below] * upper_moment).sum() / 3.0)
 
 
 def outline(group: Group, height: float) -> list[Array]:
-    """Return the cut of bodies by a plane above the base.
+    """Cut bodies by a plane above the base.
 
     Parameters
     ----------
@@ -325,7 +324,7 @@ def outline(group: Group, height: float) -> list[Array]:
     Returns
     -------
     list of (n, 2) array
-        Closed loops in the frame of the base, mm, first point repeated; each body is cut
+        Closed loops in the frame of the base, mm, with repeated first point. Each body is cut
         separately.
     """
     cuts = [PlaneCuts(group.base.inside(body.vertices), body.triangles) for body in group.bodies]

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The field of equidistant cylinders or cones around a hub: cut, unroll, grow by the margin
-(Dai 2020, section 2).
+"""Slice solids by equidistant cylinders or cones around a hub (Dai 2020, section 2).
+
+The cuts are unrolled and grown by the machining margin.
 """
 
 from __future__ import annotations
@@ -29,29 +30,32 @@ from .surface import Slice, Wrapped, common_regions
 
 @dataclass(frozen=True)
 class RoundLayer:
-    """A cylinder or cone about the Z of its frame. middle: azimuth (rad) of x = 0 on the plane. As `LayerSurface`."""
+    """Cylinder or cone about the Z axis of its frame, a `LayerSurface`.
+
+    middle: azimuth of x = 0 on the plane, rad.
+    """
 
     surface: Developable
     middle: float = 0.0
 
     @property
     def period(self) -> Period:
-        """A turn: a length of a cylinder, an angle about the apex of a cone."""
+        """Period of one turn: a length for a cylinder, an angle about the apex for a cone."""
         if self.surface.is_cylinder:
             return Period(TURN * self.surface.radius)
         return Period(self.surface.flat_turn, self.surface.slant)
 
     @property
     def bends_freely(self) -> bool:
-        """False: it bends as its hub does."""
+        """False: the layer bends as the hub does."""
         return False
 
     def unroll(self, points: Array) -> Array:
-        """(n, 2) mm."""
+        """Unroll points, (n, 2), mm."""
         return self.surface.unroll(points, self.middle)
 
     def wrap(self, flat: Array) -> Wrapped:
-        """Wrap a flat curve; its azimuths are unwrapped beyond a full turn."""
+        """Wrap a curve of the plane; azimuths are continuous beyond a full turn."""
         theta, z = _unwrapped(flat, self.surface)
         rho = (
             np.full(len(z), self.surface.radius)
@@ -63,11 +67,12 @@ class RoundLayer:
         return Wrapped(points, self.surface.normals(points), theta * math.sin(self.surface.taper))
 
     def heights(self, flat: Array) -> None:
-        """Return None: the layer height is the same everywhere."""
+        """Return None: the layer height is constant."""
 
     def for_sheet(self, flat: Array, sheet: float) -> RoundLayer:
-        """Return the surface for a curve about `sheet`: on a wide cone a curve may pass behind the
-        apex, which the plane does not show.
+        """Return the surface for a curve about `sheet`.
+
+        On a wide cone a curve may pass behind the apex, which is not visible on the plane.
         """
         if self.surface.is_cylinder:
             return replace(self, middle=self.middle + 0.0)
@@ -80,8 +85,10 @@ class RoundLayer:
         return (self.middle - azimuth) * math.sin(self.surface.taper)
 
     def pieces(self, flat: Array, chord_error: float) -> Index:
-        """Return the pieces of each edge, a geodesic: its curvature is that of the surface around
-        the axis times its squared share of that direction.
+        """Return the number of pieces of each edge that keeps the chord error.
+
+        An edge is a geodesic. Its curvature is the curvature of the surface around the axis times
+        the squared component of the edge in this direction (Euler).
         """
         edge = np.diff(flat, axis=0)
         length = np.linalg.norm(edge, axis=1)
@@ -96,14 +103,14 @@ class RoundLayer:
             if self.surface.is_cylinder
             else ((self.surface.height - z) * math.tan(self.surface.taper))
         )
-        # an edge comes nearer to the apex than its ends by no more than its sagitta seen from there
+        # an edge is closer to the apex than its ends by at most its sagitta as seen from the apex
         min_rho = np.minimum(rho[:-1], rho[1:]) * np.cos(0.5 * np.abs(np.diff(phi)))
         curvature = math.cos(self.surface.taper) * share**2 / min_rho
         count = np.maximum(np.ceil(length * np.sqrt(curvature / (8.0 * chord_error)) - 1e-9), 1.0)
         return np.asarray(count.astype(np.intp))
 
     def axes(self, normals: Array) -> tuple[Array, Array]:
-        """Around the axis, and up along the surface."""
+        """Return the directions around the axis and upwards along the surface."""
         x, y = columns(normals[:, :2])
         level = np.hypot(x, y)
         around = np.stack([-y / level, x / level, np.zeros(len(x))], axis=1)
@@ -111,7 +118,7 @@ class RoundLayer:
 
 
 def _unwrapped(flat: Array, surface: Developable) -> tuple[Array, Array]:
-    """Azimuth and height (n,) along a curve (n, 2) on the plane, the azimuth counted on where the curve goes far round."""
+    """Return azimuth, unwrapped, and height (n,) along a curve (n, 2) of the plane."""
     theta, z = surface.from_unrolled(flat)
     if surface.is_cylinder:
         return theta, z
@@ -119,13 +126,13 @@ def _unwrapped(flat: Array, surface: Developable) -> tuple[Array, Array]:
     return np.unwrap(theta * sine) / sine, z
 
 
-CUT = 0.25  # share of the chord error, of cuts
+CUT = 0.25  # fraction of the chord error; chord error of cuts
 
 
 def slices(base: Base, body: Body, strategy: FilledParameters) -> Iterator[Slice]:
     """Yield the layers of a solid from the hub outwards.
 
-    The layers are at 0, h, 2 h ... mm from the hub; layers without regions are left out.
+    The layers are at 0, h, 2 h ... mm from the hub; layers without regions are skipped.
 
     Parameters
     ----------
@@ -216,9 +223,10 @@ def slices(base: Base, body: Body, strategy: FilledParameters) -> Iterator[Slice
 def _neighbours(
     below: Sequence[list[Loop]], ahead: Sequence[list[Loop]], thick: int
 ) -> list[tuple[int, list[Loop]]]:
-    """Return the `thick` layers under and over the last one below: offset in layers, and loops.
+    """Return the loops of the `thick` layers under and over the current layer, with layer offsets.
 
-    Loops of missing layers and loops around the hub are left out.
+    The current layer is the last in `below`. Missing layers have no loops. Loops around the hub are
+    dropped.
     """
     current = len(below) - 1
     neighbours = []
@@ -233,7 +241,7 @@ def _neighbours(
 
 
 def _apex(loops: Sequence[Loop], surface: Developable) -> Array:
-    """About where (3,) the axis ends within loops that go round it."""
+    """Return the approximate point (3,) at which the axis ends within loops around the axis."""
     round_it = np.vstack([loop.points for loop in loops if loop.turns])
     return np.array(
         [0.0, 0.0, float(round_it[:, 2].mean()) if surface.is_cylinder else surface.height]
@@ -243,8 +251,9 @@ def _apex(loops: Sequence[Loop], surface: Developable) -> Array:
 def _all_round(
     lots: Sequence[tuple[float, list[Loop]]], surface: Developable, strategy: FilledParameters
 ) -> tuple[Region | Strip, ...]:
-    """Return the strips and regions of a layer that goes all around the hub; above a surface
-    that ends below it has no margin.
+    """Return the strips and regions of a layer with loops around the hub.
+
+    Surfaces that end below such a layer get no margin above them.
     """
     margin, loops = next((lot for lot in lots if lot[1]), lots[0])
     bands = strips(

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Bodies prepared for cuts by planes: the stacking direction, and the plane under the
-bodies.
-"""
+"""Prepare bodies for planar layers: choose the stacking direction and the base plane."""
 
 from __future__ import annotations
 
@@ -24,25 +22,23 @@ from ..types import Array, Index
 AXES = np.array(
     [[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]], dtype=np.float64
 )
-MAX_FACES = 12  # flat faces on which the part may be placed, in addition to the axes
-PARALLEL = np.cos(np.radians(2.0))
-CONTACT_HEIGHTS = 0.5  # layer heights above the lowest point; facets no higher are on the platform
-MIN_STABILITY_RAD = float(np.radians(5.0))  # by which a part may lean without falling over
-LEAN_DIRECTIONS = 72  # directions in which it may
-AREA_TOLERANCE = 0.01  # of the area of the part; areas nearer together are the same
-HEIGHT_TOLERANCE = (
-    1e-3  # of a height; heights nearer together are the same, whatever chords a mesh has
-)
+MAX_FACES = 12  # maximum number of flat faces on which the part may stand, in addition to the axes
+PARALLEL = np.cos(np.radians(2.0))  # cosine of the angle below which directions count as equal
+CONTACT_HEIGHTS = 0.5  # in layer heights; facets this close to the lowest point are on the platform
+MIN_STABILITY_RAD = float(np.radians(5.0))  # minimum lean without falling over of a stable part
+LEAN_DIRECTIONS = 72  # number of directions in which the lean is tested
+AREA_TOLERANCE = 0.01  # fraction of the part's surface area; tolerance of equal areas
+HEIGHT_TOLERANCE = 1e-3  # relative tolerance of equal heights, regardless of the chords of a mesh
 # approximate number of points on the facets of several bodies at which mutual cover is checked
 SAMPLES = 20_000
-MAX_PIECES = 64  # maximum number of parts of a facet edge between these points
+MAX_PIECES = 64  # maximum number of divisions of a facet edge for these points
 
 
 class Stacked(NamedTuple):
-    """Figures of a stacking direction: unit vector (3,), unsupported area, mm2, height, mm, and
-    stability, rad.
+    """Evaluation of a stacking direction.
 
-    stable: lean at which the part falls over, 0 or less where it falls over as it is.
+    direction: (3,) unit vector. area: unsupported area, mm2. height: height of the part, mm.
+    stable: lean at which the part falls over, rad; 0 or less if the part does not stand.
     """
 
     direction: Array
@@ -54,10 +50,10 @@ class Stacked(NamedTuple):
 def prepare_stack(
     bodies: Sequence[Body], strategy: SolidParameters, label: str, issues: tuple[Issue, ...] = ()
 ) -> SolidsOnHub:
-    """Return bodies on the plane through their lowest point.
+    """Place bodies on the plane through their lowest point.
 
-    The Z of the frame is the stacking direction, its origin in the middle under them. With the
-    direction `auto` a note reports the choice and its reason.
+    Z of the frame is the stacking direction. The origin is centred below the bodies. With the
+    direction `auto` a note reports the chosen direction and the reason.
 
     Parameters
     ----------
@@ -92,11 +88,11 @@ def prepare_stack(
 
 
 def rank_directions(bodies: Sequence[Body], strategy: SolidParameters) -> list[Stacked]:
-    """Return the axes and the directions normal to large flat faces, best first.
+    """Rank the axes and the directions normal to large flat faces, best first.
 
-    Directions in which the part is stable by MIN_STABILITY_RAD come first, then the others.
-    Within each, the order is by unsupported area within AREA_TOLERANCE, then by height within
-    HEIGHT_TOLERANCE, then by the given order. Any mesh of the same part gives the same order.
+    Directions with a stability of at least MIN_STABILITY_RAD come first. Both groups are ordered by
+    unsupported area within AREA_TOLERANCE, then by height within HEIGHT_TOLERANCE, then by
+    candidate order. The ranking does not depend on the mesh of the part.
     """
     vertices, normals, areas = facets(
         bodies, strategy.chord_error if strategy.fuse == "auto" else None
@@ -118,7 +114,7 @@ def rank_directions(bodies: Sequence[Body], strategy: SolidParameters) -> list[S
 
 
 def _ranked(candidates: list[Stacked], areas: Array) -> list[Stacked]:
-    """Return directions, best first, whatever the part is on."""
+    """Rank directions, best first, regardless of stability."""
     ranked: list[Stacked] = []
     while candidates:
         max_area = min(candidate.area for candidate in candidates) + AREA_TOLERANCE * float(
@@ -138,9 +134,7 @@ def _ranked(candidates: list[Stacked], areas: Array) -> list[Stacked]:
 
 
 def _centre_of_mass(bodies: Sequence[Body]) -> Array:
-    """Return the centre of mass (3,) of closed bodies, or of their surfaces if they enclose no
-    volume.
-    """
+    """Return the centre of mass (3,) of closed bodies, or of their surfaces if the volume is zero."""
     corners = np.concatenate([body.corners() for body in bodies])
     origin = corners.reshape(-1, 3).mean(axis=0)
     local = corners - origin
@@ -154,11 +148,11 @@ def _centre_of_mass(bodies: Sequence[Body]) -> Array:
 
 
 def _stability(corners: Array, direction: Array, standing: float, middle: Array) -> float:
-    """Return the lean, rad, at which the centre of mass (3,) of triangles (m, 3, 3) leaves the
-    contact area.
+    """Return the minimum lean, rad, at which the centre of mass leaves the contact area.
 
-    The contact area is the part no higher than `standing` mm above the lowest point along a
-    direction (3,); the lean is the smallest over all directions.
+    corners: (m, 3, 3) triangles, mm. direction: (3,) stacking direction. middle: (3,) centre of
+    mass, mm. The contact area is the part of the surface at most `standing` mm above the lowest
+    point.
     """
     frame = upright(np.zeros(3), direction)[:3, :3]
     local = corners @ frame
@@ -180,10 +174,10 @@ def _stability(corners: Array, direction: Array, standing: float, middle: Array)
 
 
 def facets(bodies: Sequence[Body], slit: float | None) -> tuple[Array, Array, Array]:
-    """Return all triangles that have an area.
+    """Return all triangles with non-zero area.
 
-    Area that another body covers, within the slit width, does not count: touching bodies form one
-    part.
+    Area that another body covers within the slit width does not count, because touching bodies form
+    one part.
 
     Parameters
     ----------
@@ -224,8 +218,9 @@ def _free_share(
     areas: Array,
     slit: float,
 ) -> Array:
-    """Return the share (m,) of each triangle of the body `body_number` (m,) that no other body
-    covers, tested `slit` mm outside.
+    """Return the fraction (m,) of each triangle that no other body covers, tested `slit` mm outside.
+
+    body_number: (m,) body index of each triangle.
     """
     divisions = np.clip(np.ceil(np.sqrt(SAMPLES * areas / areas.sum())), 1, MAX_PIECES).astype(
         np.intp
@@ -250,8 +245,9 @@ def _free_share(
 
 
 def _middles(count: int) -> Array:
-    """Return shares (count^2, 3) of the corners at the middles of the parts of a triangle whose
-    edges are cut in `count`.
+    """Return barycentric coordinates (count^2, 3) of the centroids of a subdivided triangle.
+
+    count: number of divisions of each edge.
     """
     i, j = (grid.ravel() for grid in np.meshgrid(np.arange(count), np.arange(count), indexing="ij"))
     up = i + j < count
@@ -262,8 +258,7 @@ def _middles(count: int) -> Array:
 
 
 def _candidates(normals: Array, areas: Array) -> list[Array]:
-    """Return unit directions to evaluate: the axes first, then against the normals of the
-    largest flat faces.
+    """Return candidate unit directions: the axes, then the reversed normals of large flat faces.
 
     The order does not depend on the triangulation.
     """
@@ -272,7 +267,7 @@ def _candidates(normals: Array, areas: Array) -> list[Array]:
     size = np.bincount(np.ravel(number), weights=areas)
     directions = list(AXES)
     shares = np.round(size / max(float(areas.sum()), 1e-300), 3)
-    # equal faces are ordered by direction, rounded to the digits that a mesh has
+    # equal faces are ordered by direction, rounded to the accuracy of a mesh
     for k in np.lexsort(np.vstack([columns(faces.round(2)), -shares]))[: 4 * MAX_FACES]:
         direction = -faces[k] / np.linalg.norm(faces[k])
         if (
@@ -288,7 +283,7 @@ def _candidates(normals: Array, areas: Array) -> list[Array]:
 def evaluate_direction(
     direction: Array, corners: Array, normals: Array, areas: Array, steep: float, standing: float
 ) -> Stacked:
-    """Return the figures of a stacking direction.
+    """Evaluate a stacking direction.
 
     Parameters
     ----------
@@ -297,13 +292,13 @@ def evaluate_direction(
     corners : (m, 3, 3) array
         Corners of the facets, mm.
     normals : (m, 3) array
-        Their unit normals.
+        Unit normals of the facets.
     areas : (m,) array
-        Their areas, mm2.
+        Areas of the facets, mm2.
     steep : float
-        Sine of the overhang beyond which a facet is unsupported.
+        Sine of the overhang above which a facet is unsupported.
     standing : float
-        Facets at most this far above the lowest point are supported, mm.
+        Height above the lowest point up to which facets are supported, mm.
 
     Returns
     -------
@@ -353,14 +348,16 @@ def _note(ranking: Sequence[Stacked], label: str, lean: float) -> Issue:
     )
 
 
-# ---- Overhang of the facets of a part, before it is cut
+# ---- Overhang of the facets of a part, before slicing
 
-MIN_LEAN_RAD = 1e-9  # rad; facets that lean less are walls
+MIN_LEAN_RAD = 1e-9  # rad; facets with less overhang are vertical walls
 
 
 class Leaning(NamedTuple):
-    """Overhanging facets: corners (m, 3, 3) mm, overhang (m,) rad, rising, and areas (m,) mm2.
-    total_area: mm2 of the part.
+    """Overhanging facets.
+
+    corners: (m, 3, 3), mm. lean: (m,) overhang, rad, ascending. area: (m,) areas, mm2. total_area:
+    surface area of the part, mm2.
     """
 
     corners: Array
@@ -379,9 +376,9 @@ class Leaning(NamedTuple):
         Returns
         -------
         corners : (k, 3, 3) array
-            Their corners, mm.
+            Corners of these facets, mm.
         area : float
-            Their area, mm2.
+            Total area of these facets, mm2.
         """
         first_steeper = int(np.searchsorted(self.lean, angle + MIN_LEAN_RAD, side="right"))
         return self.corners[first_steeper:], float(self.area[first_steeper:].sum())
@@ -390,9 +387,9 @@ class Leaning(NamedTuple):
 def find_leaning(
     bodies: Sequence[Body], base: Base, standing: float, slit: float | None = None
 ) -> Leaning:
-    """Return the facets of bodies that overhang.
+    """Find the overhanging facets of bodies.
 
-    The overhang of a wall is 0, of a ceiling a right angle.
+    The overhang of a vertical wall is 0, the overhang of a ceiling is a right angle.
 
     Parameters
     ----------
@@ -401,15 +398,14 @@ def find_leaning(
     base : Base
         The base; along a guide the stacking direction follows it.
     standing : float
-        Facets at most this far above the lowest point are carried by the surface under the
-        part, mm.
+        Height above the lowest point up to which the surface below the part supports facets, mm.
     slit : float or None, optional
         As in `facets`.
 
     Returns
     -------
     Leaning
-        The facets, rising overhang.
+        The facets, ordered by ascending overhang.
     """
     corners, normals, areas = facets(bodies, slit)
     inside = base.inside(corners)

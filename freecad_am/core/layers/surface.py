@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A layer: a surface that unrolls without stretching, and the regions of the part on it.
+"""Layers: surfaces that can be flattened, and the regions of the part on them.
 
-Fillings work only on the plane. Their results are wrapped onto the surface by an
-isometry, so spacings, areas and angles within the layer are those of the plane.
+Filling works on the plane. An isometry wraps the beads onto the surface, so that spacings, areas
+and angles within a layer equal those on the plane.
 """
 
 from __future__ import annotations
@@ -24,8 +24,11 @@ from ..types import Array, Index
 
 
 class Wrapped(NamedTuple):
-    """A curve of the plane on its surface: points and unit normals (n, 3) in the frame of the field, and by what angle (n,)
-    rad the x of the plane is turned there from the first direction of `axes`."""
+    """Curve wrapped onto a surface.
+
+    points: (n, 3) in the frame of the field, mm. normals: (n, 3) unit normals. turn: (n,) angle
+    from the first direction of `axes` to the x axis of the plane, rad.
+    """
 
     points: Array
     normals: Array
@@ -33,18 +36,21 @@ class Wrapped(NamedTuple):
 
 
 class LayerSurface(Protocol):
-    """One surface of a field of layers, in the frame of the field (`on_hub.Base`)."""
+    """Surface of a layer in the frame of the field (`on_hub.Base`)."""
 
     @property
     def period(self) -> Period | None:
-        """The turn around the surface on the plane; None if it does not close.
+        """Period of one turn around the surface, on the plane; None if the surface does not close.
 
-        Regions with the same borders on surfaces with the same period are filled alike.
+        Regions with equal borders on surfaces with equal periods get equal beads.
         """
 
     @property
     def bends_freely(self) -> bool:
-        """Whether it bends as it comes, so that directions may depart from its normals to turn slower."""
+        """Whether the surface may bend sharply.
+
+        If so, build directions may depart from the surface normals to limit the turn rate.
+        """
 
     def unroll(self, points: Array) -> Array:
         """Unroll points of the surface.
@@ -61,7 +67,7 @@ class LayerSurface(Protocol):
         """
 
     def wrap(self, flat: Array) -> Wrapped:
-        """A curve (n, 2) on the plane brought back."""
+        """Wrap a curve (n, 2) of the plane onto the surface."""
 
     def heights(self, flat: Array) -> Array | None:
         """Return the layer heights at points.
@@ -78,29 +84,29 @@ class LayerSurface(Protocol):
         """
 
     def for_sheet(self, flat: Array, sheet: float) -> LayerSurface:
-        """Return the surface for a curve about a sheet.
+        """Return the surface for a curve that is unrolled about a sheet.
 
         Parameters
         ----------
         flat : (n, 2) array
             The curve on the plane, mm.
         sheet : float
-            u of its middle (`strip.Period`), mm.
+            u (`strip.Period`) about which the curve is unrolled, mm.
 
         Returns
         -------
         LayerSurface
-            The same surface, unless it overlaps itself on the plane.
+            This surface, unless it overlaps itself on the plane.
         """
 
     def plane_rotation(self, azimuth: float) -> float:
-        """Return the rotation, rad, of the plane from its orientation about another azimuth, rad."""
+        """Return the rotation, rad, of the plane from a plane unrolled about `azimuth`, rad."""
 
     def pieces(self, flat: Array, chord_error: float) -> Index:
-        """In how many pieces (n - 1,) the edges of a polyline (n, 2) keep within the chord error, mm, when wrapped."""
+        """Return the pieces (n - 1,) that edges of a polyline (n, 2) need for the chord error, mm."""
 
     def axes(self, normals: Array) -> tuple[Array, Array]:
-        """Return two directions within the surface, at right angles.
+        """Return two perpendicular directions within the surface.
 
         Parameters
         ----------
@@ -112,18 +118,33 @@ class LayerSurface(Protocol):
         x : (n, 3) array
             Unit vectors.
         left : (n, 3) array
-            Unit vectors to the left of the first, seen from outside.
+            Unit vectors to the left of x, seen from outside.
         """
 
 
 class Slice(NamedTuple):
-    """One layer of a part: its number, the base in whose frame it is, its surface, its unrolled
-    regions, and issues.
+    """Layer of a part.
 
-    azimuth: rad about the axis of the base, of the middle of the solid. buried: parts of the
-    plane away from tops and bottoms (`over_and_under`); None if not required. heights:
-    smallest, mean and largest height, mm; None if the layer height is constant. share_before:
-    the share of all layers before this one.
+    Attributes
+    ----------
+    number : int
+        Layer number.
+    base : Base
+        Base that defines the frame of the layer.
+    surface : LayerSurface
+        Surface of the layer.
+    regions : tuple of Region or Strip
+        Regions on the plane, mm.
+    issues : tuple of Issue
+        Issues of the layer.
+    azimuth : float
+        Azimuth of the centre of the solid about the axis of the base, rad.
+    buried : tuple of Region or None
+        Regions away from top and bottom surfaces; None if not required.
+    heights : tuple of float or None
+        Minimum, mean and maximum layer height, mm; None if the layer height is constant.
+    share_before : float
+        Fraction of all layers that precede this layer.
     """
 
     number: int
@@ -143,8 +164,8 @@ class Slice(NamedTuple):
         Returns
         -------
         list of ((n, 2) array, bool)
-            Borders on the plane, mm, and whether each is closed; around a hub in all
-            adjacent turns.
+            Borders on the plane, mm, and whether each is closed. Borders on a strip are repeated in
+            the adjacent turns.
         """
         curves = []
         for region in self.regions:
@@ -166,7 +187,7 @@ class Slice(NamedTuple):
         return curves
 
     def where(self, point: Array) -> str:
-        """Return a point of the plane as text.
+        """Format a point of the plane.
 
         Parameters
         ----------
@@ -176,23 +197,22 @@ class Slice(NamedTuple):
         Returns
         -------
         str
-            Its coordinates in the part.
+            Coordinates of the point in the part.
         """
         return self.base.where(self.surface.wrap(point[None]).points[0])
 
 
 CODE = "OVERHANG"
-ARC = 0.1  # of the allowed overhang, or of the chord error if larger: accuracy of the compared borders
-NEVER = math.radians(89.9)  # nothing leans out by more
-MIN_SIDE_SHARE = 0.25  # of the bead spacing: side of a square too small to report
+ARC = 0.1  # fraction of the allowed reach; arc error of compared borders, at least the chord error
+NEVER = math.radians(89.9)  # maximum overhang; a limit of this or more disables the check
+MIN_SIDE_SHARE = 0.25  # in bead spacings; side of the smallest square to report
 
 
 def report_overhangs(slices: Iterable[Slice], strategy: SolidParameters) -> Iterator[Slice]:
-    """Yield the layers of a stack of planes, with an issue for each that overhangs by more than
-    `max_overhang`.
+    """Yield planar layers, with an issue for each layer that overhangs by more than `max_overhang`.
 
-    The angle is from the stacking direction; the issue has the area and the position of the
-    largest region.
+    The overhang angle is measured from the stacking direction. The issue reports the total area and
+    the position of the largest region.
     """
     reach = strategy.layer_height * math.tan(strategy.max_overhang) + strategy.chord_error
     min_area = (MIN_SIDE_SHARE * strategy.bead_spacing) ** 2
@@ -246,7 +266,7 @@ def _overhanging_regions(
 
 
 def common_regions(neighbours: Sequence[Sequence[Region]]) -> tuple[Region, ...]:
-    """Return the common regions of adjacent layers, away from tops and bottoms.
+    """Return the common regions of adjacent layers, which are away from top and bottom surfaces.
 
     Parameters
     ----------
@@ -267,9 +287,7 @@ def common_regions(neighbours: Sequence[Sequence[Region]]) -> tuple[Region, ...]
 
 
 def mark_buried(slices: Iterator[Slice], thick: int) -> Iterator[Slice]:
-    """Yield the layers of one plane stack, each with the common regions of `thick` layers under
-    it and over it.
-    """
+    """Yield planar layers, each with the common regions of the `thick` layers below and above."""
     if not thick:
         yield from slices
         return

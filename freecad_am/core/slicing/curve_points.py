@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points on a curve in space such that segments between them keep within a chord error and
-their outline is the curve.
-"""
+"""Sample a space curve so that chords keep the chord error and the outline reproduces the curve."""
 
 from __future__ import annotations
 
@@ -12,37 +10,35 @@ from ..geometry.curves.space_curve import SpaceCurve
 from ..geometry.walls.surface import dot
 from ..types import Array, Index
 
-SUBDIVISIONS = 4  # places per arc of the curve at which its curvature is taken
-BETWEEN = (
-    np.arange(1, 8) / 8.0
-)  # places of a segment at which its distance from the curve is measured
-GROWTH = 1.15  # times as many segments where the chord error is not met
-MIN_SEGMENTS = 24  # segments of a whole curve
-TOLERANCE_MM = 5e-5  # mm; maximum error of the outline at TEST_SHARES, half of its maximum anywhere
-# of each segment; where the curvature jumps within it, its middle may be right by chance
+SUBDIVISIONS = 4  # curvature samples per arc of the curve
+BETWEEN = np.arange(1, 8) / 8.0  # fractions of a segment at which the chord error is measured
+GROWTH = 1.15  # factor on the number of segments if the chord error is exceeded
+MIN_SEGMENTS = 24  # minimum number of segments of a complete curve
+TOLERANCE_MM = 5e-5  # mm; maximum outline error at TEST_SHARES; elsewhere it is at most twice this
+# fractions of a segment; where the curvature jumps, the midpoint may be on the curve by chance
 TEST_SHARES = np.array([1.0 / 3.0, 2.0 / 3.0])
 HALVINGS = 12
 
 
 def sample_within_chord(curve: SpaceCurve, low: float, high: float, chord_error: float) -> Array:
-    """Return parameters of a curve whose chords keep the chord error.
+    """Sample a curve so that its chords keep the chord error.
 
-    Segments are shorter where the curve bends more.
+    Segments are shorter at higher curvature.
 
     Parameters
     ----------
     curve : SpaceCurve
         The curve.
     low, high : float
-        Ends of the parameter; on a closed curve `high` may be beyond the last node.
+        Parameter range; on a closed curve `high` may be beyond the last node.
     chord_error : float
-        Largest distance of the curve from its chords, mm.
+        Maximum distance of the curve from its chords, mm.
 
     Returns
     -------
     (n,) array
-        Rising parameters from low to high, with every corner. The outline of the points is
-        off by at most 2 TOLERANCE_MM.
+        Ascending parameters from `low` to `high`, including all corners. The outline through the
+        points deviates from the curve by at most 2 TOLERANCE_MM.
     """
     corners = curve.w[curve.corners]
     if curve.closed:
@@ -63,17 +59,18 @@ def sample_within_chord(curve: SpaceCurve, low: float, high: float, chord_error:
 
 
 def _refine_outline(curve: SpaceCurve, w: Array, ends: Index) -> Array:
-    """Add parameters until points added later by the outline are on the curve.
+    """Add parameters until the outline reproduces the curve between them.
 
-    ends: (m,) numbers of the parameters where smooth stretches begin and end, including the
-    first and the last.
+    ends: (m,) indices of the parameters at which smooth stretches begin and end, including the
+    first and the last parameter.
     """
     is_open = np.ones(len(w) - 1, dtype=bool)
     for _ in range(HALVINGS):
         points, slope, _ = curve.at(w)
         slope /= np.linalg.norm(slope, axis=1, keepdims=True)
         tangents = np.stack([slope, slope], axis=1)
-        # at the end of a stretch the curve may have a corner; there the tangent is that of the next stretch
+        # at a corner `curve.at` returns the tangent of the next stretch; evaluate just before the
+        # corner
         slope = curve.at(w[ends[1:]] - 1e-9 * (w[ends[1:]] - w[ends[1:] - 1]))[1]
         tangents[ends[1:], 0] = slope / np.linalg.norm(slope, axis=1, keepdims=True)
         segment = np.repeat(np.flatnonzero(is_open), len(TEST_SHARES))
@@ -95,10 +92,9 @@ def _refine_outline(curve: SpaceCurve, w: Array, ends: Index) -> Array:
 def _space_evenly(
     curve: SpaceCurve, nodes: Array, low: float, high: float, chord_error: float
 ) -> Array:
-    """Return parameters of a stretch without inner corners, equally spaced in a measure of its
-    curvature.
+    """Sample a stretch without inner corners, with a density that follows its curvature.
 
-    nodes: (n,), rising, between which the curvature is sampled.
+    nodes: (n,) ascending parameters; the curvature is sampled halfway between nodes.
     """
     w = np.r_[
         low, nodes[np.searchsorted(nodes, low, side="right") : np.searchsorted(nodes, high)], high
@@ -107,8 +103,7 @@ def _space_evenly(
     rate = np.linalg.norm(slope, axis=1)
     curvature = np.linalg.norm(np.cross(slope, bend), axis=1) / rate**3
     length = rate * np.diff(w)
-    # on nearly straight stretches a share of the length counts, so that no segment becomes much
-    # longer than others
+    # minimum density, so that nearly straight stretches do not get very long segments
     density = length * np.maximum(
         np.sqrt(curvature / (8.0 * chord_error)), MIN_SEGMENTS / curve.length
     )
@@ -122,7 +117,7 @@ def _space_evenly(
 
 
 def _max_chord_error(curve: SpaceCurve, w: Array) -> float:
-    """Return the largest distance, mm, of the curve from the chords between the parameters (n,)."""
+    """Return the maximum distance, mm, of a curve from its chords between parameters (n,)."""
     ends = curve.at(w)[0]
     chord = np.diff(ends, axis=0)
     between = w[:-1, None] + np.diff(w)[:, None] * BETWEEN

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The first layer: where the wall leaves the substrate."""
+"""Compute the first layer of a wall: the curve in which the wall leaves the substrate."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ from ..issues import InputError
 from ..types import Array
 from .tubes.smooth_spacing import WallLayer
 
-TOLERANCE_MM = 1e-5  # mm; a tenth of the tolerance at the points; it bounds interpolation_error
-MIN_ARC_SHARE = 1e-5  # of the period; no arc is halved below this
+TOLERANCE_MM = 1e-5  # mm; limit of interpolation_error, a tenth of the tolerance of bead points
+MIN_ARC_SHARE = 1e-5  # fraction of the period; minimum arc length that is still halved
 ROUNDS = 14
 
 
 def finer_grid(curve: SpaceCurve, within: float = TOLERANCE_MM) -> Array:
-    """Return the middles of arcs that are not accurate enough.
+    """Return the midpoints of arcs whose interpolation error is too large.
 
     Parameters
     ----------
     curve : SpaceCurve
         The curve.
     within : float, optional
-        Largest error, mm.
+        Maximum error, mm.
 
     Returns
     -------
     (k,) array
-        Parameters.
+        Curve parameters of the midpoints.
     """
     coarse = (curve.interpolation_error() > within) & (curve.span > MIN_ARC_SHARE * curve.period)
     middle: Array = curve.w[:-1][coarse] + 0.5 * curve.span[coarse]
     return middle
 
 
-SCAN = 200  # samples along each line v = const that are tested for inside and outside
-HALVINGS = 60
-SAME_POINT = 1e-6  # mm
+SCAN = 200  # samples along each line v = const, tested for inside or outside the substrate
+HALVINGS = 60  # maximum number of Newton or bisection steps
+SAME_POINT = 1e-6  # mm; maximum distance of coincident points
 
 
 def intersect_implicit(
@@ -50,7 +50,7 @@ def intersect_implicit(
     v: Array,
     label: str = "wall",
 ) -> WallLayer:
-    """Return the curve in which the wall finally leaves the substrate.
+    """Compute the curve in which the wall leaves the substrate for the last time.
 
     Parameters
     ----------
@@ -59,22 +59,22 @@ def intersect_implicit(
     substrate : Implicit
         The substrate as an implicit surface.
     u_range : tuple[float, float]
-        Range of u; the wall leaves the substrate as u rises.
+        Range of u; the wall leaves the substrate in the direction of ascending u.
     v : (m,) array
-        Parameters from one seam to the next; nodes are added where cubic arcs between them
-        would not follow the curve.
+        Parameters from one seam to the next. Nodes are added where cubic arcs deviate from the
+        curve.
     label : str, optional
         Name of the wall, for messages.
 
     Returns
     -------
     WallLayer
-        The first layer, exact to rounding at the nodes.
+        The first layer; nodes are exact to rounding errors.
 
     Raises
     ------
     InputError
-        NO_INTERSECTION if the wall does not touch the substrate.
+        NO_INTERSECTION if the wall does not leave the substrate at every v.
     """
     for _ in range(ROUNDS):
         u, slope = _find_exit(surface, substrate, u_range, v, label)
@@ -104,7 +104,7 @@ def _find_exit(
     last_exit = len(u) - 2 - np.argmax(leaves[::-1], axis=0)
     low, high = u[last_exit], u[last_exit + 1]
     u_exit = 0.5 * (low + high)
-    for _ in range(HALVINGS):  # Newton, kept between the last samples inside and outside
+    for _ in range(HALVINGS):  # Newton's method, bracketed by the last samples inside and outside
         points, along, _ = surface.derivatives(u_exit, v)
         value, gradient = substrate.value(points)
         low, high = np.where(value > 0.0, low, u_exit), np.where(value > 0.0, u_exit, high)
@@ -123,18 +123,18 @@ def _find_exit(
 def interpolate_polyline(
     surface: Surface, points: Array, corner: float = np.radians(20.0), label: str = "wall"
 ) -> WallLayer:
-    """Return the layer through a closed chain of points on the wall.
+    """Interpolate a layer through a closed chain of points on the wall.
 
-    Between the points, smooth curves run from corner to corner.
+    The layer is smooth between corners.
 
     Parameters
     ----------
     surface : Surface
         The wall.
     points : (m, 3) array
-        The chain in either direction, the first point not repeated, mm.
+        The chain in either direction, without repeated first point, mm.
     corner : float, optional
-        Turn beyond which a point is a corner, rad.
+        Minimum direction change at a corner, rad.
     label : str, optional
         Name of the wall, for messages.
 

@@ -12,14 +12,14 @@ from ..geometry.curves.profile import Meridian
 from ..issues import InputError
 from ..types import Array, Index, Mask
 
-# ---- Levels of layers along a meridian, equally spaced along the wall or along the axis
+# ---- Levels of layers on a meridian, equally spaced along the wall or along the axis
 
 
 def arc_length_levels(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]:
     """Return the arc lengths of the beads of each layer, equally spaced along the wall.
 
-    A wall that is a whole number of layer heights long has its last layer on its end. The
-    closing of a top on the axis adds none.
+    If the wall length is a multiple of the layer height, the last layer is at the end of the wall.
+    A top that closes on the axis gets no additional bead.
 
     Parameters
     ----------
@@ -38,7 +38,7 @@ def arc_length_levels(meridian: Meridian, layer_height: float) -> tuple[list[Arr
     Raises
     ------
     InputError
-        LAYER_HEIGHT if the layer height is larger than the wall is long.
+        LAYER_HEIGHT if the layer height exceeds the wall length.
 
     References
     ----------
@@ -65,8 +65,8 @@ def arc_length_levels(meridian: Meridian, layer_height: float) -> tuple[list[Arr
 def iso_height_levels(meridian: Meridian, layer_height: float) -> tuple[list[Array], float]:
     """Return the arc lengths of the beads of each layer, equally spaced along the axis.
 
-    A plane that cuts the wall more than once gives as many beads, in the order of the wall from
-    the platform up.
+    A plane that intersects the wall several times has one bead per intersection, in the order of
+    the wall from the platform up.
 
     Parameters
     ----------
@@ -85,7 +85,7 @@ def iso_height_levels(meridian: Meridian, layer_height: float) -> tuple[list[Arr
     Raises
     ------
     InputError
-        LAYER_HEIGHT if the layer height is larger than the wall is high.
+        LAYER_HEIGHT if the layer height exceeds the wall height.
 
     References
     ----------
@@ -121,7 +121,7 @@ def spacing(meridian: Meridian, below: Array, layer: Array) -> Array:
     Returns
     -------
     (k,) array
-        Distance from the nearest bead below in the meridian's plane, mm.
+        Distance from the nearest bead below, in the plane of the meridian, mm.
     """
     r, h, _ = meridian.at(np.r_[below, layer])
     n = len(below)
@@ -129,15 +129,13 @@ def spacing(meridian: Meridian, below: Array, layer: Array) -> Array:
     return distances
 
 
-# ---- Build directions and tool axes, in components along radius, azimuth and axis. A part of
-# revolution is the same at every azimuth, so directions are (..., 3) components of the moving frame
-# (radial, tangential with rising azimuth, axial): one row represents a whole circle.
+# ---- Build directions and tool axes. A part of revolution is the same at every azimuth. Directions
+# (..., 3) are therefore components in the moving frame (radial, tangential with ascending azimuth,
+# axial), and one row represents a complete circle.
 
-SCAN = 48  # tilts tried before the first good one is refined
-BLOCK_SIZE, PARTS = (
-    8,
-    4,
-)  # number of angles tested together, and number of parts into which the interval of the first good one is divided at once
+SCAN = 48  # number of coarse tilt steps in the search for the first valid angle
+# number of angles tested together, and number of sub-intervals per refinement step
+BLOCK_SIZE, PARTS = 8, 4
 
 
 def local(tangents: Array) -> Array:
@@ -146,7 +144,7 @@ def local(tangents: Array) -> Array:
     Parameters
     ----------
     tangents : (n, 2) array
-        Meridian tangents, radius and axis.
+        Meridian tangents, components along radius and axis.
 
     Returns
     -------
@@ -157,7 +155,7 @@ def local(tangents: Array) -> Array:
 
 
 def fixed(count: int) -> Array:
-    """Return the axis as direction.
+    """Return the axis as the build direction.
 
     Parameters
     ----------
@@ -173,18 +171,18 @@ def fixed(count: int) -> Array:
 
 
 def layer_mean(tangent: Array, azimuth: Array, start: float, end: float) -> Array:
-    """Return one direction for a complete open bead, the mean of its local ones.
+    """Return the mean of the local directions of an open bead, one direction for the complete bead.
 
     Over a full turn the mean is along the axis.
 
     Parameters
     ----------
     tangent : (2,) array
-        Tangent of the meridian, radius and axis.
+        Meridian tangent, components along radius and axis.
     azimuth : (n,) array
         Azimuths of the points, rad.
     start, end : float
-        Azimuths that the bead spans, rad.
+        Azimuths of the ends of the bead, rad.
 
     Returns
     -------
@@ -205,18 +203,18 @@ def layer_mean(tangent: Array, azimuth: Array, start: float, end: float) -> Arra
 
 
 def lean_tool(build: Array, lead: float, tilt: float, rising: bool) -> Array:
-    """Return tool axes that lean from the build directions.
+    """Rotate tool axes away from the build directions.
 
-    The direction is turned by `lead` forward along the bead, then by `tilt` outwards.
+    A tool axis is rotated by `lead` forward along the bead, then by `tilt` outwards.
 
     Parameters
     ----------
     build : (n, 3) array
-        Build directions along radius, azimuth and axis.
+        Build directions, components along radius, azimuth and axis.
     lead, tilt : float
         Angles, rad.
     rising : bool
-        Whether the bead runs with rising azimuth.
+        Whether the azimuth rises along the bead.
 
     Returns
     -------
@@ -251,7 +249,7 @@ def from_vertical(directions: Array) -> Array:
 
 
 def tilt_back(build: Array, angle: Array) -> Array:
-    """Turn build directions towards the axis, at most onto it.
+    """Rotate build directions towards the axis, at most onto the axis.
 
     Parameters
     ----------
@@ -281,27 +279,27 @@ def least_tilt_back(
     about: Array | None = None,
     free: Mask | None = None,
 ) -> Array:
-    """Return the smallest tilt-back at which each direction is good.
+    """Find the minimum tilt-back at which each direction is valid.
 
     Parameters
     ----------
     build : (n, 3) array
         Build directions, unit vectors.
     low : (n,) array
-        Smallest angles allowed, rad.
+        Minimum angles, rad.
     good : callable
-        Returns whether rows (k,) are good when tilted back by angles (k,).
+        Returns whether rows (k,) are valid when tilted back by angles (k,).
     within : float, optional
-        Accuracy, rad.
+        Tolerance, rad.
     about : (n, 2) array or None, optional
-        Angles between which the search starts, NaN for none.
+        Interval in which the search starts, rad; NaN for none.
     free : (n,) bool array or None, optional
-        Rows known to be good at `low`.
+        Rows known to be valid at `low`.
 
     Returns
     -------
     (n,) array
-        Angles, rad; NaN if no angle up to the axis is good.
+        Angles, rad; NaN if no angle up to the axis is valid.
     """
     angle = low.copy()
     rows = np.arange(len(build)) if free is None else np.flatnonzero(~free)
@@ -342,10 +340,9 @@ def _narrow(
     bad: Array,
     fine: Array,
 ) -> None:
-    """Update the bounds of selected rows in place.
+    """Update the bounds `bad` and `fine` of selected rows in place.
 
-    Of the rising angles (k, s), `fine` becomes the first good one and `bad` the one before
-    it.
+    `fine` becomes the first valid angle of the ascending angles (k, s), `bad` the angle before.
     """
     ok = good(np.repeat(rows[selected], angles.shape[1]), angles.ravel()).reshape(angles.shape)
     has_good = ok.any(axis=1)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The smoothest layer within a band: heights over a line of points with the least bending
-that meets a limit.
-"""
+"""Find the smoothest layer within a band: heights along a line, smoothed until they meet a limit."""
 
 from __future__ import annotations
 
@@ -18,12 +16,12 @@ from ..types import Array
 
 
 def refuse_too_many(layers: int, height: float, label: str) -> None:
-    """Reject more layers than allowed.
+    """Reject a part with too many layers.
 
     Parameters
     ----------
     layers : int
-        Number of layers before the next one.
+        Number of layers before the next layer.
     height : float
         Layer height, mm.
     label : str
@@ -32,7 +30,7 @@ def refuse_too_many(layers: int, height: float, label: str) -> None:
     Raises
     ------
     InputError
-        LAYER_HEIGHT at MOST_LAYERS layers.
+        LAYER_HEIGHT if MOST_LAYERS is reached.
     """
     if layers >= MOST_LAYERS:
         raise InputError(
@@ -44,23 +42,20 @@ def refuse_too_many(layers: int, height: float, label: str) -> None:
         )
 
 
-WEIGHTS = 10.0 ** np.arange(-2, 10)  # of smoothness against the exact distance
-# from this weight on the turn is much smaller, or the band limits it: the search ends when IDLE
-# further weights gain less than GAIN
+WEIGHTS = 10.0 ** np.arange(-2, 10)  # weights of smoothness relative to the exact distance
+# index of WEIGHTS; above it the turn rate is already much lower, or the band limits it, and the
+# search ends after IDLE weights that each improve by less than the fraction GAIN
 HEAVY = 7
 GAIN, IDLE = 0.02, 2
-AIM = 0.8  # of the limit; layers above sharpen round corners, so a reserve is kept for them
-MARGIN = 0.02  # of the band, kept free for what the curve does between its points
-ROUNDS, CHECK_INTERVAL, RELAXED, TOLERANCE_SHARE = (
-    2000,
-    5,
-    1.6,
-    1e-3,
-)  # of the alternation; how near its two halves come, of the band
+AIM = 0.8  # fraction of the limit; reserve for higher layers, in which round corners get sharper
+MARGIN = 0.02  # fraction of the band; reserve for the curve between its points
+# alternating iteration: maximum steps, steps between convergence checks, over-relaxation, and
+# tolerance between both solutions as a fraction of the band
+ROUNDS, CHECK_INTERVAL, RELAXED, TOLERANCE_SHARE = 2000, 5, 1.6, 1e-3
 
 
 class Weighed(Protocol):
-    """A layer: its sharpest turn within the wall (rad/mm), and which of the weights it was made with."""
+    """Layer with its maximum turn rate within the wall, rad/mm, and the index of its weight."""
 
     @property
     def turn(self) -> float: ...
@@ -80,34 +75,34 @@ def smooth_between(
     bend: Array | None = None,
     closed: bool = True,
 ) -> Array:
-    """Return the smoothest values between bounds.
+    """Smooth values between bounds.
 
-    Minimises norm(x - target)^2 + weight norm(second differences + bend)^2 with low <= x <=
+    Minimises norm(x - target)^2 + weight norm(second differences + bend)^2 subject to low <= x <=
     high.
 
     Parameters
     ----------
     target : (n,) array
-        Values to stay near.
+        Target values.
     low, high : (n,) array
         Bounds.
     weight : float
         Weight of the second differences.
     bend : (n,) or (n - 2,) array or None, optional
-        Second differences of the datum from which x is measured, at all points or without
-        the ends; None for a straight datum.
+        Second differences of the datum from which x is measured, with or without the ends; None for
+        a straight datum.
     closed : bool, optional
         Whether x is periodic.
 
     Returns
     -------
     (n,) array
-        The smooth values, within the bounds up to the tolerance.
+        The smooth values, within the bounds to TOLERANCE_SHARE.
 
     Notes
     -----
-    Alternating directions: a smooth x and one within the bounds approach each other. The smooth
-    one is returned.
+    Alternating direction method of multipliers: a smooth solution and a bounded solution converge.
+    The smooth solution is returned.
     """
     n = len(target)
     if closed:
@@ -134,24 +129,25 @@ def smooth_between(
 
 
 def lightest(trial: Callable[[int], Layer | None], start: int, limit: float) -> Layer | None:
-    """Return the layer of the lightest weight that keeps the limit.
+    """Find the layer with the lowest weight that keeps the limit of the turn rate.
 
-    A heavier weight turns less until the band stops it; too heavy a weight leaves the band.
+    A higher weight lowers the turn rate until the band limits it. If the weight is too high, the
+    layer leaves the band.
 
     Parameters
     ----------
     trial : callable
-        Returns the layer for an index of WEIGHTS, None if it leaves the band.
+        Returns the layer for an index of WEIGHTS, or None if the layer leaves the band.
     start : int
-        Index at which the search begins.
+        Index of WEIGHTS at which the search begins.
     limit : float
-        Largest turn within the wall, rad/mm.
+        Maximum turn rate within the wall, rad/mm.
 
     Returns
     -------
     Layer or None
-        The layer, or the one that turns least if none keeps the limit; None if all leave
-        the band.
+        The layer; the layer with the lowest turn rate if none keeps the limit; None if all tested
+        layers leave the band.
     """
     best = trial(start)
     for index in range(start - 1, -1, -1):

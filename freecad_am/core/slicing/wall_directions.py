@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Build directions and tool axes of beads on a wall (Chalvin 2019, section II.D).
 
-Rows (n, 3) are unit vectors in part coordinates, one per point of a bead. At corners the
-local direction jumps: there it is the bisector of both sides, and `limit_turns` spreads
-the jump over the length of bead that the limit of turn per mm requires.
+Rows (n, 3) are unit vectors in part coordinates, one per point of a bead. At a corner the local
+direction jumps. The corner point gets the bisector of both directions, and `limit_turns` spreads
+the jump over the bead length that the turn rate limit (rad/mm) requires.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from ..geometry.walls.surface import dot
 from ..issues import InputError
 from ..types import Array, Mask
 
-# ---- How sharply a bead turns within its wall
+# ---- Turn rate of a bead within its wall
 
-SHORT_ARC = 1e-3  # of the typical arc length; a shorter arc has no turn of its own
+SHORT_ARC = 1e-3  # fraction of the median arc length; shorter arcs use the turn rate around them
 
 
 def turns_in_wall(curve: SpaceCurve, normal: Array) -> Array:
-    """Return the turn of a bead within the wall per length.
+    """Return the turn rate of a bead within the wall.
 
-    Each arc counts with its starting corner. The wall's own curvature does not count: the
-    nozzle is normal to the bead in the wall and follows it anyway. A very short arc has the
-    turn of the stretch around it, as long as a typical arc: its own turn would be rounding over
-    no length.
+    The angle of an arc includes the corner at its start. The curvature of the wall does not count,
+    because the nozzle is normal to the bead within the wall and follows this curvature anyway. A
+    very short arc gets the turn rate over a median arc length around it, because rounding errors
+    would dominate its own turn rate.
 
     Parameters
     ----------
@@ -42,9 +42,9 @@ def turns_in_wall(curve: SpaceCurve, normal: Array) -> Array:
     Returns
     -------
     (m - 1,) array
-        Turn of each arc, rad/mm.
+        Turn rate of each arc, rad/mm.
     """
-    # both tangents of a turn projected onto the plane of the normal between them
+    # project both tangents of an arc onto the plane of their mean normal
     middle = normal[:-1] + normal[1:]
     middle /= np.linalg.norm(middle, axis=1, keepdims=True)
     turn = _angles(curve.out[:-1], curve.into[1:], middle)
@@ -61,8 +61,9 @@ def turns_in_wall(curve: SpaceCurve, normal: Array) -> Array:
 
 
 def _turn_per_stretch(turned: Array, length: Array, stretch: float) -> Array:
-    """Return the turn per length (n,) of the stretch about the middle of each arc, from signed
-    turns (n,) and lengths (n,).
+    """Return the turn rate (n,), rad/mm, over `stretch` mm around the midpoint of each arc.
+
+    turned: (n,) signed angles, rad. length: (n,) arc lengths, mm.
     """
     s, total = np.r_[0.0, np.cumsum(length)], np.r_[0.0, np.cumsum(turned)]
     middle = 0.5 * (s[1:] + s[:-1])
@@ -72,21 +73,19 @@ def _turn_per_stretch(turned: Array, length: Array, stretch: float) -> Array:
 
 
 def _angles(a: Array, b: Array, normal: Array) -> Array:
-    """Return angles (n,) rad about the normals from vectors a to b, both projected onto the
-    normal's plane.
-    """
+    """Return the angles (n,), rad, from a to b about the normals, in the planes of the normals."""
     a, b = (side - dot(side, normal)[:, None] * normal for side in (a, b))
     angle: Array = np.arctan2(dot(np.cross(a, b), normal), dot(a, b))
     return angle
 
 
-MIN_IN_PLANE = 1e-6  # a direction shorter than this after projection points nowhere
-HALVINGS = 30  # of the width over which directions are spread
-ROUNDING = 1e-9  # rad
+MIN_IN_PLANE = 1e-6  # minimum length of a projected unit vector; a shorter one has no direction
+HALVINGS = 30  # maximum number of bisection steps for the averaging length
+ROUNDING = 1e-9  # rad; angles up to this are rounding errors
 
 
 class Limited(NamedTuple):
-    """directions (n, 3), and departure (n,) rad of each from the requested direction."""
+    """Directions (n, 3), and their departures (n,), rad, from the requested directions."""
 
     directions: Array
     departure: Array
@@ -98,12 +97,11 @@ def local_directions(normal: Array, into: Array, out: Array, up: Array) -> Array
     Parameters
     ----------
     normal : (n, 3) array
-        Normals of the wall, either side.
+        Normals of the wall, towards either side.
     into, out : (n, 3) array
-        Directions of the bead before and after each point, of any length, equal except at
-        corners.
+        Bead directions before and after each point, of any length; they differ only at corners.
     up : (n, 3) array
-        Vectors away from the layer below, not along the bead.
+        Vectors away from the layer below, not parallel to the bead.
 
     Returns
     -------
@@ -122,7 +120,7 @@ def local_directions(normal: Array, into: Array, out: Array, up: Array) -> Array
 
 
 def project_onto_plane(directions: Array, plane: Array, label: str = "build_direction") -> Array:
-    """Project directions onto a plane of symmetry: one rotation about its normal remains.
+    """Project directions onto a plane of symmetry, so that they rotate only about the plane normal.
 
     Parameters
     ----------
@@ -155,9 +153,9 @@ def project_onto_plane(directions: Array, plane: Array, label: str = "build_dire
 
 
 def lean_tool(build: Array, forward: Array, normal: Array, lead: float, tilt: float) -> Array:
-    """Return tool axes that lean from the build directions.
+    """Rotate tool axes away from the build directions.
 
-    The direction is turned by `lead` forward along the bead, then by `tilt` to the outside.
+    A tool axis is rotated by `lead` forward along the bead, then by `tilt` towards the outside.
 
     Parameters
     ----------
@@ -166,7 +164,7 @@ def lean_tool(build: Array, forward: Array, normal: Array, lead: float, tilt: fl
     forward : (n, 3) array
         Unit vectors along the bead.
     normal : (n, 3) array
-        Normals of the wall, to its outside.
+        Outward normals of the wall.
     lead, tilt : float
         Angles, rad.
 
@@ -185,21 +183,21 @@ def lean_tool(build: Array, forward: Array, normal: Array, lead: float, tilt: fl
 
 
 def cap_lean(directions: Array, max_lean: float) -> tuple[Array, float]:
-    """Limit how far directions lean from the vertical.
+    """Limit the angle between directions and the vertical.
 
     Parameters
     ----------
     directions : (n, 3) array
         Unit vectors.
     max_lean : float
-        Largest angle to the vertical, rad.
+        Maximum angle to the vertical, rad.
 
     Returns
     -------
     directions : (n, 3) array
         Unit vectors.
     excess : float
-        Largest angle by which a direction was turned back, rad.
+        Maximum angle by which a direction was rotated back, rad.
     """
     x, y, z = columns(directions)
     level = np.hypot(x, y)
@@ -216,7 +214,7 @@ def cap_lean(directions: Array, max_lean: float) -> tuple[Array, float]:
 
 
 def turn_rates(points: Array, directions: Array) -> Array:
-    """Return the turn of directions per length from point to point.
+    """Return the turn rate of directions from point to point.
 
     Parameters
     ----------
@@ -228,7 +226,7 @@ def turn_rates(points: Array, directions: Array) -> Array:
     Returns
     -------
     (n - 1,) array
-        rad/mm.
+        Turn rates, rad/mm.
     """
     cross = np.linalg.norm(np.cross(directions[:-1], directions[1:]), axis=1)
     angle = np.arctan2(cross, dot(directions[:-1], directions[1:]))
@@ -245,10 +243,11 @@ def limit_turns(
     label: str = "build_direction",
     max_lean: float = np.pi,
 ) -> Limited:
-    """Return directions that turn by at most a rate from point to point.
+    """Limit the turn rate of directions from point to point.
 
-    Near faster turns each direction is the mean over a stretch of the bead. The stretches
-    shrink to nothing away from such turns, and are as short as the limit allows.
+    Near segments above the limit, each direction is averaged over a stretch of the bead. The
+    stretches shrink to zero with increasing distance from such segments and are as short as the
+    limit allows.
 
     Parameters
     ----------
@@ -259,21 +258,21 @@ def limit_turns(
     closed : bool
         Whether the bead is closed.
     rate : float
-        Largest turn, rad/mm.
+        Maximum turn rate, rad/mm.
     label : str, optional
         Name for messages.
     max_lean : float, optional
-        Largest angle to the vertical, rad.
+        Maximum angle to the vertical, rad.
 
     Returns
     -------
     Limited
-        The directions, and the departure of each from the requested one.
+        The directions, and their departures from the requested directions.
 
     Raises
     ------
     InputError
-        TURN_LIMIT if even the mean over the full bead turns faster, or has no direction.
+        TURN_LIMIT if averages over the complete bead exceed the limit or have no direction.
     """
     fast = turn_rates(points, directions) > rate
     if not fast.any():
@@ -285,15 +284,14 @@ def limit_turns(
         averaged = _average(s, directions, closed, np.maximum(half - distance, 0.0))
         if averaged is None:
             return None
-        averaged = cap_lean(averaged, max_lean)[
-            0
-        ]  # the mean of directions below the horizontal leans more than they do
+        # the mean of directions below the horizontal leans more than each of them
+        averaged = cap_lean(averaged, max_lean)[0]
         return None if (turn_rates(points, averaged) > rate).any() else averaged
 
-    low, high = 0.0, 1e-3 * s[-1]  # narrow stretches first
+    low, high = 0.0, 1e-3 * s[-1]  # start with short stretches
     while (best := average_over(high)) is None:
         low, high = high, 1.5 * high
-        if low > 2.0 * s[-1]:  # beyond this each is the mean over the whole bead
+        if low > 2.0 * s[-1]:  # all directions are already averages over the complete bead
             raise InputError(
                 "TURN_LIMIT",
                 label,
@@ -315,10 +313,11 @@ def limit_turns(
 
 
 def _average(s: Array, directions: Array, closed: bool, half: Array) -> Array | None:
-    """Return the means of the directions over s - half .. s + half (n,); the directions
-    themselves where half is 0.
+    """Average directions over s - half .. s + half (n,); directions with half = 0 stay unchanged.
+
+    Returns None if a mean has no direction.
     """
-    if closed:  # as many turns on either side as the longest stretch reaches
+    if closed:  # repeat the bead on both sides as often as the longest stretch requires
         rounds = int(np.ceil(half.max() / s[-1])) + 1
         turns = np.arange(-rounds, rounds + 1)
         positions = np.r_[(s[:-1] + s[-1] * turns[:, None]).ravel(), s[-1] * (rounds + 1)]
@@ -352,7 +351,7 @@ def _average(s: Array, directions: Array, closed: bool, half: Array) -> Array | 
 
 
 def _distance_along(s: Array, fast: Mask, closed: bool) -> Array:
-    """Length along the bead (n,) from each point to the nearest segment that turns too fast."""
+    """Return the distances (n,) along the bead to the nearest segment above the turn rate limit."""
     ends = np.unique(np.r_[s[:-1][fast], s[1:][fast]])
     if closed:
         ends = np.unique(np.r_[ends - s[-1], ends, ends + s[-1]])

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Exact curves: move fronts onto the wall and to their distance, find corners, refine arcs;
-fit other curves to the wall.
-"""
+"""Fit fronts to the exact wall and distance, find their corners, and fit other curves to the wall."""
 
 from __future__ import annotations
 
@@ -21,8 +19,11 @@ from .rims import Feet, Line, Rims, nearest_feet
 
 @dataclass(frozen=True)
 class Smoothing:
-    """band: largest departure of the local distance, as a share of the height. limit: rad/mm, turn within the wall that
-    fronts are to stay below where the band allows."""
+    """Smoothing of fronts.
+
+    band: maximum deviation of the local distance, as a fraction of the layer height. limit: maximum
+    turn rate within the wall, rad/mm, kept where the band allows.
+    """
 
     band: float
     limit: float
@@ -30,7 +31,7 @@ class Smoothing:
 
 @dataclass(frozen=True, eq=False)
 class Slicing:
-    """A wall, its rims, the layer height in mm, and how fronts are smoothed, if they are."""
+    """Wall, rims, layer height, mm, and optional smoothing of fronts."""
 
     wall: PatchWall
     rims: Rims
@@ -39,7 +40,7 @@ class Slicing:
 
     @property
     def widest(self) -> float:
-        """Heights that layers may be apart."""
+        """Maximum distance between layers, in layer heights."""
         return 1.0 if self.smoothing is None else 1.0 + self.smoothing.band
 
     def left_of(self, curve: SpaceCurve) -> tuple[Array, Array]:
@@ -53,30 +54,32 @@ class Slicing:
         Returns
         -------
         points : (n, 3) array
-            Middles of its arcs, mm.
+            Midpoints of the arcs, mm.
         left : (n, 3) array
-            Vectors within the wall to its left.
+            Vectors within the wall to the left of the curve.
         """
         points, slope, _ = curve.at(curve.w[:-1] + 0.5 * curve.span)
         return points, np.cross(self.wall.project(points)[1], slope)
 
 
-STEPS = 12
-ROUNDS = 12
-CONVERGED = 1e-6  # of the height; points that are off by more have not converged
-SAME_PLACE = 1e-5  # mm; of two nearer nodes one is dropped, not the corner
-SMOOTH = 1.0 - 1e-9  # cosine of the turn at a node that is not a corner
-TOLERANCE_MM = 5e-5  # mm; error of arcs at TEST_SHARES, more than half of their maximum error between the nodes
-# of each arc; where the wall's curvature jumps within it, its middle may be right by chance
+STEPS = 12  # maximum number of Newton steps
+ROUNDS = 12  # maximum number of refinements
+CONVERGED = 1e-6  # in layer heights; maximum distance error of converged points
+SAME_PLACE = 1e-5  # mm; one of two closer nodes is dropped; corners stay
+SMOOTH = 1.0 - 1e-9  # minimum cosine of the direction change at a node that is not a corner
+TOLERANCE_MM = (
+    5e-5  # mm; arc error at TEST_SHARES, more than half of the maximum error between nodes
+)
+# fractions of an arc; where the wall's curvature jumps, the midpoint may be exact by chance
 TEST_SHARES = np.array([1.0 / 3.0, 2.0 / 3.0])
-SAME_FOOT = 1e-3  # of the height; branches whose nearest points are closer than this are the same
+SAME_FOOT = 1e-3  # in layer heights; branches with closer nearest points are one branch
 
 
 def fit_front(slicing: Slicing, below: list[SpaceCurve], line: Line) -> list[SpaceCurve]:
-    """Return the front at the layer height above the fronts below, near a line.
+    """Compute the exact front at the layer height from the fronts below, near a line.
 
-    The deposit below is on the curve's right, seen from the side to which the wall's normals
-    point. An end of an open line that is not known moves along the wall's edge.
+    The deposit below is on the right of the front, as seen against the normals of the wall. An
+    unknown end of an open line moves along the edge of the wall.
 
     Parameters
     ----------
@@ -90,9 +93,9 @@ def fit_front(slicing: Slicing, below: list[SpaceCurve], line: Line) -> list[Spa
     Returns
     -------
     list of SpaceCurve
-        One curve; none, or several pieces, if points of the line do not reach their
-        distance: between fronts that meet. Nodes are on the wall and at the height to
-        rounding, arcs to TOLERANCE_MM; corners are nodes.
+        One curve. If points between fronts that meet cannot reach the distance, there is no curve
+        or there are several pieces. Nodes are on the wall and at the layer height to rounding
+        errors, arcs to TOLERANCE_MM. Corners are nodes.
     """
     offset = _Offset(slicing.wall, below, slicing.height)
     nodes = offset.nodes_near(line)
@@ -111,7 +114,7 @@ def fit_front(slicing: Slicing, below: list[SpaceCurve], line: Line) -> list[Spa
 
 
 def fit_to_wall(wall: PatchWall, curve: SpaceCurve) -> SpaceCurve:
-    """Add nodes to the curve where its arcs are off the wall between the nodes."""
+    """Add nodes to a curve where its arcs deviate from the wall by more than TOLERANCE_MM."""
     measured: dict[bytes, float] = {}
     for _ in range(ROUNDS):
         bad = _bad_arcs(
@@ -138,10 +141,10 @@ def fit_to_wall(wall: PatchWall, curve: SpaceCurve) -> SpaceCurve:
 def _bad_arcs(
     curve: SpaceCurve, off: Callable[[Array], Array], measured: dict[bytes, float]
 ) -> Index:
-    """Return the arcs off by more than TOLERANCE_MM at TEST_SHARES that are not too short to
-    cut.
+    """Return arcs with errors above TOLERANCE_MM at TEST_SHARES, except arcs too short to divide.
 
-    measured: by how much arcs are off, by their ends; new arcs are added.
+    off: returns the errors of points, mm. measured: cache of arc errors by arc ends, updated in
+    place.
     """
     ends = np.hstack([curve.points[:-1], curve.points[1:], curve.out[:-1], curve.into[1:]])
     keys = [row.tobytes() for row in ends]
@@ -155,8 +158,9 @@ def _bad_arcs(
 
 
 def _remove_arcs(curve: SpaceCurve, bad: Index) -> list[SpaceCurve]:
-    """Return the stretches of a curve that remain without some arcs, where fronts meet in a gap
-    too narrow to follow.
+    """Remove arcs from a curve and return the remaining stretches.
+
+    The removed arcs are where fronts meet in a gap too narrow to resolve.
     """
     if curve.closed:
         curve = curve.started_at(int(bad[0]) + 1 if bad[0] + 1 < len(curve.span) else 0)
@@ -170,10 +174,10 @@ def _remove_arcs(curve: SpaceCurve, bad: Index) -> list[SpaceCurve]:
 
 
 class _Nodes(NamedTuple):
-    """Nodes of a front: points (n, 3), unit tangents (n, 3) that arrive and leave, the nearest
-    positions below.
+    """Nodes of a front; a closed front does not repeat its first node.
 
-    Nodes of a closed front do not repeat the first.
+    points: (n, 3), mm. into, out: (n, 3) unit tangents before and after each node. foot: nearest
+    points on the fronts below.
     """
 
     points: Array
@@ -189,7 +193,7 @@ class _Nodes(NamedTuple):
         )
 
     def insert(self, additions: list[tuple[Index, _Nodes]]) -> _Nodes:
-        """Return the nodes with others inserted after the starts of the named arcs."""
+        """Insert nodes into arcs; additions: arc indices and nodes."""
         order = np.argsort(
             np.concatenate([np.arange(len(self.points))] + [arcs + 0.5 for arcs, _ in additions]),
             kind="stable",
@@ -202,7 +206,7 @@ class _Nodes(NamedTuple):
         return _Nodes(points, into, out, foot, self.closed).select(order)
 
     def forward(self) -> _Nodes:
-        """Drop nodes behind their predecessor or on it: next to corners, points may tangle."""
+        """Drop nodes on or behind their predecessor, as can occur next to corners."""
         nodes, closed = self, self.closed
         while True:
             n = len(nodes.points)
@@ -211,9 +215,8 @@ class _Nodes(NamedTuple):
             turned = (dot(chord, nodes.out) <= 0.0) | (
                 dot(chord, np.roll(nodes.into, -1, axis=0)) <= 0.0
             )
-            alike = (
-                dot(nodes.out, np.roll(nodes.into, -1, axis=0)) > 0.5
-            )  # otherwise a corner between them is still to be found
+            # nodes with very different tangents have a corner in between that is still to be found
+            alike = dot(nodes.out, np.roll(nodes.into, -1, axis=0)) > 0.5
             bad = (turned & alike) | (length < SAME_PLACE)
             if not closed:
                 bad[-1] = False
@@ -221,7 +224,7 @@ class _Nodes(NamedTuple):
             drop = np.zeros(n, dtype=bool)
             bad_nodes = np.flatnonzero(bad)
             next_node = (bad_nodes + 1) % n
-            # of the two ends of an arc that runs backwards a corner stays, and the ends of an open front stay
+            # drop one end of a reversed arc, but neither a corner nor an end of an open front
             keep_next = corner[next_node] | ((next_node == n - 1) & (not closed))
             loser = np.where(keep_next, bad_nodes, next_node)
             drop[loser[~(corner[loser])]] = True
@@ -232,7 +235,7 @@ class _Nodes(NamedTuple):
             nodes = nodes.select(~drop)
 
     def curve(self) -> SpaceCurve:
-        """The curve through them."""
+        """Return the curve through the nodes."""
         points, into, out = self[:3]
         if self.closed:
             points, into, out = (np.vstack([column, column[:1]]) for column in (points, into, out))
@@ -243,15 +246,16 @@ class _Nodes(NamedTuple):
 
 
 class _Offset(NamedTuple):
-    """An offset front: all points of a wall at `height` mm from the fronts below."""
+    """Offset front: all points of a wall at `height` mm from the fronts below."""
 
     wall: PatchWall
     below: list[SpaceCurve]
     height: float
 
     def nodes_near(self, line: Line) -> _Nodes | None:
-        """Return nodes near the points of a line, in the sense of the front; None if too few reach
-        their distance.
+        """Return nodes near the points of a line, in the direction of the front.
+
+        Returns None if too few points reach the distance.
         """
         points, normal, foot = self._converged(line.points, None if line.closed else line.rims)
         typical = np.median(np.linalg.norm(np.diff(line.points, axis=0), axis=1))
@@ -281,17 +285,13 @@ class _Offset(NamedTuple):
         )
 
     def error(self, points: Array) -> Array:
-        """Return the larger (n,) of the distances of points (n, 3) from the wall and from the
-        height, mm.
-        """
+        """Return the maximum (n,), mm, of wall distance and height error of points (n, 3)."""
         foot = self.wall.project(points)[0]
         off: Array = np.abs(nearest_feet(self.below, foot).distance - self.height)
         return np.asarray(np.maximum(off, np.linalg.norm(foot - points, axis=1)))
 
     def middles(self, curve: SpaceCurve, arcs: Index) -> tuple[Index, _Nodes]:
-        """Return the arcs (k,) of a curve whose middle reaches its distance, and these middles as
-        nodes.
-        """
+        """Return the arcs (k,) whose midpoint reaches the distance, and these midpoints as nodes."""
         points, normal, foot = self._converged(
             curve.at(curve.w[arcs] + 0.5 * curve.span[arcs])[0], None
         )
@@ -301,8 +301,9 @@ class _Offset(NamedTuple):
         )
 
     def corners(self, nodes: _Nodes, arcs: Index) -> tuple[Index, _Nodes]:
-        """Find corners on arcs (k,) whose ends belong to two branches; returns the arcs that have
-        one, and the corners.
+        """Find corners on arcs whose ends belong to two branches.
+
+        Returns the arcs with a corner (k,), and the corners as nodes.
         """
         ends = [nodes.select(arcs), nodes.select((arcs + 1) % len(nodes.points))]
         end_feet = [end.foot for end in ends]
@@ -329,7 +330,7 @@ class _Offset(NamedTuple):
         is_valid &= np.linalg.norm(points - middle, axis=1) < np.maximum(
             1.5 * chord, 4.0 * self.height
         )
-        for end in ends:  # one of the ends may already be that corner
+        for end in ends:  # an end may already be the corner
             corner = dot(end.into, end.out) < SMOOTH
             is_valid &= ~corner | (np.linalg.norm(points - end.points, axis=1) > SAME_PLACE)
         is_valid[is_valid] = (
@@ -343,10 +344,9 @@ class _Offset(NamedTuple):
         return reached
 
     def _converged(self, points: Array, rims: Array | None) -> tuple[Array, Array, Feet]:
-        """Move points within the wall, straight away from the front below, until their distance is
-        the height.
+        """Move points within the wall, away from the front below, until their distance is the height.
 
-        The ends of an open line move along the rims.
+        rims: directions of the rims at the ends of an open line; these ends move along the rims.
         """
         points, normal = self.wall.project(points)
         for _ in range(STEPS):
@@ -366,7 +366,7 @@ class _Offset(NamedTuple):
         return points, normal, nearest_feet(self.below, points)
 
     def _walked(self, points: Array, foot: Feet) -> Feet:
-        """Return the nearest points on the branches of the feet of other points."""
+        """Return the feet of points on given branches; foot: nearby feet that define the branches."""
         w, nearest = foot.w.copy(), np.empty_like(points)
         for k in np.unique(foot.front):
             on_front = foot.front == k
@@ -376,16 +376,16 @@ class _Offset(NamedTuple):
 
 
 def _smooth_nodes(points: Array, normal: Array, foot: Feet, closed: bool) -> _Nodes:
-    """Nodes with the front below on their right, seen against the normals (n, 3)."""
+    """Build smooth nodes with the front below on the right, as seen against the normals (n, 3)."""
     tangent = unit(np.cross(foot.away, normal))
     return _Nodes(points, tangent, tangent, foot, closed)
 
 
 def _solve_step(slopes: list[Array], off: list[Array], longest: Array) -> Array:
-    """Return the steps (k, 3) that correct two distances, with slopes (k, 3) and errors (k,),
-    limited to `longest`.
+    """Return the steps (k, 3) that correct two distances, limited to `longest` mm.
 
-    Zero where the slopes are nearly parallel.
+    slopes: (k, 3) gradients of each distance. off: (k,) corrections of each distance, mm. Steps are
+    zero where the gradients are nearly parallel.
     """
     a, b, c = dot(slopes[0], slopes[0]), dot(slopes[0], slopes[1]), dot(slopes[1], slopes[1])
     p, q = off

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers of constant local distance on any wall: fronts run over a mesh and are made exact
-on the wall.
+"""Layers of constant local distance on any wall: trace fronts on a mesh, fit them to the wall.
 
-From the fronts of a layer the distance in space to nearby mesh vertices is measured, with
-a sign: vertices behind are below. The level line at the layer height is traced through
-the triangles, which lets fronts split, merge, close and end at the wall's edges. Each
-piece is then moved onto the exact wall and to the exact distance from the curve below,
-and its corners are found (see `curve`). The mesh decides which pieces exist, not their
-position: its edges should be no longer than the layer height and a quarter of the
-smallest radius of curvature. Features thinner than an edge may be missed: slivers between
-fronts that meet, gaps at a rim. A geodesic distance field over the whole wall would be
-simpler, but it measures distances along the wall and accumulates the errors of the
-layers; here each layer starts from the one before, as the deposit does.
+The signed distance in space from the fronts of a layer to nearby mesh vertices is negative for
+vertices behind the fronts. The level line at the layer height is traced through the triangles, so
+that fronts can split, merge, close and end at the edges of the wall. Each piece is then moved onto
+the exact wall and to the exact distance from the curve below, and its corners are computed (see
+`curve`).
+
+The mesh determines which pieces exist, but not their position. Mesh edges should not exceed the
+layer height or a quarter of the minimum radius of curvature. Features thinner than an edge can be
+missed: slivers between fronts that meet, and gaps at a rim. A geodesic distance field over the
+complete wall would be simpler, but it measures distances along the wall and accumulates errors over
+the layers. Here each layer starts from the previous layer, as the deposit does.
 """
 
 from __future__ import annotations
@@ -47,30 +47,30 @@ from .rims import (
 )
 from .smooth import SmoothFront, smooth_front
 
-# ---- Beads that close gaps between fronts. Where fronts meet, come together at a corner, or run
-# along the edge of an opening or a side of the wall, no front passes some points: up to a layer
-# height deep in a front that closes on itself, and between two that run into each other. Points
-# deeper than COVERED in a gap get a separate bead along its middle. Within a layer height of an
-# edge at which layers finish nothing needs closing: there the wall ends.
+# ---- Beads that close gaps between fronts. Gaps occur where fronts meet, converge at a corner, or
+# run along the edge of an opening or a side of the wall. They are up to one layer height deep in a
+# front that closes on itself and between two fronts that collide. A gap with points deeper than
+# COVERED gets a separate bead along its centreline. Within one layer height of an edge at which
+# layers finish, gaps stay open because the wall ends there.
 
-MIN_STRAIGHTNESS = 1.2  # of the height; shorter beads are
-ROUND = 0.8  # of the height; standard deviation of the mean that rounds a bead
+MIN_STRAIGHTNESS = 1.2  # in layer heights; shorter beads are straight
+ROUND = 0.8  # in layer heights; standard deviation of the Gaussian mean that rounds a bead
 
 
 def gap_middle(slicing: Slicing, borders: list[Array]) -> SpaceCurve | None:
-    """Return the curve midway between the sides of a gap.
+    """Compute the centreline of a gap.
 
     Parameters
     ----------
     slicing : Slicing
         The wall and its tolerances.
     borders : list of (k, 3) array
-        Borders of the gap, mm: one, or two of a ring.
+        Borders of the gap, mm: one, or two for an annular gap.
 
     Returns
     -------
     SpaceCurve or None
-        Open for one border, closed within a ring; None if the border has no extent.
+        Open curve for one border, closed curve for two; None if the border has no extent.
     """
     longest = max(borders, key=len)
     if len(borders) == 2:
@@ -87,7 +87,7 @@ def gap_middle(slicing: Slicing, borders: list[Array]) -> SpaceCurve | None:
 
 
 def _opposite(points: Array, border: Array) -> Array:
-    """The nearest points (n, 3) of a border, sampled."""
+    """Return the nearest points (n, 3) of a sampled border."""
     share = np.linspace(0.0, 1.0, 8, endpoint=False)[None, :, None]
     samples = np.vstack(
         [((1.0 - share) * border[:-1, None] + share * border[1:, None]).reshape(-1, 3), border[-1:]]
@@ -97,7 +97,7 @@ def _opposite(points: Array, border: Array) -> Array:
 
 
 def _through(slicing: Slicing, points: Array, closed: bool) -> SpaceCurve | None:
-    """A smooth curve on the wall near a line of points."""
+    """Fit a smooth curve on the wall to a line of points."""
     wall, height = slicing.wall, slicing.height
     if closed:
         points = np.vstack([points, points[:1]])
@@ -107,7 +107,7 @@ def _through(slicing: Slicing, points: Array, closed: bool) -> SpaceCurve | None
     count = step_count(length, 0.5 * height, 6 if closed else 2)
     if len(points) < 2:
         return None
-    # only the fine mesh knows the sides of a gap, and its middle has hooks at the ends
+    # the sides of a gap are known only on the fine mesh, and the centreline has hooks at the ends
     line = resample(points, closed, 16 * count)
     wide = min(ROUND * height / (length / (16 * count)), 4.0 * count)
     nodes = smooth_points(line, closed, wide)[::16]
@@ -124,35 +124,35 @@ def _through(slicing: Slicing, points: Array, closed: bool) -> SpaceCurve | None
     return fit_to_wall(wall, SpaceCurve(w, nodes, slope, slope, closed))
 
 
-# of the height; maximum distance of a point from a bead, with an error below the remainder to 0.6
+# in layer heights; maximum distance of a point from a bead; the difference to 0.6 covers sampling
+# errors
 COVERED = 0.594
-LEVELS = (
-    0.5,
-    0.42,
-    0.34,
-)  # of the height; depth of the border of a closed gap whose bead is long enough
-MIN_CLOSING_LENGTH = 0.5  # of the height
-COARSE, FINE = 0.2, 0.1  # of the height; edges of the mesh on which gaps are sought, and are seen
-MAX_LENGTH = 2.0  # of the height; length of a bead in a gap with a border shallower than the normal gap between layers
-SAMPLED = 0.05  # of the height; between points along the beads
-ROUNDS = 4
-MIN_PEAK = 0.02  # of the height; gaps deeper by this than half the layer spacing are examined
-MAX_OPEN_DEPTH = 0.005  # of the height, likewise; gaps that stay open
-ON_EDGE_MM = 1e-5  # mm; points nearer to an edge of the mesh are on it
-DEPTH_UNCERTAINTY = (
-    0.07  # of the height; error of a gap depth sampled at the vertices of the fine mesh
+# in layer heights; depths of gap borders, tried in this order until the bead is long enough
+LEVELS = (0.5, 0.42, 0.34)
+MIN_CLOSING_LENGTH = 0.5  # in layer heights; minimum length of a gap-closing bead
+COARSE, FINE = (
+    0.2,
+    0.1,
+)  # in layer heights; mesh edges in the search for gaps and in their measurement
+# in layer heights; maximum bead length in a gap with a border shallower than the normal gap between
+# layers
+MAX_LENGTH = 2.0
+SAMPLED = 0.05  # in layer heights; sample distance along beads
+ROUNDS = 4  # maximum number of passes
+MIN_PEAK = 0.02  # in layer heights; minimum depth beyond half the layer spacing of an examined gap
+MAX_OPEN_DEPTH = (
+    0.005  # in layer heights; depth beyond half the layer spacing of gaps that stay open
 )
-SEARCH_DIRECTIONS, SEARCH_STEPS, STEP_REDUCTION = (
-    8,
-    14,
-    0.7,
-)  # directions in which deeper points are sought, how often, how much shorter each time
+ON_EDGE_MM = 1e-5  # mm; points closer to an edge of the mesh are on this edge
+DEPTH_UNCERTAINTY = 0.07  # in layer heights; error of a gap depth sampled at fine mesh vertices
+# pattern search for deeper points: directions, steps, and reduction factor of the step length
+SEARCH_DIRECTIONS, SEARCH_STEPS, STEP_REDUCTION = 8, 14, 0.7
 
 
 def close_gaps(
     slicing: Slicing, below: list[SpaceCurve], above: list[SpaceCurve], passed: Index
 ) -> list[SpaceCurve]:
-    """Return the beads that cover the wall between fronts, along the middle of gaps.
+    """Close gaps between the fronts of two layers with beads along the centrelines of the gaps.
 
     Parameters
     ----------
@@ -161,12 +161,12 @@ def close_gaps(
     below, above : list of SpaceCurve
         The fronts of two consecutive layers; `above` is empty where the wall ends.
     passed : (n,) int array
-        Vertices of the wall's mesh between them.
+        Vertices of the wall's mesh between these layers.
 
     Returns
     -------
     list of SpaceCurve
-        The beads; the deposit below is on their right.
+        The beads, with the deposit below on the right.
     """
     if not len(passed):
         return []
@@ -192,7 +192,7 @@ def close_gaps(
 def _near_gaps(
     slicing: Slicing, below: list[SpaceCurve], above: list[SpaceCurve], corners: Array
 ) -> Mask:
-    """Which of the triangles (m, 3, 3) between fronts are where gaps may be."""
+    """Return a mask of the triangles (m, 3, 3) between fronts that may be in gaps."""
     height = slicing.height
     points = cut_evenly(corners, COARSE * height)[0]
     deep: Mask = (
@@ -203,7 +203,7 @@ def _near_gaps(
         len(above) and not _is_between_fronts(below, above, points, corners, deep)
     ):
         return np.zeros(len(corners), dtype=bool)
-    # the gap ends within a layer height of where it is deep
+    # a gap ends within one layer height of its deep points
     gap = corners[deep.any(axis=1)]
     extent = np.linalg.norm(np.ptp(gap, axis=1), axis=1).max()
     return np.asarray(
@@ -214,7 +214,7 @@ def _near_gaps(
 def _depth(
     points: Array, beads: list[SpaceCurve], height: float, farthest: float = np.inf
 ) -> Array:
-    """Distances of points (..., 3) to beads that are sampled, infinite beyond the farthest."""
+    """Return the distances of points (..., 3) from sampled beads; infinite beyond `farthest` mm."""
     samples = []
     for bead in beads:
         count = step_count(bead.length, SAMPLED * height, 2)
@@ -227,10 +227,11 @@ def _depth(
 def _is_between_fronts(
     below: list[SpaceCurve], above: list[SpaceCurve], points: Array, corners: Array, deep: Mask
 ) -> bool:
-    """Return whether any of the deep points is between the fronts.
+    """Whether any deep point is between the fronts.
 
-    deep: (m, s) of points (m, s, 3) on triangles (m, 3, 3). False if all are beyond the
-    fronts above, which have the rest of the wall on their left, or before the fronts below.
+    deep: (m, s) mask of points (m, s, 3) on triangles (m, 3, 3). A point is not between the fronts
+    if it is to the left of the nearest front above, where the rest of the wall is, or before the
+    nearest front below.
     """
     face, row = np.nonzero(deep)
     points = points[face, row]
@@ -252,7 +253,7 @@ def _is_between_fronts(
 
 
 def _orient_bead(slicing: Slicing, bead: SpaceCurve, below: list[SpaceCurve]) -> SpaceCurve:
-    """Return the bead oriented so that the deposit below is on its right."""
+    """Orient a bead so that the deposit below is on the right."""
     points, left_vectors = slicing.left_of(bead)
     return (
         bead
@@ -262,11 +263,11 @@ def _orient_bead(slicing: Slicing, bead: SpaceCurve, below: list[SpaceCurve]) ->
 
 
 class _Gaps(NamedTuple):
-    """Regions that may have gaps: a fine mesh, and its vertices (n,) that must not be far from a
-    bead.
+    """Regions that may have gaps.
 
-    cut: its vertices (k,) on its border but not on a border of the wall: a gap that reaches
-    them is not a gap between fronts.
+    fine: fine mesh of the regions. must_cover: (n,) vertices that must be close to a bead. cut:
+    (k,) vertices on the border of the fine mesh but not on a border of the wall. A gap that reaches
+    these vertices is not a gap between fronts.
     """
 
     slicing: Slicing
@@ -276,19 +277,18 @@ class _Gaps(NamedTuple):
 
     @property
     def covered(self) -> float:
-        """Heights that no vertex asked for is to be farther from a bead."""
+        """Maximum distance of `must_cover` vertices from a bead, in layer heights."""
         return max(COVERED, 0.5 * self.slicing.widest + MAX_OPEN_DEPTH)
 
     def _peaks(self, depth: Array, beads: list[SpaceCurve]) -> Array:
-        """Return the depths (n,), refined at vertices nearest to the deepest points on the exact
-        wall.
+        """Return the depths (n,), refined to the deepest points on the exact wall.
 
-        Only depths of about `covered` are refined: whether a gap is closed must not depend on
-        where the mesh has its vertices.
+        The refined depth of a peak is stored at the nearest vertex. Only depths close to `covered`
+        are refined, so that the vertices of the mesh do not decide whether a gap is closed.
         """
         wall, height = self.slicing.wall, self.slicing.height
         low, high = self.fine.edges.T
-        deepest = np.zeros(len(depth))  # of their neighbours
+        deepest = np.zeros(len(depth))  # maximum depth of the neighbours
         np.maximum.at(deepest, low, depth[high])
         np.maximum.at(deepest, high, depth[low])
         border = np.zeros(len(depth), dtype=bool)
@@ -330,15 +330,16 @@ class _Gaps(NamedTuple):
         return peaks
 
     def close(self, depth: Array, beads: list[SpaceCurve]) -> list[SpaceCurve]:
-        """Return one bead for each gap that is too deep somewhere; depth: (n,) of the vertices below
-        the beads.
+        """Return one bead for each gap that is locally too deep.
+
+        depth: (n,) distances of the vertices from the beads, mm.
         """
         height, fine, covered = self.slicing.height, self.fine, self.covered * self.slicing.height
         peaks = self._peaks(depth, beads)
         new_beads: list[SpaceCurve] = []
         short: list[tuple[SpaceCurve, Mask]] = []
         is_closed = np.zeros(len(depth), dtype=bool)
-        # lower levels would include everything between uneven layers
+        # with uneven layers, lower levels would include the complete area between the layers
         levels = LEVELS if self.slicing.widest == 1.0 else (0.5 * self.slicing.widest,)
         for level in levels:
             inside = depth > level * height
@@ -350,11 +351,10 @@ class _Gaps(NamedTuple):
                 deepest, number[inside & self.must_cover], peaks[inside & self.must_cover]
             )
             deepest[number[self.cut[inside[self.cut]]]] = 0.0
-            lines = fine.level_lines(
-                level * height - depth, np.arange(len(fine.faces))
-            )  # gaps on the left
+            # level lines have the gaps on the left
+            lines = fine.level_lines(level * height - depth, np.arange(len(fine.faces)))
             gap_number, tree = number[inside], cKDTree(fine.vertices[inside])
-            # a single point of a line may be nearer to the adjacent gap: the majority decides
+            # the majority of points decides, because single points can be closer to an adjacent gap
             owner = np.array(
                 [np.bincount(gap_number[tree.query(line.points)[1]]).argmax() for line in lines]
             )
@@ -377,7 +377,7 @@ class _Gaps(NamedTuple):
                 else:
                     new_beads.append(bead)
                     is_closed |= members
-        # lower borders would not make these beads longer, or would include too much
+        # lower levels did not yield longer beads for these gaps, or included too much area
         for bead, members in short:
             if not is_closed[members].any():
                 new_beads.append(bead)
@@ -386,9 +386,7 @@ class _Gaps(NamedTuple):
 
 
 def _find_rim_vertices(mesh: Mesh, vertices: Index, fine: Mesh) -> Index:
-    """Return the vertices of the fine mesh on the border of the mesh, near the given vertices of
-    the mesh.
-    """
+    """Return the vertices of the fine mesh on border edges of the mesh between the given vertices."""
     edges = mesh.border_edges[np.isin(mesh.border_edges, vertices).all(axis=1)]
     if not len(edges):
         return np.empty(0, dtype=np.intp)
@@ -408,9 +406,7 @@ def _find_rim_vertices(mesh: Mesh, vertices: Index, fine: Mesh) -> Index:
 
 
 def _loops(fine: Mesh, members: Mask, lines: list[LevelLine]) -> list[Array]:
-    """Return the borders (k, 3) of a gap, all the way around: level lines, continued along the
-    mesh's border.
-    """
+    """Return the closed borders (k, 3) of a gap: level lines, continued along the mesh border."""
     loops = [line.points for line in lines if line.closed]
     open_chains = [line.points for line in lines if not line.closed]
     start, end = fine.border_edges[members[fine.border_edges].all(axis=1)].T
@@ -436,7 +432,7 @@ def _loops(fine: Mesh, members: Mask, lines: list[LevelLine]) -> list[Array]:
 
 
 def _numbers(fine: Mesh, inside: Mask) -> Index:
-    """The number (n,) of the gap that each vertex is in; vertices in none have one of their own."""
+    """Return the gap index (n,) of each vertex; each vertex outside gaps has a separate index."""
     edges = fine.edges[inside[fine.edges].all(axis=1)]
     n = len(fine.vertices)
     links = coo_matrix((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), shape=(n, n))
@@ -444,27 +440,25 @@ def _numbers(fine: Mesh, inside: Mask) -> Index:
     return number
 
 
-# ---- The layers
+# ---- Layers
 
-MIN_LENGTH = 0.2  # of the layer height; shorter fronts do not become beads
-SLIVER, MAX_OFFSET = (
-    10.0,
-    5e-4,
-)  # layer heights; mm. Fronts shorter than this may be off by no more between their nodes
-THIN = 0.3  # of the typical edge; closer points of a level line count as one
-BEHIND_MM = 1e-3  # mm; vertices nearer to a first curve are on it
+MIN_LENGTH = 0.2  # in layer heights; shorter fronts do not become beads
+# in layer heights, and mm; fronts shorter than SLIVER must keep their distance within MAX_OFFSET
+SLIVER, MAX_OFFSET = 10.0, 5e-4
+THIN = 0.3  # in typical edges; closer points of a level line are merged
+BEHIND_MM = 1e-3  # mm; vertices closer to a first curve are on this curve
 ON_FRONT_MM = (
-    1e-4  # mm; vertices nearer to a front are on it, so the last layer may be on the wall's edge
+    1e-4  # mm; closer vertices are on a front, so the last layer can be on the wall's edge
 )
-NEIGHBOURS = 12  # vertices near a point of a first curve that decide on which side the wall is
+NEIGHBOURS = 12  # vertices per point of a first curve that determine on which side the wall is
 
 
 class Sliced(NamedTuple):
     """Layers of a wall.
 
-    fronts: the fronts of each layer. closing: the beads that close gaps between the fronts of a
-    layer and the layer below; after the last layer there may be a layer of only closing beads.
-    rims: the edges at which fronts end.
+    fronts: the fronts of each layer. closing: beads that close gaps between the fronts of a layer
+    and the layer below; the last entry can belong to a layer without fronts. rims: edges at which
+    fronts end.
     """
 
     fronts: list[list[SpaceCurve]]
@@ -478,7 +472,7 @@ def slice_layers(
     smoothing: Smoothing | None = None,
     progress: Callable[[float, str], None] = lambda fraction, text: None,
 ) -> Sliced:
-    """Return all layers, from the first until the wall is covered or its edges are reached.
+    """Compute all layers, from the first layer until the wall is covered or its edges are reached.
 
     Parameters
     ----------
@@ -487,9 +481,9 @@ def slice_layers(
     height : float
         Layer height, mm.
     smoothing : Smoothing or None, optional
-        How fronts are smoothed; None for exact ones.
+        Smoothing of fronts; None: exact fronts.
     progress : callable, optional
-        Receives the share of the wall that is covered, and a text; may raise to cancel.
+        Receives the covered fraction of the wall and a text; may raise to cancel.
 
     Returns
     -------
@@ -521,8 +515,11 @@ def slice_layers(
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Where the deposit has come to: the fronts of the last layer, the vertices (n,) behind them, those (k,) that the last
-    layer passed, and which of banded.WEIGHTS smooth fronts were made with."""
+    """State of the deposition.
+
+    fronts: fronts of the last layer. behind: (n,) mesh vertices behind these fronts. passed: (k,)
+    vertices that the last layer passed. weight: index of WEIGHTS of the smooth fronts.
+    """
 
     fronts: list[SpaceCurve]
     behind: Mask
@@ -531,10 +528,9 @@ class State:
 
 
 def start_state(slicing: Slicing) -> State:
-    """Return the first layer.
+    """Return the state after the first layer.
 
-    All fronts have the rest of the wall on their left, seen from the side to which the
-    normals point.
+    All fronts have the rest of the wall on the left, as seen against the normals.
     """
     wall, mesh, fronts = slicing.wall, slicing.wall.mesh, []
     for first_curve in wall.first:
@@ -554,12 +550,11 @@ def start_state(slicing: Slicing) -> State:
 
 
 def next_state(slicing: Slicing, state: State) -> State:
-    """Return the next layer: all fronts at the layer height from the fronts of the state,
-    possibly none.
+    """Compute the next layer: all fronts at the layer height from the fronts of the state.
 
-    With smoothing, fronts are as near to the height as the smoothing allows. The new state
-    shares the array `behind`, with more vertices behind. Only the mesh near the fronts is
-    examined, so all layers together examine each vertex a few times.
+    The layer can be empty. With smoothing, fronts are as close to the layer height as the smoothing
+    allows. The new state shares and updates the array `behind`. Only the mesh near the fronts is
+    examined, so that each vertex is examined only a few times in total.
     """
     height, below, mesh = slicing.height, state.fronts, slicing.wall.mesh
     reach = height + mesh.longest_edge
@@ -569,9 +564,8 @@ def next_state(slicing: Slicing, state: State) -> State:
         return State([], state.behind, nearby, state.weight)
     behind, distance = state.behind[nearby], nearest_feet(below, submesh.vertices).distance
     value = np.where(behind, -distance, distance) - height
-    low = submesh.connected_members(
-        value < -ON_FRONT_MM, behind
-    )  # proximity in space is not enough: the wall must lead there
+    # proximity in space is not enough: the vertices must be connected along the wall
+    low = submesh.connected_members(value < -ON_FRONT_MM, behind)
     value = np.where(low, np.minimum(value, -1e-9 * height), np.maximum(value, 1e-9 * height))
     ends = slicing.rims.points_at_height(below, height, reach, ON_FRONT_MM)
     fronts: list[SpaceCurve] = []
@@ -601,8 +595,11 @@ def next_state(slicing: Slicing, state: State) -> State:
 
 
 def _is_bead(front: SpaceCurve, below: list[SpaceCurve], height: float) -> bool:
-    """Whether a front is long enough, and keeps its distance between the nodes too: slivers between fronts that meet head on
-    may not; a bead that closes the gap takes their place."""
+    """Whether a front is long enough and keeps its distance between the nodes.
+
+    Slivers between fronts that meet head on may not keep their distance; a gap-closing bead
+    replaces them.
+    """
     if front.length <= MIN_LENGTH * height:
         return False
     return front.length > SLIVER * height or bool(
@@ -618,10 +615,9 @@ def _is_passed(
     low: Mask,
     band: float,
 ) -> Mask:
-    """Return whether points (n, 3) are behind smooth fronts, where these differ from the exact
-    ones.
+    """Return whether points (n, 3) are behind the fronts, also where smoothing moved the fronts.
 
-    low: whether they are behind the exact fronts. band: mm.
+    low: (n,) whether the points are behind the exact fronts. band: mm.
     """
     fronts = [smooth_front.curve for smooth_front in smooth]
     if not fronts or not len(points):

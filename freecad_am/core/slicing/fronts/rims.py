@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ends of fronts: the edges of a wall as exact curves, and the points on them at a distance
-from the fronts below.
-"""
+"""Ends of fronts: edges of a wall as exact curves, and their points at a distance from fronts below."""
 
 from __future__ import annotations
 
@@ -23,21 +21,21 @@ from ...types import Array, Index, Mask
 
 
 def resample(points: Array, closed: bool, count: int) -> Array:
-    """Resample a polyline evenly.
+    """Resample a polyline at equal arc lengths.
 
     Parameters
     ----------
     points : (n, 3) array
-        The polyline; a closed one may repeat its first point.
+        The polyline, mm; a closed polyline may repeat its first point.
     closed : bool
-        Whether it is closed.
+        Whether the polyline is closed.
     count : int
         Number of segments.
 
     Returns
     -------
     (count, 3) or (count + 1, 3) array
-        Points of a closed line; for an open one with both ends.
+        Points of a closed or an open polyline, mm; an open polyline includes both ends.
     """
     if closed and (points[0] != points[-1]).any():
         points = np.vstack([points, points[:1]])
@@ -48,14 +46,14 @@ def resample(points: Array, closed: bool, count: int) -> Array:
 
 
 def smooth_points(points: Array, closed: bool, wide: float) -> Array:
-    """Smooth a polyline by means over neighbours with normal weights.
+    """Smooth a polyline with a Gaussian moving average.
 
     Parameters
     ----------
     points : (n, 3) array
-        The points; a closed line does not repeat its first.
+        The points; a closed line does not repeat its first point.
     closed : bool
-        Whether the line is closed; the ends of an open one stay.
+        Whether the line is closed; the ends of an open line stay.
     wide : float
         Standard deviation, in points.
 
@@ -78,21 +76,21 @@ def smooth_points(points: Array, closed: bool, wide: float) -> Array:
 
 
 def spline(points: Array, closed: bool) -> tuple[Array, Array]:
-    """Return a smooth curve through points.
+    """Interpolate a cubic spline through points.
 
     Parameters
     ----------
     points : (n, 3) array
-        The points; a closed line repeats its first.
+        The points, mm; a closed line repeats its first point.
     closed : bool
         Whether the curve is periodic.
 
     Returns
     -------
     w : (n,) array
-        Parameters, the length along the polyline, mm.
+        Parameters: length along the polyline, mm.
     slope : (n, 3) array
-        Derivatives by the parameter.
+        Derivatives with respect to w.
     """
     w = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     return w, CubicSpline(w, points, bc_type="periodic" if closed else "not-a-knot")(w, 1)
@@ -101,8 +99,8 @@ def spline(points: Array, closed: bool) -> tuple[Array, Array]:
 class Feet(NamedTuple):
     """Nearest points on fronts for points (n, 3).
 
-    Distances (n,) mm, unit vectors away from the nearest points (n, 3), and those: front
-    (n,), parameter w (n,), point (n, 3).
+    distance: (n,), mm. away: (n, 3) unit vectors away from the nearest points. front: (n,) front of
+    each nearest point. w: (n,) parameters on the front. point: (n, 3) nearest points, mm.
     """
 
     distance: Array
@@ -113,7 +111,7 @@ class Feet(NamedTuple):
 
     @classmethod
     def between(cls, points: Array, foot: Array, front: Index, w: Array) -> Feet:
-        """Return the feet of points from known nearest points.
+        """Build the feet of points from known nearest points.
 
         Parameters
         ----------
@@ -124,7 +122,7 @@ class Feet(NamedTuple):
         front : (n,) int array
             The front of each nearest point.
         w : (n,) array
-            Its parameter.
+            Parameter of each nearest point.
 
         Returns
         -------
@@ -147,10 +145,10 @@ class Feet(NamedTuple):
 
 
 def nearest_feet(fronts: list[SpaceCurve], points: Array) -> Feet:
-    """Return the nearest point on any of the fronts for each point.
+    """Find the nearest point on any front for each point.
 
-    A front is searched only for points whose distance from its box is smaller than their best
-    distance: with a layer in many pieces, few of them are candidates for a point.
+    A front is searched only for points that are closer to its bounding box than to the best front
+    so far. In a layer with many pieces, few fronts are candidates for a point.
 
     Parameters
     ----------
@@ -162,10 +160,10 @@ def nearest_feet(fronts: list[SpaceCurve], points: Array) -> Feet:
     Returns
     -------
     Feet
-        Of equal distances the first front counts.
+        The feet; at equal distances on the first front.
     """
     low = np.stack([front.beyond_box(points) for front in fronts])
-    front = np.argmin(low, axis=0)  # the likely fronts
+    front = np.argmin(low, axis=0)  # most likely front of each point
     distance, foot, w = np.empty(len(points)), np.empty((len(points), 3)), np.empty(len(points))
     for front_number in np.unique(front):
         rows = np.flatnonzero(front == front_number)
@@ -195,7 +193,7 @@ def local_distances(front: SpaceCurve, below: list[SpaceCurve], finer: int = 1) 
     below : list of SpaceCurve
         The fronts of the layer below.
     finer : int, optional
-        Number of points per arc; 1 for only the nodes.
+        Number of points per arc; 1: nodes only.
 
     Returns
     -------
@@ -206,7 +204,7 @@ def local_distances(front: SpaceCurve, below: list[SpaceCurve], finer: int = 1) 
 
 
 def points_near_fronts(tree: cKDTree, fronts: list[SpaceCurve], reach: float) -> Index:
-    """Return the points of a tree near fronts, and a few more.
+    """Return the points of a tree within a distance of fronts, and a few points beyond.
 
     Parameters
     ----------
@@ -220,7 +218,7 @@ def points_near_fronts(tree: cKDTree, fronts: list[SpaceCurve], reach: float) ->
     Returns
     -------
     (k,) int array
-        Numbers of the points, rising.
+        Indices of the points, ascending.
     """
     samples = []
     for front in fronts:
@@ -231,16 +229,19 @@ def points_near_fronts(tree: cKDTree, fronts: list[SpaceCurve], reach: float) ->
     return numbers
 
 
-FINER = 2  # places per arc of a rim at which the distance from the fronts is taken
-HALVINGS = 8  # of the stretches between them in which a rim may come and go
-MAX_CHANGE_RATIO = 1.1
-STEPS = 40
-CONVERGED = 1e-11  # of the height
-ON_RIM = 1e-4  # mm
+FINER = 2  # points per arc of a rim at which the distance from the fronts is measured
+HALVINGS = 8  # maximum halvings of a stretch in which a rim may cross the distance twice
+MAX_CHANGE_RATIO = 1.1  # maximum change of the distance per parameter along a rim
+STEPS = 40  # maximum number of Newton or bisection steps
+CONVERGED = 1e-11  # in layer heights; convergence tolerance
+ON_RIM = 1e-4  # mm; maximum distance of a point on a rim
 
 
 class _Samples(NamedTuple):
-    """Points (n, 3) all over the rims: rim (n,) and parameter w (n,), in order; tree of the points."""
+    """Ordered samples of all rims.
+
+    points: (n, 3), mm. rim: (n,) rim indices. w: (n,) parameters. tree: search tree of the points.
+    """
 
     points: Array
     rim: Index
@@ -249,8 +250,10 @@ class _Samples(NamedTuple):
 
 
 class _Stretches(NamedTuple):
-    """Stretches (n,) of rims: from low to high, and how far their ends are above the required
-    distance.
+    """Stretches (n,) of rims.
+
+    rim: rim indices. low, high: parameters of the ends. off_low, off_high: distance of the ends
+    from the fronts minus the required distance, mm.
     """
 
     rim: Index
@@ -262,14 +265,17 @@ class _Stretches(NamedTuple):
 
 @dataclass(frozen=True)
 class Rims:
-    """curves: the edges of a wall. end: whether layers finish there."""
+    """Edges of a wall.
+
+    curves: the edges. end: whether layers finish at each edge.
+    """
 
     curves: tuple[SpaceCurve, ...]
     end: tuple[bool, ...]
 
     @classmethod
     def of(cls, rims: tuple[Rim, ...]) -> Rims:
-        """Smooth curves through the points of the rims."""
+        """Build the rims from splines through their points."""
         curves = []
         for rim in rims:
             w, slope = spline(rim.points, rim.closed)
@@ -331,10 +337,9 @@ class Rims:
         height : float
             Distance from these fronts, mm.
         reach : float
-            Distance in which they are searched, mm.
+            Search distance from these fronts, mm.
         tolerance : float
-            Smaller differences of the distance count as above, mm, so a front may run
-            along a rim.
+            Points lower by at most this count as above, mm, so that a front may run along a rim.
 
         Returns
         -------
@@ -359,7 +364,8 @@ class Rims:
         for _ in range(HALVINGS):
             crossed = (stretch.off_low > 0.0) != (stretch.off_high > 0.0)
             blocks.append(_Stretches(*(column[crossed] for column in stretch)))
-            # a distance changes by no more than the length along the rim, which its parameter approximates
+            # a distance changes by at most the length along the rim, which the parameter
+            # approximates
             reserve = np.minimum(
                 np.abs(stretch.off_low), np.abs(stretch.off_high)
             ) < MAX_CHANGE_RATIO * (stretch.high - stretch.low)
@@ -401,7 +407,10 @@ class Rims:
         high: Array,
         falls: Mask,
     ) -> Array:
-        """Newton along the rims, kept between the last places known on either side of the height."""
+        """Solve for the crossings by Newton's method along the rims, bracketed by low and high.
+
+        falls: (n,) whether the distance falls from low to high.
+        """
         w = 0.5 * (low + high)
         if not len(w):
             return np.empty((0, 3))
@@ -434,7 +443,7 @@ class Rims:
         nearest : (n, 3) array
             Nearest points, mm.
         along : (n, 3) array
-            Unit vectors along the rim there.
+            Unit vectors along the rims at the nearest points.
         """
         if not self.curves:
             return np.full(len(points), np.inf), points, np.zeros_like(points)
@@ -443,9 +452,7 @@ class Rims:
         return foot.distance, foot.point, slope / np.linalg.norm(slope, axis=1, keepdims=True)
 
     def ends_of(self, front: SpaceCurve) -> bool:
-        """Return whether an open front is cut off: one of its ends is where layers finish, and on no
-        other rim.
-        """
+        """Whether an open front has an end on a rim where layers finish, and on no other rim."""
         if front.closed or not any(self.end):
             return False
         ends = front.points[[0, -1]]
@@ -456,8 +463,10 @@ class Rims:
 
 
 class Line(NamedTuple):
-    """A level line of the mesh, see `geometry.mesh.triangle_mesh.LevelLine`. ends: (2, 3) where the front near it ends on
-    rims, not a number where that is not known."""
+    """Level line of the mesh, see `geometry.mesh.triangle_mesh.LevelLine`.
+
+    ends: (2, 3) ends of the nearby front on rims, mm; NaN where unknown.
+    """
 
     points: Array
     closed: bool
@@ -466,10 +475,10 @@ class Line(NamedTuple):
 
 
 def cut_at_rims(lines: list[LevelLine], ends: Array, longest_edge: float) -> list[Line]:
-    """Return lines with their ends among the points where fronts meet rims.
+    """Assign points where fronts meet rims to the ends of lines, and cut lines at gaps of the wall.
 
-    Two further points near a line mark a gap in the wall that the coarse mesh misses, so the
-    line is cut there.
+    Two remaining points near a line mark a gap in the wall that the coarse mesh misses. The line is
+    cut there.
 
     Parameters
     ----------
@@ -478,12 +487,12 @@ def cut_at_rims(lines: list[LevelLine], ends: Array, longest_edge: float) -> lis
     ends : (k, 3) array
         Points where fronts meet rims, mm.
     longest_edge : float
-        Longest edge of the mesh, mm.
+        Maximum edge length of the mesh, mm.
 
     Returns
     -------
     list of Line
-        The lines, some in pieces.
+        The lines and pieces of lines.
     """
     ended_lines, free = [], np.ones(len(ends), dtype=bool)
     for line in lines:
@@ -541,8 +550,9 @@ def _split_line(line: Line, ends: Array, longest_edge: float) -> list[Line]:
 
 
 def _total_gap(positions: Index, n: int) -> int:
-    """Return the length that a closed line loses between its first and second point, its third
-    and fourth, and so on.
+    """Return the total number of points in the gaps of a closed line of n points.
+
+    A gap is between the first and second position, the third and fourth, and so on.
     """
     pairs = positions[: len(positions) // 2 * 2].reshape(-1, 2)
     return int(((pairs[:, 1] - pairs[:, 0]) % n).sum())

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fronts on any wall whose local distance varies within a band, so that they stay free of
-corners.
+"""Fronts on any wall whose local distance varies within a band, so that they have no corners.
 
-smooth_spacing works on the parameter of a surface; this module works on the front itself.
-A rounded copy of the exact front is the datum from which heights are measured, along the
-wall and across the front. From there the exact distance and the limits of the band are
-searched for each point; the smooth front bends least between them. See `banded`.
+`smooth_spacing` works on the parameters of a surface; this module works on the front. A rounded
+copy of the exact front is the datum. Heights are measured from the datum, along the wall and across
+the front. For each point, the heights at the exact distance and at the limits of the band are
+computed. The smooth front has minimum bending between these limits. See `smoothest_heights`.
 """
 
 from __future__ import annotations
@@ -25,22 +24,26 @@ from ..wall_directions import turns_in_wall
 from .curve import Slicing, fit_to_wall
 from .rims import ON_RIM, local_distances, nearest_feet, resample, smooth_points, spline
 
-PLACES = 8  # per layer height along a front
-MIN_POINTS = 48  # of a front
-ROUND = 0.75  # layer heights; standard deviation of the mean that rounds the front
-MAX_ROUNDING_SHARE = 1.0 / 16.0  # of the front, the same
-REACH = 1.5  # layer heights; the exact front is not farther from the rounded one
-STEPS = 40
-TOLERANCE_SHARE = 1e-6  # of the height
-MAX_AHEAD = 0.4  # of the way to the next front of the layer; no front runs farther ahead
-FINER = 4  # places per arc at which the result is measured
+PLACES = 8  # points per layer height along a front
+MIN_POINTS = 48  # minimum number of points of a front
+ROUND = 0.75  # in layer heights; standard deviation of the Gaussian mean that rounds the front
+MAX_ROUNDING_SHARE = 1.0 / 16.0  # fraction of the front; maximum of this standard deviation
+REACH = 1.5  # in maximum distances; maximum height of the exact front over the rounded front
+STEPS = 40  # maximum number of Newton or bisection steps
+TOLERANCE_SHARE = 1e-6  # fraction of the height; tolerance of distances
+MAX_AHEAD = (
+    0.4  # fraction of the distance to the next front of the layer; maximum advance of a front
+)
+FINER = 4  # points per arc at which the result is measured
 ENDS = np.array([0, -1])
-SPREAD = 4.0  # layer heights over which the slide of an end is spread
-SLIDES = 0.3  # share of a way along a rim that leads across the front; less, and the end stays
+SPREAD = 4.0  # in layer heights; length over which the slide of an end is spread
+SLIDES = (
+    0.3  # minimum component of a rim across the front; on other rims the end of the front stays
+)
 
 
 class SmoothFront(NamedTuple):
-    """A front, its sharpest turn within the wall (rad/mm), and which of banded.WEIGHTS it was made with."""
+    """Front with its maximum turn rate within the wall, rad/mm, and the index of its WEIGHTS entry."""
 
     curve: SpaceCurve
     turn: float
@@ -48,7 +51,7 @@ class SmoothFront(NamedTuple):
 
 
 def turn(wall: PatchWall, curve: SpaceCurve) -> float:
-    """The sharpest turn of a front within the wall, rad/mm, on a grid finer than its own."""
+    """Return the maximum turn rate of a front within the wall, rad/mm, with FINER points per arc."""
     w = curve.refined(FINER)
     points, slope, _ = curve.at(w)
     into, out = slope.copy(), slope.copy()
@@ -66,10 +69,11 @@ def smooth_front(
     other_fronts: list[SpaceCurve],
     weight: int = HEAVY,
 ) -> SmoothFront:
-    """Return a smooth front near an exact one.
+    """Smooth an exact front.
 
-    It stays as near to the layer height as a turn within the wall of smoothing.limit allows.
-    Its ends move along their rims. If the band is too narrow for the limit, the band holds.
+    The smooth front stays as close to the layer height as the turn rate limit `smoothing.limit`
+    allows. Its ends move along their rims. If the band is too narrow for the limit, the front keeps
+    the band.
 
     Parameters
     ----------
@@ -80,15 +84,15 @@ def smooth_front(
     front : SpaceCurve
         The exact front.
     other_fronts : list of SpaceCurve
-        The further fronts of the layer, which need room.
+        Other fronts of the layer, from which the front keeps a distance.
     weight : int, optional
-        Start of the search, best the weight of the layer below.
+        Index of WEIGHTS at which the search starts, preferably that of the layer below.
 
     Returns
     -------
     SmoothFront
-        The smooth front; the exact one if it turns slowly enough or no smooth one fits
-        within the band.
+        The smooth front. The exact front if its turn rate is below the limit, or if no smooth front
+        fits the band.
     """
     wall, height, smoothing = slicing.wall, slicing.height, slicing.smoothing
     unsmoothed = SmoothFront(front, turn(wall, front), weight)
@@ -128,13 +132,13 @@ def smooth_front(
 
 @dataclass(frozen=True, eq=False)
 class _Datum:
-    """A smooth line on a wall with rims.
+    """Smooth line on a wall with rims.
 
-    points (n, 3), across: unit vectors (n, 3) in the wall to its left, bend: (n,) its second
-    differences along those. A closed line does not repeat its first point. sliding: (2,)
-    whether the ends of an open line are on rims. Their `across` is then along the rim, long
-    enough to lead as far to the left, and their neighbours' vectors lean likewise; other ends
-    stay.
+    points: (n, 3), mm; a closed line does not repeat its first point. across: (n, 3) unit vectors
+    in the wall, to the left of the line. bend: (n,) second differences of the points along these
+    vectors. sliding: (2,) whether each end of an open line slides along a rim. `across` of a
+    sliding end is along the rim, with a component of 1 to the left, and `across` of the
+    neighbouring points is adapted gradually. Other ends stay.
     """
 
     slicing: Slicing
@@ -146,7 +150,7 @@ class _Datum:
 
     @classmethod
     def of(cls, slicing: Slicing, front: SpaceCurve) -> _Datum:
-        """Return the rounded front with evenly spaced points."""
+        """Build the datum: the rounded front with evenly spaced points."""
         height = slicing.height
         count = step_count(front.length * PLACES, height, MIN_POINTS)
         points = resample(front.at(front.refined(FINER))[0], front.closed, count)
@@ -169,16 +173,15 @@ class _Datum:
             length = np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
             share = np.linspace(0.0, length, len(points)) / min(SPREAD * height, 0.5 * length)
             for end, s in ((0, share), (1, share[::-1])):
-                if sliding[
-                    end
-                ]:  # the sliding of the end along the front is spread over its neighbours
+                if sliding[end]:  # spread the slide of the end along the front over its neighbours
                     slide = along[end] / rate[end] - across[ENDS[end]]
                     across = across + np.maximum(1.0 - s, 0.0)[:, None] * slide
         return cls(slicing, points, across, bend, front.closed, sliding)
 
     def heights(self, below: list[SpaceCurve], distances: Array) -> Array | None:
-        """Return heights (k, n) mm over the datum of points at the distances (k,) from the fronts
-        below; None if any is not found.
+        """Return the heights (k, n), mm, over the datum at distances (k,), mm, from the fronts below.
+
+        Returns None if any height is not found.
         """
         targets = np.repeat(distances, len(self.points))
         start, across = (
@@ -208,7 +211,7 @@ class _Datum:
         return None
 
     def smooth(self, target: Array, low: Array, high: Array, weight: float) -> Array:
-        """Return heights (n,) over the datum that bend little between low and high."""
+        """Return smooth heights (n,) over the datum between low and high."""
         if self.closed:
             return smooth_between(target, low, high, weight, self.bend)
         target, low, high = target.copy(), low.copy(), high.copy()
@@ -217,7 +220,7 @@ class _Datum:
         return smooth_between(target, low, high, weight, self.bend[1:-1], False)
 
     def curve(self, x: Array) -> SpaceCurve:
-        """The curve at heights (n,) over the datum."""
+        """Return the curve at heights (n,) over the datum."""
         points, normal = self.slicing.wall.project(self.points + x[:, None] * self.across)
         if self.closed:
             points, normal = (np.vstack([column, column[:1]]) for column in (points, normal))

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cuts of a closed mesh with equidistant cones or cylinders (Dai 2020, section 2.1).
+"""Cut a closed mesh by equidistant cones or cylinders (Dai 2020, section 2.1).
 
-The distance from the base surface is a convex function along every straight line, so the
-part of a facet below a cone is convex: an edge is crossed once, twice or not at all, a
-facet at up to six points, and a cut that leaves the cone along the facet's border returns
-at the next point. This pairs the points of every case of the paper without distinguishing
-the cases. A vertex on the cone always counts as outside, so loops close whatever touches
-whatever (the paper's step 0 can leave an odd number of points). A facet pierced by the
-hub's axis may be cut in a curve that meets no edge. Within a facet the cut is a conic; it
-is followed to the chord error.
+The distance from the base surface is a convex function along any straight line. The part of a facet
+below a cone is therefore convex: a cone crosses an edge at most twice and a facet border at most
+six times, and a cut that leaves a facet at one point of the border enters at the next. This pairs
+the points in all cases of the paper without distinguishing the cases. A vertex on the cone always
+counts as outside, so that loops always close (step 0 of the paper can leave an odd number of
+points). A facet pierced by the axis of the hub can have a closed cut that crosses no edge. Within a
+facet the cut is a conic, which is sampled to the chord error.
 """
 
 from __future__ import annotations
@@ -32,27 +31,31 @@ from ...types import Array, Index, Mask, NDArray
 
 Edges = NDArray[np.int32]
 
-NEWTON = 60
-HALVINGS = 14  # of the cut through one facet
-MIN_EDGE_MM = 1e-9  # mm; closer points count as one
-ROUNDING = 1e-12  # of the terms added; smaller values are rounding
+NEWTON = 60  # maximum number of Newton steps
+HALVINGS = 14  # maximum number of successive halvings of the cut through a facet
+MIN_EDGE_MM = 1e-9  # mm; closer points are merged
+ROUNDING = 1e-12  # relative to the summed terms; smaller values are rounding errors
 
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """A closed cut: points (n, 3) mm in the hub's frame, the first not repeated, the solid to the left as seen from outside
-    the hub. turns: how often it goes round the hub, counted with its sense; 0 for a contour of a blade."""
+    """Closed cut.
+
+    points: (n, 3) in the frame of the hub, mm, without repeated first point; the solid is on the
+    left as seen from outside the hub. turns: signed number of turns around the hub; 0 for the
+    contour of a blade.
+    """
 
     points: Array
     turns: int
 
 
 class Facets:
-    """A closed mesh prepared for cuts with equidistant surfaces of one surface.
+    """Closed mesh prepared for cuts by the equidistant surfaces of a base surface.
 
-    vertices (n, 3) mm in the hub's frame, at distances (n,) mm from the surface; triangles
-    (m, 3) with outward normals, every edge between two triangles. Raises InputError
-    'OPEN_MESH' with the position of an edge that has one triangle, or more than two.
+    vertices: (n, 3) in the frame of the hub, mm. distances: (n,) from the base surface, mm.
+    triangles: (m, 3) with outward normals; each edge has two triangles. Raises InputError
+    'OPEN_MESH' with the position of an edge that does not have two triangles.
     """
 
     def __init__(
@@ -70,10 +73,11 @@ class Facets:
         ]
 
     def _edges(self) -> Edges:
-        """Return, for each edge (k, 4), its two vertices and its two triangle sides.
+        """Return the two vertices and the two triangle sides of each edge (k, 4).
 
-        A side is 3 triangle + side, doubled, plus 1 where the triangle follows the edge. All
-        values are in one array, because a cut touches edges all over the memory.
+        A triangle side is encoded as 2 (3 triangle + side), plus 1 if the triangle has the
+        direction of the edge. All values are in one array, because a cut accesses edges in random
+        order.
         """
         following, count = self.triangles[:, [1, 2, 0]], len(self.vertices)
         low, high = np.minimum(self.triangles, following), np.maximum(self.triangles, following)
@@ -105,7 +109,10 @@ class Facets:
         return edges
 
     def cut(self, distance: float, chord_error: float) -> list[Loop]:
-        """The loops in which the equidistant surface at `distance` mm cuts the mesh, in a fixed order."""
+        """Return the loops in which the equidistant surface at `distance` mm cuts the mesh.
+
+        The order of the loops is reproducible.
+        """
         inside = self.distances < distance
         once = np.flatnonzero((self.lower < distance) & (self.upper >= distance))
         twice = self.dips[(self.least < distance) & (self.lower[self.dips] >= distance)]
@@ -125,16 +132,14 @@ class Facets:
         return loops
 
     def offset_loops(self, loops: Sequence[Loop], distance: float) -> list[Loop]:
-        """Move loops along the normals of the surface."""
+        """Move loops along the normals of the base surface by `distance` mm."""
         return [
             Loop(loop.points + distance * self.surface.normals(loop.points), loop.turns)
             for loop in loops
         ]
 
     def _least_on_edges(self) -> tuple[Index, Array]:
-        """Return the edges (k,) that come nearest to the base between their ends, and their
-        distances (k,), mm.
-        """
+        """Return the edges (k,) whose minimum distance is between the ends, and the minima (k,), mm."""
         maybe = self._may_dip()
         p, q = (self.vertices.take(self.edges[maybe, k], axis=0) for k in range(2))
         direction = q - p
@@ -144,8 +149,8 @@ class Facets:
         closest = (p[:, 0] * direction[:, 1] - p[:, 1] * direction[:, 0]) ** 2 / np.maximum(
             level, 1e-300
         )
-        # rho = sqrt(closest + level (t - t0)^2), closest being the line's squared distance from the axis;
-        # at the least d/dt (cos rho + sin z) = 0
+        # rho = sqrt(closest + level (t - t0)^2), where closest is the squared distance of the line
+        # from the axis; at the minimum d/dt (cos rho + sin z) = 0
         slope = -sin * direction[:, 2] / np.maximum(cos * np.sqrt(level), 1e-300)
         turning = (np.abs(slope) < 1.0) & (level > 0.0)
         reach = (
@@ -160,21 +165,22 @@ class Facets:
         )
 
     def _may_dip(self) -> Index:
-        """Return the edges along which the distance falls first and rises last, or nearly so."""
+        """Return the edges whose distance falls at the start and rises at the end, or nearly."""
         x, y, z = columns(self.vertices)
         rho = np.hypot(x, y)
         start, end = (self.edges[:, k].astype(np.intp) for k in range(2))
         across = x.take(start) * x.take(end) + y.take(start) * y.take(end)
         start_rho, end_rho = rho.take(start), rho.take(end)
         rise = np.tan(self.surface.taper) * (z.take(end) - z.take(start))
-        # rho times the slope at either end, over cos(a); its rounding error is tiny relative to its terms
+        # rho times the slope at either end, divided by cos(taper), with an error bound relative to
+        # its terms
         begins = across - start_rho * start_rho + rise * start_rho
         ends = end_rho * end_rho - across + rise * end_rho
         hair = ROUNDING * (start_rho + end_rho + np.abs(rise)) * (start_rho + end_rho)
         return np.flatnonzero((begins < hair) & (ends > -hair))
 
     def _pierced(self) -> tuple[Index, Array]:
-        """Return the faces pierced by the axis, and the points (k, 3)."""
+        """Return the faces pierced by the axis, and the piercing points (k, 3), mm."""
         x, y = (column.take(self.triangles.T) for column in columns(self.vertices[:, :2]))
         sides = [x[k] * y[(k + 1) % 3] - y[k] * x[(k + 1) % 3] for k in range(3)]
         pierced = np.flatnonzero(
@@ -186,7 +192,7 @@ class Facets:
         return pierced, np.stack([np.zeros(len(z)), np.zeros(len(z)), z], axis=1)
 
     def _islands(self, distance: float) -> list[tuple[int, Array]]:
-        """Return faces cut in a closed curve that meets no edge, with a point inside the curve."""
+        """Return the faces with a closed cut that crosses no edge, with a point inside each cut."""
         if not len(self.pierced):
             return []
         low = self.surface.distance(self.piercing) < distance
@@ -196,9 +202,7 @@ class Facets:
         return [(int(self.pierced[k]), self.piercing[k]) for k in np.flatnonzero(low & clear)]
 
     def _crossings(self, single: Edges, double: Edges, inside: Mask, distance: float) -> Array:
-        """Return the points (k, 3) where edges are crossed; for edges crossed twice, both points in
-        the edge's direction.
-        """
+        """Return the crossings (k, 3) of edges, mm; double crossings are ordered along the edge."""
         start, end = single[:, 0], single[:, 1]
         starts_inside = inside.take(start)
         outer, inner = np.where(starts_inside, end, start), np.where(starts_inside, start, end)
@@ -215,8 +219,9 @@ class Facets:
         return np.vstack([once, pairs.reshape(-1, 3)])
 
     def _first_intersection(self, outer: Array, target: Array, distance: float) -> Array:
-        """Return where lines from points outside first meet the surface: Newton on a convex function
-        never oversteps.
+        """Return the first intersections of lines from outside points with the equidistant surface.
+
+        Newton's method on a convex function does not overshoot.
         """
         direction = target - outer
         t = np.zeros(len(outer))
@@ -239,14 +244,14 @@ class Facets:
         distance: float,
         chord_error: float,
     ) -> Array:
-        """Return the nodes of a loop in order, with points added where a chord would leave the cut."""
+        """Return the nodes of a loop in order, with points added to keep the chord error."""
         points, normal = nodes[chain], self._normals(face[chain])
         gap = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
         points, normal = points[gap > MIN_EDGE_MM], normal[gap > MIN_EDGE_MM]
         arcs: Index = np.arange(len(points))
         for _ in range(HALVINGS):
             start, end = points[arcs], points[(arcs + 1) % len(points)]
-            # the part below the cone is convex: it fills the space between chord and cut, left of the course
+            # the part below the cone is convex, so that the cut is on one side of each chord
             side = _cross_products(normal[arcs], end - start)
             width = np.linalg.norm(side, axis=1)
             side /= np.maximum(width, 1e-300)[:, None]
@@ -263,7 +268,7 @@ class Facets:
         return points
 
     def _push_out(self, points: Array, direction: Array, distance: float) -> Array:
-        """Move points inside along unit vectors (k, 3) out to the surface."""
+        """Move inside points outwards along unit vectors (k, 3) to the equidistant surface."""
         t = np.zeros(len(points))
         start, along = columns(points), columns(direction)
         for _ in range(NEWTON):
@@ -275,9 +280,9 @@ class Facets:
         return np.asarray(points + t[:, None] * direction)
 
     def _cut_about_axis(self, face: int, spot: Array, distance: float, chord_error: float) -> Loop:
-        """Return the closed cut about the axis in a facet that it pierces.
+        """Return the closed cut around the axis in a facet that the axis pierces.
 
-        The solid is on the side from which the facet faces away.
+        The solid is on the inner side of the facet.
         """
         normal = self._normals(np.array([face]))[0]
         radius = self.surface.radius + distance
@@ -288,7 +293,7 @@ class Facets:
         directions = np.stack([np.cos(angle), np.sin(angle), np.zeros(count)], axis=1)
         directions[:, 2] = -(directions[:, :2] @ normal[:2]) / normal[2]
         directions /= np.linalg.norm(directions, axis=1)[:, None]
-        # slightly off the axis, where the distance has its kink
+        # start slightly off the axis, where the gradient of the distance is discontinuous
         points = self._push_out(spot + 1e-9 * radius * directions, directions, distance)
         return Loop(points if normal[2] < 0.0 else points[::-1], -1 if normal[2] > 0.0 else 1)
 
@@ -306,15 +311,15 @@ class Facets:
 
 
 def _link_nodes(single: Edges, double: Edges, inside: Mask, count: int) -> tuple[Index, Index]:
-    """Return the node (count,) after each node with the solid to its left, and the face between
-    them.
+    """Return the successor (count,) of each node and the face in between; the solid is on the left.
 
-    single, double: edges crossed once and twice, whose nodes come in this order.
+    single, double: edges crossed once and twice; nodes are numbered in this order.
     """
     once = np.repeat(np.arange(len(single)), 2)
     position = single[:, 2:].ravel()
     forward = (position & 1).astype(bool)
-    # the start of an edge crossed once decides whether the cut goes in or out; along an edge crossed twice it goes in, then out
+    # on an edge crossed once, the start determines whether the edge enters or leaves the cut; an
+    # edge crossed twice enters first, then leaves
     out = np.repeat(inside.take(single[:, 0]), 2) == forward
     position = position & ~1
     if len(double):
@@ -326,7 +331,7 @@ def _link_nodes(single: Edges, double: Edges, inside: Mask, count: int) -> tuple
         out = np.r_[out, np.zeros(len(again), dtype=bool), np.ones(len(again), dtype=bool)]
     order = np.argsort(position)
     node, out, face = once[order], out[order], position[order] // 6
-    # the next crossing of the same face; after the last one the first
+    # next crossing of the face; the last crossing is followed by the first
     is_last = np.r_[face[1:] != face[:-1], True]
     next_node = np.r_[node[1:], -1]
     next_node[is_last] = node[np.r_[True, is_last[:-1]]]
@@ -338,21 +343,23 @@ def _link_nodes(single: Edges, double: Edges, inside: Mask, count: int) -> tuple
 
 
 def _cross_products(u_rows: Array, v_rows: Array) -> Array:
-    """Return vector products of rows (k, 3), at a third of the cost of numpy for a few thousand."""
+    """Return cross products of rows (k, 3), three times as fast as numpy for a few thousand rows."""
     (a, b, c), (u, v, w) = columns(u_rows), columns(v_rows)
     return np.stack([b * w - c * v, c * u - a * w, a * v - b * u], axis=1)
 
 
-STEP = math.radians(11.0)
-TRIES = 360
-CLEARANCE_RATIO = 2.0  # chord errors; clearance of a cut from facets in its surface
-TOUCH = 0.004  # chord errors of cuts; a face closer than this to a surface touches it
-REACH = 0.05  # mm; a solid that begins no further from a surface is based on it
+STEP = math.radians(11.0)  # step between candidate azimuths of the seam
+TRIES = 360  # number of candidate azimuths
+CLEARANCE_RATIO = 2.0  # in chord errors; clearance of a cut from coincident facets
+TOUCH = 0.004  # in chord errors of cuts; a face closer to a surface touches this surface
+REACH = 0.05  # mm; maximum gap between a solid and a surface that it stands on
 
 
 class Flat(NamedTuple):
-    """Unrolled borders (n, 2) mm of layers, the solid to their left; middle: azimuth (rad) of x
-    = 0.
+    """Unrolled layers.
+
+    borders: borders (n, 2) of each layer, mm, with the solid on the left. middle: azimuth of x = 0,
+    rad.
     """
 
     borders: list[list[Array]]
@@ -360,9 +367,9 @@ class Flat(NamedTuple):
 
 
 def count(facets: Facets, height: float, margin: float, chord_error: float) -> int:
-    """Return the number of layers.
+    """Return the number of layers of a solid.
 
-    Layers are at 0, `height`, twice that ... mm from the base.
+    Layers are at 0, h, 2 h ... mm from the base.
 
     Parameters
     ----------
@@ -373,24 +380,24 @@ def count(facets: Facets, height: float, margin: float, chord_error: float) -> i
     margin : float
         Machining margin above the solid, mm.
     chord_error : float
-        Chord error, mm; a rest of this order gets no layer.
+        Chord error, mm; a remainder of this order gets no layer.
 
     Returns
     -------
     int
-        The number.
+        Number of layers.
     """
     top = float(facets.distances.max()) + margin
     return step_count(top - CLEARANCE_RATIO * chord_error, height, 0)
 
 
 def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:
-    """Return the loops of a solid just outside an equidistant surface, moved onto it.
+    """Cut a solid near an equidistant surface and move the loops onto this surface.
 
-    Where facets coincide with that surface, as the foot of a blade with its hub, or the solid
-    begins slightly outside it, the cut is further out: noise would decide a cut through them. A
-    face that only touches the surface, as a flat top along a generatrix, touches it within
-    TOUCH after rounding: it is not cut.
+    The cut is slightly outside the surface if facets coincide with the surface, such as the foot of
+    a blade with the hub, or if the solid begins slightly outside. Otherwise noise would decide the
+    cut. In all other cases the cut is TOUCH inside, so that a face that only touches the surface,
+    such as a flat top along a generatrix, is not cut.
 
     Parameters
     ----------
@@ -419,7 +426,9 @@ def cut(facets: Facets, distance: float, chord_error: float) -> list[Loop]:
 def unroll_layers(
     surface: Developable, layers: Sequence[Sequence[Loop]], centre: float, where: str
 ) -> Flat:
-    """Unroll loops of layers moved onto one surface, none of which goes around it, together.
+    """Unroll the loops of layers together, after they were moved onto one surface.
+
+    No loop goes around the surface.
 
     Parameters
     ----------
@@ -428,7 +437,7 @@ def unroll_layers(
     layers : sequence of sequence of Loop
         Loops of each layer.
     centre : float
-        Azimuth opposite to which they are cut open, if possible, rad.
+        Azimuth opposite to the preferred seam, rad.
     where : str
         Name for messages.
 
@@ -440,7 +449,8 @@ def unroll_layers(
     Raises
     ------
     InputError
-        TOO_FAR_ROUND if a contour winds so far around a cone that it would overlap itself.
+        TOO_FAR_ROUND if a contour winds so far around a cone that its unrolled image overlaps
+        itself.
     """
     loops = [loop for layer in layers for loop in layer]
     azimuths = [_unwrap_azimuths(loop.points, surface) for loop in loops]
@@ -472,9 +482,7 @@ def _in_one_piece(
     centre: float,
     where: str,
 ) -> tuple[Array, ...]:
-    """Unroll loops by azimuths beyond a turn; holes are moved by whole turns into the contours
-    around them.
-    """
+    """Unroll loops with azimuths beyond one turn; holes move by full turns into their contours."""
     shifted = [
         azimuth - centre - TURN * np.round((azimuth.mean() - centre) / TURN) for azimuth in azimuths
     ]

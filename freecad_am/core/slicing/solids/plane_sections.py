@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sections of a closed mesh with parallel planes, all at once.
+"""Cut a closed mesh by parallel planes, all at once.
 
-A vertex on a plane always counts as above it: an edge is crossed once or not at all, a
-triangle in two of its edges or in none, so loops close whatever is in the plane:
-vertices, edges, whole faces. The result is the limit of sections from just below.
-Crossings of edges are computed once for the two adjacent triangles. A loop goes from the
-edge where it enters a triangle to the one where it leaves it, with the solid to its left.
+A vertex on a plane always counts as above the plane. A plane therefore crosses an edge once or not
+at all, and a triangle in two edges or none, so that loops close even if vertices, edges or faces
+are in the plane. The result is the limit of sections from just below. Crossings of edges are
+computed once for both adjacent triangles. A loop runs from the edge where it enters a triangle to
+the edge where it leaves the triangle, with the solid on the left.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ import numpy as np
 from ...geometry.mesh.triangle_mesh import chains
 from ...types import Array, Index, Mask
 
-MAX_SIDES = 16  # pairs of triangles that meet in an edge
-BLOCK_SIZE = 1_000_000  # crossings of planes worked on together; bounds the memory
+MAX_SIDES = 16  # maximum number of triangle pairs at an edge
+BLOCK_SIZE = 1_000_000  # number of crossings processed together; limits memory
 
 
 def _pair_keys(key: Index, forward: Mask) -> Index:
-    """Return numbers (n,) of edges from their keys and the senses of the triangles along them.
+    """Return unique keys (n,) of edges from their vertex keys and the sense of the triangles.
 
-    Where a solid touches itself along an edge, so that four or more triangles meet there,
-    each number belongs to two of them, one of either sense. The choice does not matter: loops
-    that touch bound the same area in any case.
+    If a solid touches itself along an edge, four or more triangles meet there. Each unique key then
+    belongs to two triangles of opposite sense. The pairing does not matter, because touching loops
+    bound equal areas in any case.
     """
     order = np.lexsort((forward, key))
     alike = np.r_[
@@ -40,10 +40,10 @@ def _pair_keys(key: Index, forward: Mask) -> Index:
 
 
 class PlaneCuts:
-    """A mesh prepared for sections z = constant.
+    """Mesh prepared for sections z = constant.
 
-    vertices (n, 3) mm; faces (m, 3), every edge between equally many of either sense;
-    triangles: the faces that planes can cross.
+    vertices: (n, 3), mm. faces: (m, 3); each edge has equal numbers of faces of either sense.
+    triangles: faces that are not horizontal.
     """
 
     def __init__(self, vertices: Array, faces: Index) -> None:
@@ -65,7 +65,7 @@ class PlaneCuts:
 
     @property
     def top(self) -> float:
-        """The largest height, mm."""
+        """Maximum height, mm."""
         return float(self.vertices[:, 2].max())
 
     def loops(self, heights: Sequence[float] | Array) -> Iterator[list[Array]]:
@@ -74,17 +74,17 @@ class PlaneCuts:
         Parameters
         ----------
         heights : (k,) array
-            Rising heights, mm.
+            Ascending heights, mm.
 
         Yields
         ------
         list of (n, 2) array
-            Closed loops in mm, first point not repeated, the solid on their left from
+            Closed loops, mm, without repeated first point; the solid is on the left as seen from
             above.
         """
         planes = np.asarray(heights, dtype=np.float64)
         z = self.vertices[:, 2]
-        # for each edge: the planes above its lower end and not above its upper end
+        # range of planes that cross each edge: above the lower end and not above the upper end
         begin = np.searchsorted(planes, z[self._lower], side="right")
         end = np.searchsorted(planes, z[self._upper], side="right")
         per_plane = np.cumsum(
@@ -101,7 +101,7 @@ class PlaneCuts:
     def _block(
         self, planes: Array, start: int, stop: int, begin: Index, end: Index
     ) -> list[list[Array]]:
-        """Return the loops of the planes from start to stop, exclusive."""
+        """Return the loops of the planes start to stop, with stop excluded."""
         low, high = np.clip(begin, start, stop), np.clip(end, start, stop)
         count = high - low
         crossed = np.flatnonzero(count)
@@ -120,14 +120,15 @@ class PlaneCuts:
         return loops_of_plane
 
     def _places(self, edge: Index, height: Array) -> Array:
-        """Where edges are crossed at heights (n,): (n, 2) mm, worked out from the lower end."""
+        """Return the crossings (n, 2), mm, of edges at heights (n,), from the lower ends."""
         below, above = self.vertices[self._lower[edge]], self.vertices[self._upper[edge]]
         share = (height - below[:, 2]) / (above[:, 2] - below[:, 2])
         return np.asarray(below[:, :2] + share[:, None] * (above[:, :2] - below[:, :2]))
 
     def _link(self, planes: Array, start: int, stop: int, offset: Index, following: Index) -> None:
-        """Fill in the successor of each node: from the side on which a triangle descends to the side
-        on which it ascends.
+        """Set the successor of each node, in place.
+
+        A loop runs from the descending to the ascending side of a triangle.
         """
         z = self.vertices[:, 2][self.triangles]
         low = np.clip(np.searchsorted(planes, z.min(axis=1), side="right"), start, stop)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The cylinder or cone under each solid: the one that cuts it in the longest contour."""
+"""Assign each solid to the cylinder or cone with the longest contact contour."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from ...issues import InputError, Issue, Text, Word
 from ...types import Array, Mask
 from .equidistant import Facets, cut
 
-STEP = 2.0  # mm between test points on the surface of a solid
-DEEP = 5.0  # times the chord error of the meshes, that solids may reach into one another: touching ones do
+STEP = 2.0  # mm; distance between test points on the surface of a solid
+DEEP = 5.0  # in chord errors; tolerated overlap, because meshes of touching solids overlap
 
 
 def refuse_overlaps(groups: Sequence[Group], chord_error: float) -> None:
     """Raise InputError OVERLAP if solids overlap outside their base surfaces.
 
-    chord_error: mm between the triangles and the solids. Overlaps smaller than STEP may be
+    chord_error: distance between triangles and solids, mm. Overlaps smaller than STEP can be
     missed.
     """
     standing = [(group.base, body) for group in groups for body in group.bodies]
@@ -51,18 +51,19 @@ def refuse_overlaps(groups: Sequence[Group], chord_error: float) -> None:
 def _deepest_overlap(
     probed: Body, against: Body, box: tuple[Array, Array], bases: Sequence[Base], deep: float
 ) -> Array | None:
-    """Return the point (3,), on or slightly below the surface of `probed`, deepest in `against`;
-    None if none is deeper than `deep`.
+    """Return the deepest point (3,) in `against` on or slightly below the surface of `probed`.
+
+    Returns None if no point is deeper than `deep` mm.
     """
     corners = probed.corners()
-    # faces in a side of the box count: points below them may be inside the other solid
+    # include faces in a side of the box, because points below them may be inside the other solid
     corners = corners[
         ((corners.min(axis=1) <= box[1]) & (corners.max(axis=1) >= box[0])).all(axis=1)
     ]
     points, triangle = divide_triangles(corners, STEP)
     normal = doubled_areas(corners)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
-    # coincident surfaces are ambiguous: test points below them
+    # test also points below the surface, because coincident surfaces are ambiguous
     points = np.vstack([corners.reshape(-1, 3), points, points - 2.0 * deep * normal[triangle]])
     points = points[((points > box[0]) & (points < box[1])).all(axis=1)]
     for base in bases:
@@ -81,8 +82,8 @@ def _searched(body: Body) -> Search:
     return SolidMesh(body.vertices, body.triangles.astype(np.intp)).searched(STEP)
 
 
-UNITS = ((25.4, "inches"), (10.0, "cm"), (1000.0, "m"))  # mm of one
-PAST_END_MM = 0.05  # mm past the ends of a face at which a solid is still based on it
+UNITS = ((25.4, "inches"), (10.0, "cm"), (1000.0, "m"))  # unit in mm, and name
+PAST_END_MM = 0.05  # mm; distance beyond the ends of a face within which a solid still stands on it
 
 
 def group_by_base(
@@ -94,7 +95,7 @@ def group_by_base(
     hub: str = "",
     unitless: Sequence[Body] = (),
 ) -> SolidsOnHub:
-    """Group bodies by the base with the longest contour.
+    """Group bodies by base; a body belongs to the base with the longest contact contour.
 
     Parameters
     ----------
@@ -109,19 +110,19 @@ def group_by_base(
     issues : tuple of Issue, optional
         Issues to attach.
     hub : str, optional
-        Name of the object that has the bases, for errors, if it is not the bodies' own.
+        Name of the object with the bases, for errors, if different from `label`.
     unitless : sequence of Body, optional
-        Bodies of files without a unit.
+        Bodies from files without units.
 
     Returns
     -------
     SolidsOnHub
-        The groups, ordered up the axis of the first base.
+        The groups, ordered by height along the axis of the first base.
 
     Raises
     ------
     InputError
-        NOT_ON_HUB for a solid that is on no base, NO_BASE if there is no base, OVERLAP.
+        NOT_ON_HUB for a solid that is on no base, NO_BASE without bases, OVERLAP.
     """
     if not seats:
         raise InputError(
@@ -205,9 +206,7 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
 
 
 def _unit_hint(body: Body, seats: Sequence[Seat]) -> str:
-    """Return a hint if the body would reach a base from both sides with its numbers in another
-    unit.
-    """
+    """Return a hint if the body would intersect a base with its coordinates in another unit."""
     for factor, unit in UNITS:
         for seat in seats:
             vertices = seat.base.inside(factor * body.vertices)
@@ -236,7 +235,7 @@ def _near(seat: Seat, points: Array, all_round: bool = False) -> Mask:
 def hub_among(
     bodies: Sequence[Body], seats: Sequence[Sequence[Seat]], chord_error: float, label: str
 ) -> int:
-    """Return the solid of a part that is the hub: the one that carries most of the others.
+    """Find the solid that is the hub of a part: the solid that carries most other solids.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers at the layer height, point by point, from the nearest point of the curve below.
+"""Layers at a constant distance from the nearest point of the layer below.
 
-Chalvin 2019, equations 5 and 6, solved as one system: instead of a search over Delta_ij
-that recomputes a distance each time, Newton finds the height u on the line v = const
-together with the nearest position w below. Corners, where smooth stretches of the front
-meet, are found separately and kept (errata).
+Equations 5 and 6 of Chalvin 2019 are solved as one system. Instead of searching over Delta_ij and
+recomputing a distance in each step, Newton's method solves for the height u on the line v = const
+and the nearest position w below. Corners between smooth stretches of the front are computed
+separately and kept (errata).
 """
 
 from __future__ import annotations
@@ -21,19 +21,16 @@ from ..smoothest_heights import refuse_too_many
 from .offset import Offset, Places
 from .smooth_spacing import WallLayer
 
-AT_CORNER = 1e-9  # of the period; a grid point this near to a corner is the corner
-ABOVE = (
-    1e-9  # of u: a third branch that overtops a crossing by more means that it is not the corner
-)
-MIN_INTERVAL = (
-    1e-9  # of the period; a change of branch in a narrower stretch is a corner in its middle
-)
+AT_CORNER = 1e-9  # fraction of the period; grid points this close to a corner are replaced by it
+ABOVE = 1e-9  # relative to u; a crossing is no corner if a third branch is higher by more
+# fraction of the period; a change of branch in a narrower interval is a corner at its midpoint
+MIN_INTERVAL = 1e-9
 
 
 def next_layer(
     surface: Surface, below: WallLayer, height: float, grid: Array, label: str = "wall"
 ) -> WallLayer:
-    """Return the layer at a distance from the curve of the layer below.
+    """Compute the layer at a constant distance from the layer below.
 
     Parameters
     ----------
@@ -44,8 +41,8 @@ def next_layer(
     height : float
         The distance, mm.
     grid : (n,) array
-        Rising values of v from one seam to the next; nodes are added at corners and where
-        cubic arcs would not follow the front.
+        Ascending values of v from one seam to the next. Nodes are added at corners and where cubic
+        arcs deviate from the front.
     label : str, optional
         Name of the wall, for messages.
 
@@ -57,7 +54,7 @@ def next_layer(
     Raises
     ------
     InputError
-        LAYER_HEIGHT if no point of a line v = const has that distance.
+        LAYER_HEIGHT if a line v = const has no point at this distance.
     """
     offset = Offset(surface, below.curve, below.u, height)
     period = grid[-1] - grid[0]
@@ -88,7 +85,7 @@ def layers(
     points: int = 360,
     label: str = "wall",
 ) -> list[WallLayer]:
-    """Return all layers from the first to the first one wholly past an end.
+    """Compute all layers, from the first layer to the first one completely beyond the end.
 
     Parameters
     ----------
@@ -101,19 +98,19 @@ def layers(
     u_end : float
         End of the wall in u.
     points : int, optional
-        Smallest number of points of a layer.
+        Minimum number of points per layer.
     label : str, optional
         Name of the wall, for messages.
 
     Returns
     -------
     list of WallLayer
-        The layers, `first_layer` included.
+        The layers, including `first_layer`.
 
     Raises
     ------
     InputError
-        LAYER_HEIGHT as `next_layer`, or for too many layers.
+        LAYER_HEIGHT as in `next_layer`, or for too many layers.
     """
     grid = first_layer.v[0] + (first_layer.v[-1] - first_layer.v[0]) * np.linspace(
         0.0, 1.0, points + 1
@@ -141,7 +138,7 @@ def _evaluate_offset(offset: Offset, v: Array, height: float, label: str) -> Pla
 
 
 class _Corners(NamedTuple):
-    """v, u and the slopes du/dv on either side of corners, (k,)."""
+    """Corners: v, u and the slopes du/dv before and after each corner, (k,)."""
 
     v: Array
     u: Array
@@ -150,8 +147,9 @@ class _Corners(NamedTuple):
 
 
 def _corners(offset: Offset, v: Array, positions: Places, period: float) -> tuple[_Corners, Array]:
-    """Return the corners between neighbours on different branches, and values of v to evaluate
-    where this is not yet clear.
+    """Find the corners between neighbouring points on different branches.
+
+    Also returns values of v to evaluate where a corner cannot be located yet.
     """
     jumps = np.flatnonzero(np.diff(positions.run) != 0)
     jumps = jumps[[not _smooth(offset, positions, int(i)) for i in jumps]] if len(jumps) else jumps
@@ -178,7 +176,7 @@ def _corners(offset: Offset, v: Array, positions: Places, period: float) -> tupl
 
 
 def _smooth(offset: Offset, positions: Places, i: int) -> bool:
-    """Return True where a branch continues into the sphere about its own end: no corner."""
+    """Whether a branch continues smoothly into the fan at its end, without a corner."""
     run_before, run_after = offset.runs[positions.run[i]], offset.runs[positions.run[i + 1]]
     if run_before.fan == run_after.fan:
         return False
@@ -191,9 +189,7 @@ def _smooth(offset: Offset, positions: Places, i: int) -> bool:
 def _assemble_layer(
     surface: Surface, offset: Offset, v: Array, positions: Places, corner: _Corners, period: float
 ) -> WallLayer:
-    """Return the layer through the positions and the corners, which replace neighbours that
-    coincide.
-    """
+    """Build the layer through positions and corners; corners replace coincident positions."""
     where, u, into, out = corner
     start, end = v[0], v[-1]
     neighbour = np.searchsorted(np.sort(where), v)

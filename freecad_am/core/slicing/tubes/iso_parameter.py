@@ -16,7 +16,7 @@ STEPS = 40
 
 
 def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "wall") -> WallLayer:
-    """Return the layer whose points are at a chord from points below with the same v.
+    """Compute the layer at a constant chord length from the points below with equal v.
 
     The chord is measured in space.
 
@@ -27,7 +27,7 @@ def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "
     below : WallLayer
         The layer below.
     height : float
-        The chord, mm.
+        The chord length, mm.
     label : str, optional
         Name of the wall, for messages.
 
@@ -39,11 +39,11 @@ def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "
     Raises
     ------
     InputError
-        LAYER_HEIGHT if the wall bends too sharply for such a point to exist.
+        LAYER_HEIGHT if the wall bends too sharply for such a layer.
 
     References
     ----------
-    Chalvin 2019, equation 2, whose closed form this is on a torus.
+    Chalvin 2019, equation 2, which is the closed form for a torus.
     """
     v, u, into, out = below.v, below.u, *below.slopes(surface)
     for _ in range(ROUNDS):
@@ -60,7 +60,7 @@ def next_layer(surface: Surface, below: WallLayer, height: float, label: str = "
 def layers(
     surface: Surface, first_layer: WallLayer, height: float, u_end: float, label: str = "wall"
 ) -> list[WallLayer]:
-    """Return all layers from the first to the first one wholly past an end.
+    """Compute all layers, from the first layer to the first one completely beyond the end.
 
     Parameters
     ----------
@@ -69,7 +69,7 @@ def layers(
     first_layer : WallLayer
         The first layer.
     height : float
-        Chord from layer to layer, mm.
+        Chord length from layer to layer, mm.
     u_end : float
         End of the wall in u.
     label : str, optional
@@ -78,12 +78,12 @@ def layers(
     Returns
     -------
     list of WallLayer
-        The layers, `first_layer` included.
+        The layers, including `first_layer`.
 
     Raises
     ------
     InputError
-        LAYER_HEIGHT as `next_layer`, or for too many layers.
+        LAYER_HEIGHT as in `next_layer`, or for too many layers.
     """
     wall_layers = [first_layer]
     while wall_layers[-1].u.min() < u_end:
@@ -95,8 +95,9 @@ def layers(
 def _step(
     surface: Surface, v: Array, u: Array, slopes: tuple[Array, Array], height: float, label: str
 ) -> tuple[Array, tuple[Array, Array]]:
-    """Return the new u (m,) and its slopes on either side, from the implicit derivative of the
-    chord.
+    """Return the new u (m,) and the slopes du/dv before and after each node.
+
+    Slopes are implicit derivatives of the chord equation.
     """
     base, along, around = surface.derivatives(u, v)
     new = u + height / np.linalg.norm(along, axis=1)

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers in planes normal to the centreline of a tube: the former multi-axis slicing of
-tubes (Chalvin 2018).
+"""Layers in planes normal to the centreline of a tube (Chalvin 2018), for comparison.
 
-Planes a layer height apart along the centreline open up like a fan on the outside of a
-bend and close on its inside; they serve for comparison. On a torus their local distance
-is 2 rho sin(h / 2R) at the outside (rho = R + r) and at the inside (rho = R - r) of the
-bend.
+The planes are one layer height apart along the centreline. In a bend they fan out on the outside
+and converge on the inside. On a torus their local distance is 2 rho sin(h / 2R), with rho = R + r
+at the outside and rho = R - r at the inside of the bend.
 """
 
 from __future__ import annotations
@@ -21,19 +19,17 @@ from ...types import Array
 from ..smoothest_heights import refuse_too_many
 from .smooth_spacing import WallLayer
 
-SECTIONS, SAMPLES_AROUND = (
-    401,
-    256,
-)  # sections of the wall from whose middles the centreline is taken, and points of each
-EXTENSION_SHARE = 0.5  # of the wall's length, how far past its end the centreline is followed
-STEPS = 50
+# number of wall sections whose centroids define the centreline, and points per section
+SECTIONS, SAMPLES_AROUND = 401, 256
+EXTENSION_SHARE = 0.5  # fraction of the wall length; extension of the centreline beyond the wall
+STEPS = 50  # maximum number of Newton steps
 
 
 class Centreline(NamedTuple):
-    """The middles of the sections u = const.
+    """Line through the centroids of the sections u = const.
 
-    middle: points (n, 3) and, derived, tangents along u. u_at_length: u at a length (mm)
-    along it.
+    middle: spline of the centroids (3,), mm, over u. u_at_length: u as a function of the length
+    along the centreline, mm.
     """
 
     middle: CubicSpline
@@ -41,7 +37,7 @@ class Centreline(NamedTuple):
 
 
 def centreline(surface: Surface, low: float, high: float) -> Centreline:
-    """Return the centreline of a wall closed around.
+    """Compute the centreline of a wall that is closed in v.
 
     Parameters
     ----------
@@ -65,9 +61,8 @@ def centreline(surface: Surface, low: float, high: float) -> Centreline:
     u = np.linspace(low, high, SECTIONS)
     v = surface.period * np.arange(SAMPLES_AROUND) / SAMPLES_AROUND
     points, _, around = surface.derivatives(*np.meshgrid(u, v, indexing="ij"))
-    share = np.linalg.norm(
-        around, axis=-1, keepdims=True
-    )  # each point is weighted by the length of curve that it represents
+    # weight each point by the curve length that it represents
+    share = np.linalg.norm(around, axis=-1, keepdims=True)
     middle = CubicSpline(u, (points * share).sum(axis=1) / share.sum(axis=1))
     x, weight = np.polynomial.legendre.leggauss(5)
     step = np.diff(u)[:, None]
@@ -84,10 +79,10 @@ def layers(
     points: int = 360,
     label: str = "wall",
 ) -> list[WallLayer]:
-    """Return the curves in planes at equal distances along the centreline.
+    """Compute the layers in planes at equal distances along the centreline.
 
-    They start at the lowest point of `first_layer`; where they are below it there is nothing to
-    deposit.
+    The first plane is at the lowest point of `first_layer`. Parts of a layer below `first_layer`
+    need no deposit.
 
     Parameters
     ----------
@@ -100,27 +95,26 @@ def layers(
     u_end : float
         End of the wall in u.
     points : int, optional
-        Number of points around.
+        Number of points per layer.
     label : str, optional
         Name of the wall, for messages.
 
     Returns
     -------
     list of WallLayer
-        The curves, up to the first one wholly past `u_end`.
+        The layers, up to the first layer completely beyond `u_end`.
 
     Raises
     ------
     InputError
-        NOT_NORMAL if a plane does not cut every line v = const of the wall once, near its
-        own section.
+        NOT_NORMAL if the search finds no intersection of a plane with a line v = const of the wall.
 
     References
     ----------
     Chalvin 2018.
     """
     low = float(first_layer.u.min())
-    # past its end the wall continues, at least straight, so the last planes cut it all around
+    # the wall is extrapolated beyond its end, so that the last planes cut it all around
     middle, u_at_length = centreline(surface, low, u_end + EXTENSION_SHARE * (u_end - low))
     v = first_layer.v[0] + (first_layer.v[-1] - first_layer.v[0]) * np.linspace(
         0.0, 1.0, points + 1
@@ -142,7 +136,7 @@ def layers(
 def _in_plane(
     surface: Surface, v: Array, start: float, origin: Array, normal: Array, label: str
 ) -> WallLayer:
-    """The curve in which a plane cuts the wall, by Newton along each line v = const."""
+    """Intersect a plane with the wall, by Newton's method along each line v = const."""
     u = np.full(len(v), start)
     for _ in range(STEPS):
         point, along, around = surface.derivatives(u, v)

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The curve on a wall at a constant distance in space from another: its smooth branches,
-before trimming.
+"""Smooth branches of a curve on a wall at a constant distance from another curve, before trimming.
 
-With w along the curve below, a point of the wall at the distance h in the plane normal to
-the curve at C(w) is P(w) with |P - C|^2 = h^2 and (P - C).C' = 0. The v of P follows from
-this: where the front gathers, v falls as w rises (the focusing number 1 - (P -
-C).C''/|C'|^2 is negative there) and those points are nearer to other positions of the
-curve. The position C(w) whose sphere reaches highest up the line v = const carries the
-new layer. The layer is therefore the upper envelope over the *runs*, the stretches with a
-positive focusing number, and over the *fans*, spheres about convex corners.
+Let w be the parameter of the curve C below. The point P(w) of the wall at distance h in the normal
+plane of the curve satisfies |P - C|^2 = h^2 and (P - C).C' = 0. Where the front focuses, v of P
+falls with rising w: the focusing number 1 - (P - C).C''/|C'|^2 is negative, and the points are
+closer to other positions of the curve. The new layer at v = const is determined by the position
+C(w) whose sphere reaches the highest u. The layer is therefore the upper envelope of the *runs*,
+stretches with a positive focusing number, and of the *fans*, spheres about convex corners.
 """
 
 from __future__ import annotations
@@ -21,20 +19,18 @@ from ...geometry.curves.space_curve import SpaceCurve
 from ...geometry.walls.surface import Surface, dot
 from ...types import Array, Index, Mask
 
-STEPS = 25
-CONVERGED = 1e-11  # of the layer height
-GATHERING = 0.6  # focusing numbers below this call for a closer look between the nodes
-TIE = (
-    1e-9  # mm; branches whose heights differ less meet there: the one that comes first in v counts
-)
+STEPS = 25  # maximum number of Newton steps
+CONVERGED = 1e-11  # in layer heights; convergence tolerance
+GATHERING = 0.6  # focusing number below which additional samples between nodes are needed
+TIE = 1e-9  # mm; between branches of equal height within this tolerance, the first in v is used
 
 
 class Run(NamedTuple):
-    """One stretch of a branch, v rising.
+    """Stretch of a branch with ascending v.
 
-    fan: all points belong to one corner. low, high: bounds of w. first_arc, last_arc: arcs of
-    the curve between its corners (last_arc = -1 without corners). shift: by which w and v
-    were moved, a period or none.
+    v, u, w: samples. fan: whether all points belong to one corner. low, high: bounds of w.
+    first_arc, last_arc: arcs of the curve between adjacent corners (last_arc = -1 without corners).
+    shift: multiple of the period by which v and w are shifted.
     """
 
     v: Array
@@ -49,7 +45,11 @@ class Run(NamedTuple):
 
 
 class Places(NamedTuple):
-    """Points of the new curve: u, du/dv and the place w on the curve below, (n,), and the run of each, -1 none."""
+    """Points (n,) of the new curve.
+
+    u: position on the wall. slope: du/dv. w: position on the curve below. run: index of the run, -1
+    for none.
+    """
 
     u: Array
     slope: Array
@@ -58,10 +58,10 @@ class Places(NamedTuple):
 
 
 class Offset:
-    """The curve on `surface` at `height` mm above `curve`, asked for at values of v."""
+    """Offset curve on `surface`, `height` mm from `curve`, evaluated at values of v."""
 
     def __init__(self, surface: Surface, curve: SpaceCurve, u: Array, height: float) -> None:
-        """curve: closed, its parameter v; u: (m,) at its nodes."""
+        """Prepare the runs; curve: closed, with parameter v; u: (m,) at the nodes of the curve."""
         corners = curve.corners
         if len(corners):
             u = np.r_[u[corners[0] : -1], u[: corners[0] + 1]]
@@ -74,7 +74,7 @@ class Offset:
         self.runs = self._runs(u)
 
     def evaluate(self, v: Array) -> Places:
-        """Return the uppermost branch of the offset curve.
+        """Evaluate the uppermost branch of the offset curve.
 
         Parameters
         ----------
@@ -84,7 +84,7 @@ class Offset:
         Returns
         -------
         Places
-            u, slope, w and run at each v; u is -inf and the run -1 without a branch.
+            u, slope, w and run at each v; without a branch u is -inf and run is -1.
         """
         target, run, u, w = self._candidates(v)
         u, w, sound = self._solve(v[target], u, w, run)
@@ -97,7 +97,7 @@ class Offset:
         target, run, u, w = target[sound], run[sound], u[sound], w[sound]
         scale = TIE / self.height
         order = np.lexsort((run, target))
-        for k in np.unique(run):  # runs come in the order of v
+        for k in np.unique(run):  # runs are sorted by v
             rows = order[run[order] == k]
             better = rows[u[rows] > result.u[target[rows]] + scale]
             for have, value in zip(result, (u, None, w, run)):
@@ -110,7 +110,7 @@ class Offset:
         return result
 
     def slopes(self, v: Array, u: Array, w: Array, run: Index) -> Array:
-        """Return the slopes of branches: a front moves at right angles to itself.
+        """Return the slopes of branches, which are normal to the direction to the curve below.
 
         Parameters
         ----------
@@ -134,27 +134,27 @@ class Offset:
     def crossings(
         self, low: Array, high: Array, u: Array, w: Array, run: Index
     ) -> tuple[Array, Array, Array]:
-        """Return where two branches meet.
+        """Find the intersections of pairs of branches.
 
         Parameters
         ----------
         low, high : (k,) array
-            Values of v between which they meet.
+            Bounds of v.
         u : (k,) array
-            Starting heights.
+            Initial values of u.
         w : (k, 2) array
-            Starting positions on the curve below, of the left and the right branch.
+            Initial positions on the curve below, of the left and the right branch.
         run : (k, 2) int array
-            Their runs.
+            Runs of the left and the right branch.
 
         Returns
         -------
         v : (k,) array
-            Where they meet; NaN if not between low and high.
+            v of the intersections; NaN if not between low and high.
         u : (k,) array
-            The heights.
+            u of the intersections.
         w : (k, 2) array
-            The positions on the curve below.
+            Positions on the curve below.
         """
         v, w = 0.5 * (low + high), w.copy()
         width = high - low
@@ -196,7 +196,7 @@ class Offset:
         return np.where(sound, v, np.nan), u, w
 
     def _below(self, w: Array, run: Index) -> tuple[Array, Array, Array]:
-        """Return the curve below and its derivatives at w, each branch on its own side of a corner."""
+        """Evaluate the curve below and its derivatives at w; at corners on the side of the run."""
         runs = self.runs
         shift = np.array([r.shift for r in runs])[run]
         last_arc = np.array([r.last_arc for r in runs])[run]
@@ -210,8 +210,9 @@ class Offset:
         return self.curve.evaluate_arcs(arc, (base - self.curve.w[arc]) / self.curve.span[arc])
 
     def _candidates(self, v: Array) -> tuple[Index, Index, Array, Array]:
-        """Return branches that may carry each v: targets, runs and starting values of u and w, all
-        (k,).
+        """Find the runs that may contain each v.
+
+        Returns indices of v, runs, and initial values of u and w, all (k,).
         """
         order = np.argsort(v, kind="stable")
         ordered = v[order]
@@ -228,7 +229,7 @@ class Offset:
                 continue
             u = np.interp(v[target], run.v, run.u)
             w = np.interp(v[target], run.v, run.w)
-            if run.fan:  # from above, where the sphere is certain to be met
+            if run.fan:  # start above, from where Newton's method certainly reaches the sphere
                 u = np.full(len(target), run.u.max()) + self._rise
             blocks.append((target, np.full(len(target), i, dtype=np.intp), u, w))
         if not blocks:
@@ -237,8 +238,9 @@ class Offset:
         return target, run_of, u, w
 
     def _solve(self, v: Array, u: Array, w: Array, run: Index) -> tuple[Array, Array, Mask]:
-        """Solve for u and w at fixed v by Newton; also returns which candidates converged on their
-        own branch.
+        """Solve for u and w at fixed v by Newton's method.
+
+        Also returns whether each candidate converged on its own branch.
         """
         fan = np.array([r.fan for r in self.runs], dtype=bool)[run]
         low, high = (np.array([r[k] for r in self.runs])[run] for k in (4, 5))
@@ -264,8 +266,9 @@ class Offset:
         return u, w, sound & (np.abs(skew) < 1e-7 * self.height * np.sqrt(dot(slope, slope)))
 
     def _forward(self, u: Array, arc: Index, t: Array) -> tuple[Array, Array, Array]:
-        """Return u, v and the focusing number (k,) of the points in the normal planes at t on arcs;
-        NaN where none exists.
+        """Return u, v and the focusing number (k,) of the points in the normal planes at t on arcs.
+
+        u and v are NaN where no point exists.
         """
         curve, h = self.curve, self.height
         base, slope, bend = curve.evaluate_arcs(arc, t)
@@ -296,8 +299,9 @@ class Offset:
         return np.where(sound, u, np.nan), np.where(sound, v, np.nan), 1.0 - dot(reach, bend) / rate
 
     def _samples(self, u: Array) -> tuple[Index, Array, Array, Array, Array]:
-        """Return arc, t, u, v and focusing number of samples along the curve below: nodes, and more
-        where the front gathers.
+        """Return arc, t, u, v and focusing number of samples along the curve below.
+
+        Samples are the nodes, and additional points where the front focuses.
         """
         ends = self.breaks[1:] - 1
         arc = np.r_[np.arange(len(self.curve.span)), ends]
@@ -327,7 +331,8 @@ class Offset:
             if len(self.breaks)
             else np.zeros(len(arc), np.intp)
         )
-        copies = np.array([-2, -1, 0, 1])  # a curve started at a corner begins up to a period late
+        # a curve that is restarted at a corner can begin up to one period later
+        copies = np.array([-2, -1, 0, 1])
         turns = np.repeat(copies, len(arc))
         shift = turns * period
         piece_number = np.tile(piece_number, len(copies)) + (

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers whose local distance may vary within a band, so that they stay free of corners.
+"""Layers whose local distance may vary within a band, so that they have no corners.
 
-Fronts at an exactly constant distance gather into corners (errata of Chalvin 2019), at
-which a robot has to stop. The deposit tolerates some variation of the layer height
-(Chalvin 2020): here each layer is between the fronts at the minimum and maximum distance
-allowed, and is as smooth as requested, or as the band allows. At the tip of a corner the
-front runs ahead and on its flanks it holds back, so a corner of up to 2 acos((1 - band) /
-(1 + band)) stays round.
+Fronts at an exactly constant distance develop corners (errata of Chalvin 2019), at which a robot
+has to stop. The deposit tolerates some variation of the layer height (Chalvin 2020). Each layer
+therefore stays between the fronts at the minimum and maximum distance and is smoothed until it
+meets the limit of the turn rate, or as far as the band allows. The front runs ahead at the tip of a
+corner and lags behind on the flanks. Thus corners of up to 2 acos((1 - band) / (1 + band)) stay
+round.
 """
 
 from __future__ import annotations
@@ -28,14 +28,18 @@ from .offset import Offset
 
 @dataclass(frozen=True, eq=False)
 class WallLayer:
-    """u (m,) at the nodes of the curve; the curve's parameter is v, and its last node repeats the first."""
+    """Closed layer on a wall.
+
+    u: (m,) at the nodes of the curve. curve: curve with parameter v; the last node repeats the
+    first.
+    """
 
     u: Array
     curve: SpaceCurve
 
     @classmethod
     def of(cls, surface: Surface, v: Array, u: Array, into: Array, out: Array) -> WallLayer:
-        """Return the layer through points of the wall.
+        """Build the layer through points of the wall.
 
         Parameters
         ----------
@@ -66,12 +70,12 @@ class WallLayer:
         Returns
         -------
         (m,) array
-            Rising through one period.
+            Ascending values over one period.
         """
         return self.curve.w
 
     def slopes(self, surface: Surface) -> tuple[Array, Array]:
-        """Return the slopes on either side of each node.
+        """Return the slopes before and after each node.
 
         Parameters
         ----------
@@ -120,7 +124,7 @@ class WallLayer:
 
 
 def even_grid(surface: Surface, count: int, start: float = 0.0) -> Array:
-    """Return equally spread values of v through one period.
+    """Return equally spaced values of v over one period.
 
     Parameters
     ----------
@@ -134,7 +138,7 @@ def even_grid(surface: Surface, count: int, start: float = 0.0) -> Array:
     Returns
     -------
     (count + 1,) array
-        Rising values.
+        Ascending values.
 
     Raises
     ------
@@ -147,7 +151,7 @@ def even_grid(surface: Surface, count: int, start: float = 0.0) -> Array:
 
 
 def local_distances(layer: WallLayer, below: WallLayer, finer: int = 1) -> tuple[Array, Array]:
-    """Return the distances of a layer from the nearest points of the one below.
+    """Return the distances of a layer from the nearest points of the layer below.
 
     Parameters
     ----------
@@ -156,7 +160,7 @@ def local_distances(layer: WallLayer, below: WallLayer, finer: int = 1) -> tuple
     below : WallLayer
         The layer below.
     finer : int, optional
-        Points per arc of the layer; 1 uses only its nodes.
+        Points per arc of the layer; 1: nodes only.
 
     Returns
     -------
@@ -173,12 +177,14 @@ def local_distances(layer: WallLayer, below: WallLayer, finer: int = 1) -> tuple
     return v, below.curve.nearest(layer.curve.at(v)[0])[0]
 
 
-FINER = 4  # places per arc at which the result is measured
+FINER = 4  # points per arc at which the result is measured
 
 
 class Smoothed(NamedTuple):
-    """A layer, its minimum and maximum local distance (mm), its sharpest turn within the wall
-    (rad/mm), and its weight number.
+    """Smoothed layer.
+
+    min_distance, max_distance: local distance from the layer below, mm. turn: maximum turn rate
+    within the wall, rad/mm. weight: index of WEIGHTS.
     """
 
     layer: WallLayer
@@ -189,7 +195,7 @@ class Smoothed(NamedTuple):
 
 
 def turns_in_wall(surface: Surface, layer: WallLayer) -> Array:
-    """Return the turn of a bead within the wall per length.
+    """Return the turn rate of a bead within the wall.
 
     Parameters
     ----------
@@ -201,7 +207,7 @@ def turns_in_wall(surface: Surface, layer: WallLayer) -> Array:
     Returns
     -------
     (m - 1,) array
-        Turn of each arc, rad/mm.
+        Turn rate of each arc, rad/mm.
     """
     return wall_directions.turns_in_wall(layer.curve, normals(surface, layer.u, layer.v))
 
@@ -216,9 +222,10 @@ def next_layer(
     label: str = "wall",
     weight: int = HEAVY,
 ) -> Smoothed:
-    """Return the smooth layer above another, as near to the layer height as the turn allows.
+    """Compute the next smooth layer, as close to the layer height as the turn rate limit allows.
 
-    If the band is too narrow for the limit, the band holds: see Smoothed.turn.
+    If the band is too narrow for the limit, the layer keeps the band and exceeds the limit, see
+    `Smoothed.turn`.
 
     Parameters
     ----------
@@ -231,23 +238,24 @@ def next_layer(
     grid : (n,) array
         Evenly spaced values of v from seam to seam.
     band : float
-        Largest departure of the local distance, as a share of the height.
+        Maximum deviation of the local distance, as a fraction of the layer height.
     limit : float
-        Largest turn within the wall, rad/mm.
+        Maximum turn rate within the wall, rad/mm.
     label : str, optional
         Name of the wall, for messages.
     weight : int, optional
-        Start of the search, best the weight of the layer below.
+        Index of WEIGHTS at which the search starts, preferably that of the layer below.
 
     Returns
     -------
     Smoothed
-        The layer with its distances and turn.
+        The layer with its local distances and turn rate.
 
     Raises
     ------
     InputError
-        LAYER_HEIGHT if the wall has no point at such a distance, BAND if no layer fits.
+        LAYER_HEIGHT if the wall has no point at the layer height or a limit of the band. BAND if no
+        layer fits the band.
     """
     fronts = []
     for share in (1.0, 1.0 - band * (1.0 - MARGIN), 1.0 + band * (1.0 - MARGIN)):
@@ -274,7 +282,7 @@ def next_layer(
         return candidate if inside else None
 
     best = lightest(trial, weight, AIM * limit)
-    if best is None:  # a front that can only follow the one below, including its corners
+    if best is None:  # the band only admits fronts that repeat the corners of the layer below
         raise InputError(
             "BAND",
             label,
@@ -295,7 +303,7 @@ def layers(
     points: int = 360,
     label: str = "wall",
 ) -> list[Smoothed]:
-    """Return all smooth layers above the first, to the first one wholly past an end.
+    """Compute all smooth layers above the first layer, up to the first completely beyond the end.
 
     Parameters
     ----------
@@ -308,9 +316,9 @@ def layers(
     u_end : float
         End of the wall in u.
     band : float, optional
-        Largest departure of the local distance, as a share of the height.
+        Maximum deviation of the local distance, as a fraction of the layer height.
     limit : float, optional
-        Largest turn within the wall, rad/mm.
+        Maximum turn rate within the wall, rad/mm.
     points : int, optional
         Number of points of a layer.
     label : str, optional
