@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads that rapids pass, and the part of the nozzle that is exempt near the ends where a rapid
-starts or ends.
+"""Deposit near rapids, and the exempt part of the nozzle near the bead ends that rapids connect.
 
-Where the nozzle retracts from the end of a bead or approaches the start of one, it touches the
-deposit and its support, as while depositing: there its part below a height is exempt, less the
-distance of the tip from that point. A cone withdrawn along its axis stays within the volume that
-it had above that height, so nothing more needs an exemption, wherever the move leads.
+Where the nozzle retracts from the end of a bead or approaches the start of a bead, it touches the
+deposit and its support, as on deposit moves. There the nozzle is exempt below a height, which
+decreases by the distance between the tip and the bead end. A cone retracted along its axis stays
+within the volume that it occupied above that height. No further exemption is needed, wherever the
+move leads.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from .tolerances import ABOVE_FACES, CHORD
 
 
 class ByNumbers:
-    """A dataclass (frozen, without an == of its own) that is compared by the numbers and names in its fields."""
+    """Base of frozen dataclasses (eq=False) that compare and hash the contents of their fields."""
 
     @cached_property
     def _numbers(self) -> Hashable:
@@ -44,7 +44,7 @@ class ByNumbers:
 
 
 def _numbers(value: object) -> Hashable:
-    """All numbers and names in a value, to be compared."""
+    """Return all numbers and names in a value as a hashable key."""
     if isinstance(value, np.ndarray):
         return value.shape, value.tobytes()
     if isinstance(value, (list, tuple)):
@@ -55,17 +55,16 @@ def _numbers(value: object) -> Hashable:
     return value
 
 
-# length of the pieces into which the deposit is divided, mm, near nozzles and near links
+# mm; maximum length of deposit pieces for checks of nozzles and of links
 GRAIN, LINK_GRAIN = 1.5, 5.0
-HALVINGS = 6  # steps for the nozzle's length: accurate to a hundredth
-REMEMBERED = 25_000  # maximum points of beads with cached ends: longer ones take too much memory
+HALVINGS = 6  # bisection steps for the exempt height; resolution 1/64 of the nozzle length
+REMEMBERED = 25_000  # maximum number of points whose bead ends are cached, to limit memory
 
 
 class Bead(Protocol):
-    """The points of a toolpath's bead with unit build directions and tool axes (n, 3), width and
-    height (n,) mm.
+    """A toolpath bead: points, build directions, tool axes (n, 3); width, height (n,); mm.
 
-    Width and height are None if the bead has none.
+    Width and height are None if the bead has the default size.
     """
 
     @property
@@ -81,8 +80,11 @@ class Bead(Protocol):
 
 
 class Beads(NamedTuple):
-    """All points of beads in order: points, build directions and tool axes (m, 3), width and height (m,) mm, and whether
-    each is the first of a bead (m,)."""
+    """All points of beads in print order.
+
+    points: (m, 3) mm. build, tool: (m, 3) build directions and tool axes. width, height: (m,) mm.
+    first: (m,) whether a point is the first of its bead.
+    """
 
     points: Array
     build: Array
@@ -100,7 +102,7 @@ class Beads(NamedTuple):
         beads : sequence of Bead
             The beads in print order.
         width, height : float
-            Size of beads without their own, mm.
+            Default bead size, mm.
 
         Returns
         -------
@@ -131,16 +133,14 @@ class Beads(NamedTuple):
         )
 
     def solid(self, grain: float = GRAIN) -> Obstacles:
-        """Return the deposit in pieces of `grain` mm; each exists from the number of its last point
-        on.
-        """
+        """Build the deposit in pieces of `grain` mm, whose moments are indices of end points."""
         return build_deposit(
             self.points, self.build, self.width, self.height, self.first, grain=grain
         )
 
 
 class Size(NamedTuple):
-    """Radius of a nozzle's tip, tangent of its half angle, and its length, mm."""
+    """Nozzle size: tip radius, mm; tangent of the half angle; length, mm."""
 
     radius: float
     slope: float
@@ -148,9 +148,9 @@ class Size(NamedTuple):
 
 
 class _Ends(NamedTuple):
-    """Bead ends by the number of printed points (m + 1).
+    """Bead ends, indexed by the number of printed points.
 
-    point: (m + 1, 3), NaN without an end. height: (m + 1,) mm of the nozzle that are exempt there.
+    point: (m + 1, 3) mm, NaN without an end. height: (m + 1,) exempt height of the nozzle, mm.
     """
 
     point: Array
@@ -158,7 +158,7 @@ class _Ends(NamedTuple):
 
 
 class BeadEnds:
-    """The nozzle of a size on rapids between beads, and the deposit that these are."""
+    """Exempt heights of a nozzle at bead ends, and the deposit of the beads."""
 
     def __init__(self, beads: Beads, size: Size) -> None:
         self._size = size
@@ -179,29 +179,29 @@ class BeadEnds:
 
     @classmethod
     def of(cls, beads: Beads, size: Size) -> BeadEnds:
-        """Return the ends of the beads, computed once for planning the rapids and for checking them."""
+        """Return the bead ends, cached so that planning and checking of rapids share the result."""
         build = (
             _build_bead_ends if len(beads.points) <= REMEMBERED else _build_bead_ends.__wrapped__
         )
         return build(_Asked(beads, size))
 
     def nozzle(self, tip: Array, deposited: Index) -> Nozzle:
-        """Return the nozzle on rapids, which leaves the last printed point and approaches the next.
+        """Return the nozzle on rapids between the last printed point and the next point.
 
-        Against deposit the part that stays in it is exempt there; against bodies the part below the
-        height at which the nozzle's side is one tip diameter from the point.
+        Near both points part of the nozzle is exempt: for deposit, the part that stays in the
+        deposit; for bodies, the part whose side is less than one tip diameter from the point.
 
         Parameters
         ----------
         tip : (k, 3) array
-            Tips of the nozzle in the part, mm.
+            Nozzle tips in part coordinates, mm.
         deposited : (k,) array of int
-            How many points are printed at each.
+            Number of points printed before each tip position.
 
         Returns
         -------
         Nozzle
-            The nozzle of each row, against bodies and against deposit.
+            Solids of each row to check against bodies and deposit.
         """
         radius, slope, _ = self._size
         about = side_height(radius, slope) + ABOVE_FACES
@@ -217,7 +217,7 @@ class BeadEnds:
 
 @dataclass(frozen=True, eq=False)
 class _Asked(ByNumbers):
-    """The inputs that determine the ends of beads, as a cache key."""
+    """Cache key: the inputs that determine the bead ends."""
 
     beads: Beads
     size: Size
@@ -231,13 +231,12 @@ def _build_bead_ends(question: _Asked) -> BeadEnds:
 def standing_heights(
     deposit: Obstacles, size: Size, tip: Array, axis: Array, height: Array, moment: Index
 ) -> Array:
-    """Return the heights below which nozzles on points of beads are exempt from contact.
+    """Return the heights below which nozzles at bead points are exempt from contact.
 
-    The tip is in the bead whose end it is: up to the bead's height the nozzle may have deposit
-    around. Where more of the nozzle is in the deposit (a nozzle that leans over its own bead,
-    or a job that asks for no clearance) the height is as much: no move off the point avoids
-    that, and the check of the depositing nozzle covers it. CHORD is added, as for any nozzle on
-    rapids.
+    The tip is inside the bead, so deposit may surround the nozzle up to the bead's height. The
+    exempt height is greater if more of the nozzle is in the deposit, because the nozzle leans over
+    its own bead or the job requires no clearance. No move away from the point avoids this contact,
+    and the check of deposit moves covers it. CHORD is added, as for every nozzle on rapids.
 
     Parameters
     ----------
@@ -252,12 +251,12 @@ def standing_heights(
     height : (k,) array
         Heights of the beads, mm.
     moment : (k,) int array
-        Moments before which deposit counts.
+        Moment of each tip; only earlier deposit counts.
 
     Returns
     -------
     (k,) array
-        Heights over the tips, mm, at most the length of the nozzle.
+        Heights above the tips, mm, at most the nozzle length.
     """
     distinct, distinct_rows = np.unique(height, return_inverse=True)
     exempt = np.array([exempt_height(size.radius, size.slope, float(value)) for value in distinct])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The deposit as a solid: beads with width and height, each piece from the moment it is printed.
+"""The deposit as a solid: bead pieces with width and height that exist from their print moment on.
 
 A bead extends from its points along the build direction. Its section is a stadium of the bead's
-width and height, rounded by half of the smaller value. Between two points the solid is the hull
-of both sections; at corners the outer side is filled.
+width and height; the radius is half the smaller dimension. The solid between two points is the hull
+of both sections. At corners the outer side is filled.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from ..types import Array, Index, Mask
 from .frustum import Frustum
 from .obstacles import Obstacles
 
-# rad; maximum turn of joined pieces, so that they are as close to the bead as its own chords
+# rad; maximum direction change within a joined piece, which keeps it as close as the bead's chords
 BENT = 0.2
 CORNER = np.cos(
     np.radians(10.0)
-)  # of the turn from one segment to the next, beyond which the outer side is filled
-PART = 25_000  # points of the parts of a deposit that is made again whenever it is asked
+)  # cosine of the direction change between segments above which a corner is filled
+PART = 25_000  # points per part of a deposit that is rebuilt on each query (`InParts`)
 
 
 def build_deposit(
@@ -40,8 +40,8 @@ def build_deposit(
 ) -> Obstacles:
     """Build the deposit of points in print order.
 
-    A piece exists from the moment of the point at its end. If no bead has a width, or a height,
-    the pieces are lines.
+    A piece exists from the moment of its end point on. If all widths or all heights are zero, the
+    pieces are lines.
 
     Parameters
     ----------
@@ -52,19 +52,19 @@ def build_deposit(
     width, height : float or (n,) array
         Size of the beads, mm.
     starts : int or bool array
-        First points of beads, by numbers or as a mask (n,).
+        First points of beads, as indices or a mask (n,).
     moments : (n,) int array or None, optional
-        Rising moments at which points are printed; None for their numbers.
+        Moments at which the points are printed, rising; None for the point indices.
     grain : float, optional
-        Maximum length of joined pieces, mm.
+        Maximum length of joined pieces, mm; 0 joins no pieces.
     foot : float, optional
-        Pieces of the current layer are adjacent to the tip within their width, or within
-        this distance, mm.
+        Pieces of the current layer count as adjacent to the tip within their width or this
+        distance, mm, whichever is larger.
     short : bool, optional
-        Whether pieces are short compared with the queries.
+        Whether pieces are short compared with the queried solids.
     like : Obstacles or None, optional
-        The deposit of the same points with other directions, which has the same pieces with
-        other corners; None without one.
+        Deposit of the same points with other build directions, whose tree is reused with new
+        corners.
 
     Returns
     -------
@@ -101,7 +101,7 @@ def build_deposit(
     corners = []
     for point_rows, side in zip((begin, end), sideways):
         middle = points[point_rows] + (0.5 * tall)[:, None] * build[point_rows]
-        # the flat of the section: across a bead that is wider than high, else upright
+        # straight part of the section: across a bead wider than high, otherwise upright
         flat = (
             (0.5 * (wide - tall))[:, None] * side
             if (wide >= tall).all()
@@ -131,15 +131,16 @@ def build_deposit(
 
 
 def _join_points(points: Array, is_first: Mask, grain: float) -> Index:
-    """Return which points (n, 3) remain if pieces are joined up to `grain` mm; is_first: (n,)
-    starts of beads.
+    """Return the indices of points (n, 3) that remain after joining pieces up to `grain` mm.
+
+    is_first: (n,) mask of the first points of beads.
     """
     is_last = np.append(is_first[1:], True)
     directions = np.diff(points, axis=0, prepend=points[:1])
     size = lengths(directions)
     step = np.where(is_first, 0.0, size)
     directions /= np.maximum(size, 1e-12)[:, None]
-    # the rotation at a point is the difference to the direction after it
+    # direction change at a point, as the difference of unit vectors
     turn = np.where(
         is_first | is_last, 0.0, lengths(np.diff(directions, axis=0, append=directions[-1:]))
     )
@@ -154,7 +155,7 @@ def _join_points(points: Array, is_first: Mask, grain: float) -> Index:
 def in_parts(
     points: Array, build: Array, width: Array, height: Array, starts: Index, **what: Any
 ) -> InParts:
-    """Return the deposit for few queries, built part by part on each query.
+    """Return the deposit for few queries, rebuilt part by part on each query.
 
     Parameters
     ----------
@@ -179,9 +180,10 @@ def in_parts(
 
 @dataclass(frozen=True, eq=False)
 class InParts:
-    """The deposit of `build_deposit`, built part by part on each query: for few queries of a long
-    deposit, whose pieces take more memory than its points. what: further arguments of
-    `build_deposit`.
+    """The deposit of `build_deposit`, rebuilt part by part on each query.
+
+    This suits few queries of a long deposit, whose pieces take more memory than its points. what:
+    further arguments of `build_deposit`.
     """
 
     points: Array
@@ -210,9 +212,9 @@ class InParts:
         axis : (k, 3) array
             Axes, unit vectors.
         moment : (k,) int array or None, optional
-            Moments before which deposit counts; None for all deposit.
+            Moment of each solid; only earlier deposit counts. None for all deposit.
         layer_start : (k,) int array or None, optional
-            Moments at which the current layers began.
+            Moment at which the current layer of each solid began.
 
         Returns
         -------
@@ -224,7 +226,7 @@ class InParts:
         begins[self.starts] = True
         for begin in range(0, count, PART):
             rows = np.flatnonzero(~hits if moment is None else ~hits & (moment > begin))
-            # with the two pieces before, for the fill at the corner between two
+            # include two earlier points: the corner at the start of the part needs both its pieces
             rows_of_part = slice(max(begin - 2, 0), min(begin + PART, count))
             rows = rows[self._near(rows_of_part, solid.rows(rows), tip[rows], axis[rows])]
             if not len(rows):
@@ -249,8 +251,10 @@ class InParts:
         return hits
 
     def _near(self, rows_of_part: slice, solid: Frustum, tip: Array, axis: Array) -> Mask:
-        """False for solids (k,) that surely miss all pieces of a part: none is farther from its points than it is wide and
-        high."""
+        """Return False for solids (k,) that certainly miss all pieces of a part.
+
+        A piece extends at most its width plus its height from its points.
+        """
         low, high = self.points[rows_of_part].min(axis=0), self.points[rows_of_part].max(axis=0)
         size = float(self.width[rows_of_part].max() + self.height[rows_of_part].max())
         half, centre = 0.5 * (high - low)[:, None], 0.5 * (low + high)

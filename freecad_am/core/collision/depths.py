@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Depth of a part under the surface that carries its beads, and its thickness there, at evenly
-spread points.
-"""
+"""Depth of a part below the surface that carries its beads, and part thickness at that surface."""
 
 from __future__ import annotations
 
@@ -17,18 +15,18 @@ from ..geometry.walls.part_depths import Surface
 from ..types import Array, Index
 from .inside import Inside, inside_of
 
-MAX_PARTS = 40_000  # parts that triangles are divided into, about
-PLACES = 800  # within the part
-TRIES = 20_000  # maximum samples in the bounding box to find these in a thin part
-AT_ONCE = 2000
-SHARES = 128  # steps that a distribution is kept in
-PROBES = 250  # places of the surface at which the part's thickness is looked for
-HALVINGS = 7  # of the step in which a probe leaves the part
-STEPS = 14  # of a probe into the part
-REACH = 64.0  # mm; no bead is wider
-# distances between surface samples; a point farther from the edge is not below the surface
+MAX_PARTS = 40_000  # approximate maximum number of parts of divided triangles
+PLACES = 800  # samples in the part after which sampling stops
+TRIES = 20_000  # maximum number of samples in the bounding box, reached by thin parts
+AT_ONCE = 2000  # samples per batch
+SHARES = 128  # quantiles that represent a distribution
+PROBES = 250  # surface points at which the part thickness is measured
+HALVINGS = 7  # bisections of the step in which a probe leaves the part
+STEPS = 14  # samples along a probe
+REACH = 64.0  # mm; maximum length of a probe; no bead is wider
+# in surface sample spacings; maximum lateral offset of a point that is below the surface
 MAX_OFFSET_SHARE = 1.5
-# three irrational steps, by which places spread evenly in a box (Roberts 2018, the generalised golden ratio)
+# steps along three axes that spread points evenly in a box (Roberts 2018, generalised golden ratio)
 EVENLY = 1.0 / 1.22074408460575947536 ** np.arange(1, 4)
 
 
@@ -40,34 +38,34 @@ def measured(
     slack: float,
     excluded: Body | None = None,
 ) -> tuple[Array, Array, Array, float]:
-    """Return how deep a part is under a surface and how thick it is there.
+    """Return the depth of a part below a surface and the part thickness at the surface.
 
     Parameters
     ----------
     part_mesh : Body
         Closed triangles of the part.
     owner : (m,) int array
-        Number in `faces` of each triangle.
+        Index into `faces` for each triangle.
     faces : sequence of str
         Names of the faces.
     surface : Surface
         Evenly spread points of the surface with normals and areas, mm.
     slack : float
-        Distance that the surface may be off the triangles, mm.
+        Maximum distance between surface and triangles, mm.
     excluded : Body or None, optional
-        Body that does not count as part; None without one.
+        Body that does not count as part, if any.
 
     Returns
     -------
     depths : (k,) array
-        Bead width needed for each equal share of the part, mm, sorted; infinite for a share
-        under no bead.
+        Required bead width at quantiles of the part's volume, mm, sorted; infinite under no
+        bead.
     thickness : (n,) array
-        Thickness at points of the surface, mm, sorted.
+        Thickness at surface points, mm, sorted.
     by_face : (faces,) array
         Median depth of each face, mm.
     share : float
-        Share of the part that is not in `excluded`.
+        Fraction of the part's volume outside `excluded`.
     """
     inside = inside_of(part_mesh)
     ground = None if excluded is None else inside_of(excluded)
@@ -108,7 +106,7 @@ def measured(
 
 
 def grain(corners: Array, smallest: float) -> float:
-    """Return the longest side that divides triangles into about MAX_PARTS more parts at most.
+    """Return the maximum side that divides triangles into at most about MAX_PARTS more parts.
 
     A face may be a million times as large as the wall to measure.
 
@@ -117,7 +115,7 @@ def grain(corners: Array, smallest: float) -> float:
     corners : (m, 3, 3) array
         Corners of the triangles, mm.
     smallest : float
-        Least side to return, mm.
+        Minimum result, mm.
 
     Returns
     -------
@@ -134,7 +132,7 @@ def grain(corners: Array, smallest: float) -> float:
 
 
 def _probes(surface: Surface) -> Surface:
-    """Return points of a surface that represent equal areas."""
+    """Return PROBES points of a surface that represent equal areas."""
     ends = np.cumsum(surface.areas)
     point_rows = np.minimum(
         np.searchsorted(ends, (np.arange(PROBES) + 0.5) / PROBES * ends[-1]), len(ends) - 1
@@ -145,8 +143,9 @@ def _probes(surface: Surface) -> Surface:
 
 
 def _inward(probes: Surface, inside: Inside | None, slack: float) -> tuple[float, bool]:
-    """Return the direction, 1.0 or -1.0, in which normals of a surface point into the part, and
-    whether both do.
+    """Return the sign, 1.0 or -1.0, that makes surface normals point into the part.
+
+    Also return whether the part is on both sides of the surface.
     """
     if inside is None:
         return 1.0, True
@@ -158,12 +157,13 @@ def _inward(probes: Surface, inside: Inside | None, slack: float) -> tuple[float
 
 
 def _depths(points: Array, surface: Surface, inward: Array, half: bool, spacing: float) -> Array:
-    """Return the width (k,) mm that a bead on the nearest point of the surface needs to hold each point
-    (k, 3), inf next to the surface.
+    """Return the bead width (k,), mm, at the nearest surface point that encloses each point (k, 3).
+
+    The width is infinite for points that are not below the surface.
     """
     _, nearest = cKDTree(surface.points).query(
         points, eps=0.02
-    )  # in the middle of a ball all are alike
+    )  # tolerance, as all surface points are equally near to the centre of a ball
     offsets = points - surface.points[nearest]
     along = (offsets * inward[nearest]).sum(axis=1)
     across = np.linalg.norm(offsets - along[:, None] * inward[nearest], axis=1)
@@ -177,7 +177,7 @@ def _depths(points: Array, surface: Surface, inward: Array, half: bool, spacing:
 
 
 def _places(inside: Inside) -> Array:
-    """Points spread evenly inside of a body."""
+    """Return points spread evenly inside a body."""
     batches: list[Array] = []
     for start in range(0, TRIES, AT_ONCE):
         share = np.mod(0.5 + np.arange(start + 1, start + AT_ONCE + 1)[:, None] * EVENLY, 1.0)
@@ -189,8 +189,10 @@ def _places(inside: Inside) -> Array:
 
 
 def _thickness(start: Array, directions: Array, half: bool, inside: Inside, slack: float) -> Array:
-    """How far (m,) mm the part reaches under places (m, 3) of a surface along unit vectors (m, 3); with `half` twice as far
-    as it does where it reaches less far, of both ways."""
+    """Return the part thickness (m,), mm, at surface points (m, 3) along unit vectors (m, 3).
+
+    With `half`, return twice the smaller of the reaches in both directions.
+    """
     depth = _reach(start, directions, inside, slack)
     if half:
         return 2.0 * np.minimum(depth, _reach(start, -directions, inside, slack))
@@ -198,8 +200,11 @@ def _thickness(start: Array, directions: Array, half: bool, inside: Inside, slac
 
 
 def _entry(start: Array, directions: Array, inside: Inside, slack: float) -> Array:
-    """How far (m,) mm from places of a body's surface, along unit vectors, (m, 3) each, its triangles begin, which are up to
-    `slack` off that surface to either side; 0 where no such place is."""
+    """Return the offset (m,), mm, along unit vectors from surface points to the body's triangles.
+
+    Points and vectors are (m, 3). The triangles deviate from the surface by up to `slack` to either
+    side. The offset is 0 where no entry is found.
+    """
     low, high = np.full(len(start), -slack), np.full(len(start), slack)
     begins = ~inside.holds(start - slack * directions) & inside.holds(start + slack * directions)
     for _ in range(HALVINGS):
@@ -210,8 +215,9 @@ def _entry(start: Array, directions: Array, inside: Inside, slack: float) -> Arr
 
 
 def _reach(start: Array, directions: Array, inside: Inside, slack: float) -> Array:
-    """Return the length (m,) of lines within a body, mm, from points along unit vectors, (m, 3)
-    each.
+    """Return the lengths (m,), mm, of lines from points along unit vectors until they leave a body.
+
+    Points and vectors are (m, 3). Lengths are at most REACH.
     """
     steps = np.geomspace(slack, REACH, STEPS)
     is_inside = inside.holds(
@@ -228,7 +234,7 @@ def _reach(start: Array, directions: Array, inside: Inside, slack: float) -> Arr
 
 
 def _shares(values: Array) -> Array:
-    """Return the values (n,) at the middles of SHARES equal shares, sorted."""
+    """Return SHARES quantiles of values (n,), at the midpoints of equal fractions, sorted."""
     sorted_values: Array = np.sort(values)[
         ((np.arange(SHARES) + 0.5) / SHARES * len(values)).astype(int)
     ]
@@ -242,7 +248,7 @@ def _areas(part_mesh: Body) -> Array:
 
 
 def _median(values: Array, weights: Array) -> float:
-    """Return the weighted median of the values; 0 without weight."""
+    """Return the weighted median of values; 0 without weight."""
     order = np.argsort(values)
     total = np.cumsum(weights[order])
     if not len(values) or total[-1] <= 0.0:

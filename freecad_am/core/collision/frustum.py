@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Nozzles and links as convex solids of revolution, and whether points, segments and triangles reach into them. Exact.
+"""Nozzles and links as solids of revolution, with exact tests of points, segments and triangles.
 
-A frustum about the tool axis t: at the height x over the tip plane its radius is a + k x, from x = low to x = high. The
-function |y| - k x - a, y being the part of a point's offset across the axis, is convex: along a segment its least value
-has a closed form. A triangle whose edges all miss a convex solid meets it only where its plane's whole section of the
-solid is inside the triangle, so one point of the section decides.
+A frustum about the tool axis t has the radius a + k x at height x above the tip plane, from x = low
+to x = high. The function |y| - k x - a is convex, where y is the component of a point's offset
+normal to the axis. Its minimum along a segment has a closed form. If all edges of a triangle miss a
+convex solid, the triangle meets the solid only where it contains the whole section of the solid by
+its plane. One point of the section therefore decides.
 """
 
 from __future__ import annotations
@@ -20,8 +21,10 @@ from .tolerances import ALONG, ROUNDING
 
 
 def side_height(radius: float, slope: float) -> float:
-    """Height (mm) over the tip plane at which the side of a nozzle is one tip diameter from the deposit
-    point: below, it touches its support and the bead that it prints.
+    """Return the height, mm, at which a nozzle's side is one tip diameter from the deposit point.
+
+    The height is above the tip plane. Below it, the nozzle touches its support and the bead that
+    it prints.
     """
     return float(
         radius
@@ -34,9 +37,8 @@ def side_height(radius: float, slope: float) -> float:
 class Frustum:
     """A frustum about the tool axis.
 
-    radius: a, mm, at the tip plane. slope: k. low, high: mm above the tip plane; low is one value
-    or (k,) for each row. All methods take offsets from the tip and unit tool axes (k, 3), row by
-    row.
+    radius: a, mm, at the tip plane. slope: k. low, high: mm above the tip plane; low is a scalar
+    or has one value per row. Methods take offsets from the tip and unit tool axes, row by row.
     """
 
     radius: float
@@ -46,11 +48,11 @@ class Frustum:
 
     @property
     def reach(self) -> float:
-        """Largest distance of a point of the solid from the tip, mm."""
+        """Maximum distance between the tip and a point of the solid, mm."""
         return float(np.hypot(self.high, self.radius + self.slope * self.high))
 
     def rows(self, index: Index) -> Frustum:
-        """Return the solids of some of the rows.
+        """Return the solids of selected rows.
 
         Parameters
         ----------
@@ -60,7 +62,7 @@ class Frustum:
         Returns
         -------
         Frustum
-            The same solid if `low` is one value.
+            This solid itself if `low` is a scalar.
         """
         if not isinstance(self.low, np.ndarray):
             return self
@@ -69,8 +71,8 @@ class Frustum:
     def near_box(self, offset: Array, axis: Array, half: Array, rounding: Array) -> Mask:
         """Return whether boxes may meet the solid.
 
-        False means that a box is past one end of the solid, or beyond the plane that
-        touches its side nearest to the point. Columns take half of the time that rows take.
+        A box misses the solid if it is past one end of the solid, or beyond the tangent plane of
+        the side nearest to the box centre. Columns take half the time of rows.
 
         Parameters
         ----------
@@ -81,12 +83,12 @@ class Frustum:
         half : (3, k) array
             Half sizes of the boxes, mm.
         rounding : (k,) array
-            Rounding about the boxes, mm.
+            Rounding radii of the boxes, mm.
 
         Returns
         -------
         (k,) bool array
-            False for boxes that surely miss the solid.
+            False for boxes that certainly miss the solid.
         """
         x = _column_sums(offset * axis)
         across: Array = offset - x * axis
@@ -96,15 +98,15 @@ class Frustum:
         lean = np.hypot(1.0, self.slope)
         across -= (self.slope * side) * axis
         reach = _column_sums(np.abs(across, out=across) * half)
-        # the plane with the normal across / (side lean) bounds the frustum; it does not exist close
-        # to the axis
+        # the tangent plane with the normal across / (side lean) bounds the frustum; the normal is
+        # undefined on the axis
         may_meet &= side * (side - self.radius - self.slope * x) <= reach + lean * side * (
             rounding + ROUNDING
         )
         return may_meet
 
     def nearest(self, offset: Array, axis: Array) -> Array:
-        """Return the points of the solid nearest to points.
+        """Return the points of the solid nearest to given points.
 
         Parameters
         ----------
@@ -116,7 +118,7 @@ class Frustum:
         Returns
         -------
         (k, 3) array
-            Nearest points from the tips, mm; the points themselves where inside.
+            Nearest points from the tips, mm; the given points themselves if inside.
         """
         x = dots(offset, axis)
         across = offset - x[:, None] * axis
@@ -125,10 +127,12 @@ class Frustum:
         low_radius = self.radius + self.slope * low
         high_radius = self.radius + self.slope * self.high
         inside = (x >= low) & (x <= self.high) & (side <= self.radius + self.slope * x)
-        # in the half plane of height and distance from the axis: on the side, or else on the lower or the upper disc
+        # in the meridian half-plane: candidates on the side, on the lower and on the upper disc
         tall, wide = self.high - low, high_radius - low_radius
         along = ((x - low) * tall + (side - low_radius) * wide) / (tall * tall + wide * wide)
-        along = np.minimum(np.maximum(along, 0.0), 1.0)  # np.clip takes many times that for a few
+        along = np.minimum(
+            np.maximum(along, 0.0), 1.0
+        )  # np.clip is many times slower for few values
         height, out = low + along * tall, low_radius + along * wide
         squared_distance = np.square(x - height) + np.square(side - out)
         for disc, size in ((low, low_radius), (self.high, high_radius)):
@@ -145,7 +149,7 @@ class Frustum:
         return points
 
     def gap(self, offset: Array, axis: Array) -> Array:
-        """Return the distances of points from the solid.
+        """Return the distances between points and the solid.
 
         Parameters
         ----------
@@ -168,7 +172,7 @@ class Frustum:
         Parameters
         ----------
         direction : (k, 3) array
-            Directions of any length.
+            Direction vectors of any length.
         axis : (k, 3) array
             Tool axes, unit vectors.
 
@@ -185,7 +189,7 @@ class Frustum:
             self.radius + self.slope * self.high
         ) > rise * low + size * (self.radius + self.slope * low)
         height = np.where(up, self.high, low)
-        # on the axis every point of a disc is equally far: a remaining lateral part is rounding
+        # along the axis all points of a disc are equally far: a lateral component is rounding error
         leaning = size > ALONG * np.abs(rise)
         out = np.where(leaning, self.radius + self.slope * height, 0.0) / np.where(
             leaning, size, 1.0
@@ -208,7 +212,7 @@ class Frustum:
         Returns
         -------
         (k,) bool array
-            True where a plane cuts it.
+            True where a plane cuts the solid.
         """
         rise = dots(normal, axis)
         lean = np.sqrt(np.maximum(1.0 - rise * rise, 0.0))
@@ -221,7 +225,7 @@ class Frustum:
         return cut
 
     def holds(self, offset: Array, axis: Array) -> Mask:
-        """Return whether points are inside.
+        """Return whether points are inside the solid.
 
         Parameters
         ----------
@@ -305,7 +309,7 @@ class Frustum:
         Returns
         -------
         (k,) array of bool
-            Row by row.
+            True where a triangle reaches in.
         """
         a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
         meets = self.meets_segments(a, b, axis)
@@ -319,10 +323,10 @@ class Frustum:
         return meets
 
     def _section_inside(self, corners: Array, axis: Array) -> Mask:
-        """Whether a point of the section of the solid by each triangle's plane is in the triangle.
+        """Return whether each triangle contains a point of its plane's section of the solid.
 
-        Where the plane misses the axis between the end discs, it cuts a diameter of one disc: the
-        diameter that goes farthest towards the plane.
+        The plane cuts the axis between the end discs, or else one of the disc diameters that reach
+        farthest towards the plane.
         """
         base = corners[:, 0]
         side_a = corners[:, 1] - corners[:, 0]
@@ -359,27 +363,30 @@ class Frustum:
 
 
 def _column_sums(values: Array) -> Array:
-    """(k,) the sums of the columns of values (3, k)."""
+    """Return the column sums (k,) of values (3, k)."""
     total: Array = values[0] + values[1]
     total += values[2]
     return total
 
 
 class Lines(NamedTuple):
-    """What bounds the lines of pieces of beads, of nodes (n,): boxes by their lower and upper ends, by columns (3, n), and
-    how near to the tip those count as lines that do so least; mm."""
+    """Bounds of the bead path lines in n tree nodes, mm.
+
+    low, high: (3, n) box corners. foot: (n,) smallest distance from the tip within which a piece
+    of the node counts as a line.
+    """
 
     low: Array
     high: Array
     foot: Array
 
     def merge(self, starts: Index) -> Lines:
-        """Merge nodes.
+        """Merge consecutive nodes.
 
         Parameters
         ----------
         starts : (r,) array of int
-            First node of each group, rising; a group ends before the next one.
+            First node of each group, rising; a group ends before the next group.
 
         Returns
         -------
@@ -392,19 +399,19 @@ class Lines(NamedTuple):
 
 
 def build_lines(line: Array, foot: Array) -> Lines:
-    """Return the bounds of lines, a node for each.
+    """Return the bounds of lines, one node per line.
 
     Parameters
     ----------
     line : (m, 2, 3) array
         Ends of the lines, mm.
     foot : (m,) array
-        Distance from the tip within which each counts as a line, mm.
+        Distance from the tip within which each bead piece counts as a line, mm.
 
     Returns
     -------
     Lines
-        m nodes.
+        Bounds of m nodes.
     """
     begin, end = columns(line[:, 0]), columns(line[:, 1])
     return Lines(np.minimum(begin, end), np.maximum(begin, end), foot)
@@ -422,7 +429,7 @@ def select_pairs(
 ) -> Index:
     """Select the pairs of queries and nodes that need a test.
 
-    Nodes that hold only lines below the solid's lower end are left out.
+    Drop nodes whose pieces all count as lines and are below the solid's lower end.
 
     Parameters
     ----------
@@ -453,7 +460,7 @@ def select_pairs(
     top = np.maximum(low * axis, high * axis).sum(axis=0)
     square_distance = np.maximum(np.square(low), np.square(high)).sum(
         axis=0
-    )  # squared, of the corner that is farthest from the tip
+    )  # to the box corner farthest from the tip
     keep = np.ones(len(node), dtype=bool)
     keep[in_layer] = (top > solid.rows(q).low) | (square_distance >= np.square(lines.foot.take(n)))
     return np.flatnonzero(keep)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether points are inside closed bodies: by the triangles that a ray from each point crosses.
+"""Point-in-body tests for closed bodies: count the triangles that a ray from each point crosses.
 
-Where all triangles of a body face one way, a point is inside where the ray leaves the body more often than it enters it:
-shells that overlap add up, cavities count as outside. Where some are turned over, an odd number of crossings decides. A
-body whose triangles leave an opening has no inside.
+If all triangles of a body are consistently oriented, a point is inside where the ray leaves the
+body more often than it enters the body. Overlapping shells add up, and cavities count as outside.
+If some triangles are reversed, an odd number of crossings decides. An open body has no inside.
 """
 
 from __future__ import annotations
@@ -14,21 +14,21 @@ from ..geometry.obstacles import Body
 from ..types import Array, Mask
 from . import tree
 
-# of all rays; not parallel to usual edges and faces, so that a ray meets an edge only by chance
+# direction of all rays; not parallel to usual edges and faces, so rays rarely hit an edge
 RAY = np.array([0.5423261, 0.3190717, 0.7772039])
 MERGED = 1e-6  # mm; vertices closer than this are merged
-QUERIES = 16384  # worked on at once
+QUERIES = 16384  # points per batch
 
 
 class Inside:
-    """The inside of one closed body. low, high: (3,) mm, the box about it."""
+    """The inside of a closed body. low, high: (3,) corners of its bounding box, mm."""
 
     def __init__(self, body: Body, faces_one_way: bool) -> None:
         corners = body.corners()
         corners = corners[tree.packed(corners.mean(axis=1))]
         self.low, self.high = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
         self._faces_one_way = faces_one_way
-        # as seen along the ray: across it (m, 3, 2), and along it (m, 3)
+        # corners in the ray frame: two coordinates across the ray, one along the ray
         ray = RAY / np.linalg.norm(RAY)
         across = np.cross(ray, [1.0, 0.0, 0.0])
         across /= np.linalg.norm(across)
@@ -37,7 +37,7 @@ class Inside:
         self._levels = [self._boxes(size) for size in tree.sizes(len(corners))]
 
     def _boxes(self, size: int) -> tuple[Array, Array]:
-        """Lowest and highest coordinates (3, k) in the frame of the ray, of groups of `size` triangles."""
+        """Return the ray-frame bounds (3, k) of groups of `size` triangles."""
         starts = np.arange(0, len(self._seen), size)
         low = np.minimum.reduceat(self._seen.min(axis=1), starts)
         high = np.maximum.reduceat(self._seen.max(axis=1), starts)
@@ -54,7 +54,7 @@ class Inside:
         Returns
         -------
         (n,) array of bool
-            Either value on the surface.
+            True inside; undefined on the surface.
         """
         inside = np.zeros(len(points), dtype=bool)
         candidates = np.flatnonzero(self.may_hold(points))
@@ -63,9 +63,9 @@ class Inside:
         return inside
 
     def may_hold(self, points: Array) -> Mask:
-        """Return whether points are in the box about the body.
+        """Return whether points are in the bounding box of the body.
 
-        It is computed axis by axis, in a fraction of the time of a reduction.
+        Axis by axis, this takes a fraction of the time of a reduction.
 
         Parameters
         ----------
@@ -89,7 +89,7 @@ class Inside:
         node = np.tile(np.arange(top), len(ray_points))
         for depth in range(len(self._levels) - 1, -1, -1):
             low, high = self._levels[depth]
-            # one side of the boxes after the other: each leaves fewer pairs to test
+            # one box side at a time: each test leaves fewer pairs
             for coordinate, bounds, below_high in (
                 (x, high[0], True),
                 (x, low[0], False),
@@ -110,7 +110,7 @@ class Inside:
             (corners[:, k, 0] - x[query], corners[:, k, 1] - y[query], corners[:, k, 2] - z[query])
             for k in range(3)
         )
-        # twice the areas of the ray's end with each edge: the shares of the corners opposite
+        # doubled areas between the ray and each edge: barycentric weights of opposite corners
         of_a, of_b, of_c = (u[0] * v[1] - u[1] * v[0] for u, v in ((b, c), (c, a), (a, b)))
         sense = np.where((of_a >= 0.0) & (of_b >= 0.0) & (of_c >= 0.0), 1, 0) - np.where(
             (of_a < 0.0) & (of_b < 0.0) & (of_c < 0.0), 1, 0
@@ -125,7 +125,7 @@ class Inside:
 
 
 def inside_of(body: Body) -> Inside | None:
-    """The inside of a body; None if its triangles leave an opening or are missing."""
+    """Return the inside of a body; None if the body is open or has no triangles."""
     if not len(body.triangles):
         return None
     _, merged_ids = np.unique(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points, segments, triangles and pieces of beads in a tree of boxes: which solids they reach into, how far off they are."""
+"""Contact and distance of solids with points, segments, triangles and bead pieces in a box tree."""
 
 from __future__ import annotations
 
@@ -18,8 +18,10 @@ from .tolerances import CONVERGED, ROUNDING
 
 
 class Slabs(NamedTuple):
-    """Boxes (n,): centres (n, 3), three unit vectors square to each other and half sizes along them times these, (n, 3, 3),
-    with a rounding (n,) mm about them."""
+    """Oriented boxes with rounding, mm.
+
+    centre: (n, 3). sides: (n, 3, 3) three orthogonal half-edge vectors. rounding: (n,) radii.
+    """
 
     centre: Array
     sides: Array
@@ -27,21 +29,21 @@ class Slabs(NamedTuple):
 
 
 def build_slabs(corners: Array, radius: Array, size: int) -> Slabs:
-    """Build oriented boxes about groups of pieces.
+    """Build oriented boxes about groups of consecutive pieces.
 
     Parameters
     ----------
     corners : (m, 4, 3) array
         Corners of the pieces, start before end, mm.
     radius : (m,) array
-        Rounding about the pieces, mm.
+        Rounding radii of the pieces, mm.
     size : int
         Number of pieces in a group.
 
     Returns
     -------
     Slabs
-        One box for each group.
+        One box per group.
     """
     starts = np.arange(0, len(corners), size)
     ends = np.minimum(starts + size, len(corners)) - 1
@@ -50,7 +52,9 @@ def build_slabs(corners: Array, radius: Array, size: int) -> Slabs:
     )
     flat = corners[starts, 1] - corners[starts, 0]
     flat -= dots(flat, along)[:, None] * along
-    spare = np.zeros_like(flat)  # perpendicular to the direction, for pieces that are not flat
+    spare = np.zeros_like(
+        flat
+    )  # normal to the direction; for pieces whose section has no straight part
     spare[np.arange(len(along)), np.abs(along).argmin(axis=1)] = 1.0
     spare -= dots(spare, along)[:, None] * along
     flat = _directions(flat, unit_rows(spare))
@@ -69,8 +73,8 @@ def build_slabs(corners: Array, radius: Array, size: int) -> Slabs:
 def select_close(slabs: Slabs, solid: Frustum, node: Index, tip: Array, axis: Array) -> Index:
     """Return which pairs of a solid and a box may meet.
 
-    Where the solid is nearest to the centre, a plane touches it; a box entirely beyond that
-    plane misses the solid.
+    The plane through the solid's point nearest to the box centre supports the solid. A box
+    entirely beyond this plane misses the solid.
 
     Parameters
     ----------
@@ -79,7 +83,7 @@ def select_close(slabs: Slabs, solid: Frustum, node: Index, tip: Array, axis: Ar
     solid : Frustum
         The k solids.
     node : (k,) int array
-        The box of each pair.
+        Box index of each pair.
     tip : (k, 3) array
         Tips, mm.
     axis : (k, 3) array
@@ -88,7 +92,7 @@ def select_close(slabs: Slabs, solid: Frustum, node: Index, tip: Array, axis: Ar
     Returns
     -------
     int array
-        Rows of the remaining pairs.
+        Indices of the remaining pairs.
     """
     centre = slabs.centre.take(node, axis=0) - tip
     direction = solid.nearest(centre, axis) - centre
@@ -102,19 +106,19 @@ def select_close(slabs: Slabs, solid: Frustum, node: Index, tip: Array, axis: Ar
 
 
 def _directions(vectors: Array, otherwise: Array) -> Array:
-    """Return unit vectors (n, 3) of vectors; `otherwise` where they have no length."""
+    """Return unit vectors (n, 3) of vectors; `otherwise` for zero vectors."""
     directions: Array = np.where((lengths(vectors) > 0.0)[:, None], unit_rows(vectors), otherwise)
     return directions
 
 
-QUERIES = 16384  # worked on at once
-SLABS = 40  # pieces for each of as many queries as make oriented boxes worth their time
+QUERIES = 16384  # queries per batch
+SLABS = 40  # pieces per query below which oriented boxes save time
 ALWAYS, NEVER = -1, np.iinfo(np.intp).max
 NONE = -1  # no obstacle
 
 
 class _Level(NamedTuple):
-    """Nodes (n,) of the tree: the rounding about their boxes, and the earliest moments."""
+    """Nodes (n,) of one tree level: box rounding, earliest moments, bounds of path lines."""
 
     rounding: Array
     since: Index
@@ -122,12 +126,12 @@ class _Level(NamedTuple):
 
 
 class Obstacles:
-    """Convex bodies (m, c, 3), the hulls of c points each, in an order of their own.
+    """Convex obstacles (m, c, 3), each the hull of c points, sorted into a box tree.
 
-    These are points, segments, triangles, or pieces of beads: hulls of four points with a rounding
-    of `radius` (m,) mm about them. since: (m,) the moment from which each exists; always, if None.
-    line: (m, 2, 3) the axes of the bead pieces. They replace pieces in the current layer within
-    `foot` (m,) mm of the tip. chained: the pieces are short, and consecutive ones mostly touch.
+    Obstacles are points, segments, triangles or bead pieces. A bead piece is the hull of four
+    points with the rounding `radius` (m,) mm. since: (m,) moment from which each obstacle exists;
+    None: always. line: (m, 2, 3) path lines, which replace pieces of the current layer within
+    `foot` (m,) mm of the tip. chained: pieces are short, and consecutive pieces mostly touch.
     """
 
     def __init__(
@@ -150,14 +154,14 @@ class Obstacles:
         self._lay(corners)
 
     def replace_corners(self, corners: Array) -> Obstacles:
-        """Return a copy with other corners, close to the present ones.
+        """Return a copy with other corners, close to the present corners.
 
-        The order stays, for sorting takes most of the time.
+        The copy keeps the order, because sorting takes most of the time.
 
         Parameters
         ----------
         corners : (m, c, 3) array
-            Points of the bodies, mm.
+            Corners of the obstacles in the original order, mm.
 
         Returns
         -------
@@ -171,9 +175,7 @@ class Obstacles:
         return copied
 
     def _lay(self, corners: Array) -> None:
-        """Store the corners and the bounding boxes: for each level, centres and half sizes by
-        columns (3, n).
-        """
+        """Store the corners, and the box centres and half sizes (3, n) of each level."""
         self.corners = corners[self.order]
         self._sample = np.ascontiguousarray(self.corners[:, 0])
         by_column = np.ascontiguousarray(self.corners.transpose(1, 2, 0))
@@ -190,7 +192,7 @@ class Obstacles:
             self._normal = normal / np.where(size > 0.0, size, 1.0)[:, None]
 
     def _build_levels(self) -> list[_Level]:
-        """The levels of the tree, each from the one below it."""
+        """Build the tree levels from the lowest up."""
         rounding = np.zeros(len(self.since)) if self.radius is None else self.radius
         since = self.since
         lines = (
@@ -209,7 +211,7 @@ class Obstacles:
 
     @cached_property
     def _rows(self) -> list[tuple[Array, Array]]:
-        """Centres and half sizes (n, 3) of the boxes of each level row by row, which distances are looked for by."""
+        """Box centres and half sizes of each level as rows (n, 3), for distance queries."""
         return [
             (np.ascontiguousarray(centre.T), np.ascontiguousarray(half.T))
             for centre, half in self._boxes
@@ -217,7 +219,7 @@ class Obstacles:
 
     @cached_property
     def _radii(self) -> list[Array]:
-        """Radii of balls about the centres of the boxes of each level, for distance queries."""
+        """Bounding-ball radii about the box centres of each level, for distance queries."""
         level_radii = []
         for size, (centre, _) in zip(self._sizes, self._rows):
             offsets = self.corners - centre[np.arange(len(self.corners)) // size][:, None]
@@ -229,7 +231,7 @@ class Obstacles:
 
     @cached_property
     def _slabs(self) -> Slabs:
-        """Slabs about the bead pieces of the lowest nodes, in the orientation of the pieces."""
+        """Oriented boxes about the bead pieces of each lowest node."""
         assert self.radius is not None
         return build_slabs(self.corners, self.radius, tree.BRANCH)
 
@@ -252,9 +254,9 @@ class Obstacles:
         axis : (k, 3) array
             Unit axes.
         moment : (k,) int array or None, optional
-            Moments before which obstacles count; None for obstacles that always exist.
+            Moment of each solid; only earlier obstacles count. None: permanent obstacles only.
         layer_start : (k,) int array or None, optional
-            Moments at which the current layers began; None without layers.
+            Moment at which the current layer of each solid began; None without layers.
 
         Returns
         -------
@@ -304,7 +306,7 @@ class Obstacles:
                 )
                 query, node = query.take(remaining), node.take(remaining)
             if depth == 1:
-                # before the tests of single obstacles: most solids that meet any hold a first corner
+                # cheap test first: most solids in contact contain the first corner of a node
                 hits[
                     query[
                         self._sampled(
@@ -326,7 +328,9 @@ class Obstacles:
                 waiting += [(depth - 1, *pairs) for pairs in tree.parts(query, node)]
                 continue
             ready.append((query, node))
-            if sum(len(query) for query, _ in ready) > tree.PAIRS:  # many: that costs less each
+            if (
+                sum(len(query) for query, _ in ready) > tree.PAIRS
+            ):  # large batches cost less per pair
                 self._look(solid, tip, axis, layer_start, ready, hits)
                 ready = []
         self._look(solid, tip, axis, layer_start, ready, hits)
@@ -342,9 +346,7 @@ class Obstacles:
         moment: Index,
         layer_start: Index,
     ) -> Mask:
-        """Return whether (k,) the first corner of an obstacle is inside, which makes further tests
-        unnecessary.
-        """
+        """Return whether solids contain the first corner of an obstacle, (k,), and so touch it."""
         offset = self._sample.take(sample, axis=0) - tip.take(query, axis=0)
         inside: Mask = solid.rows(query).holds(offset, axis.take(query, axis=0))
         since = self.since.take(sample)
@@ -360,7 +362,7 @@ class Obstacles:
         ready: list[tuple[Index, Index]],
         hits: Mask,
     ) -> None:
-        """Mark the queries that meet one of their single obstacles."""
+        """Mark the queries whose solid meets one of the paired obstacles."""
         if ready:
             for query, node in tree.parts(*(np.concatenate(column) for column in zip(*ready))):
                 remaining = np.flatnonzero(~hits.take(query))
@@ -370,8 +372,9 @@ class Obstacles:
     def _meets(
         self, query: Index, solid: Frustum, tip: Array, axis: Array, node: Index, layer_start: Index
     ) -> Mask:
-        """Whether obstacles (k,) reach into the solids of queries (k,); for pieces of beads, whether any
-        piece of a query does.
+        """Return whether obstacles (k,) reach into the solids of their queries (k,).
+
+        For bead pieces, at least one contact of each query is found.
         """
         kind = self.corners.shape[1]
         offset = self.corners.take(node, axis=0) - tip[:, None]
@@ -386,8 +389,8 @@ class Obstacles:
             meets[cut] = solid.rows(cut).meets_triangles(offset[cut], axis[cut])
             return meets
         assert self.radius is not None and self.line is not None and self.foot is not None
-        # most are below the solid's lower end, and so are the lines of their beads: a box about a piece that is
-        # oblique to the axes is a weaker test
+        # most pieces and their path lines are below the solid's lower end; the axis-aligned boxes
+        # of oblique pieces do not show it
         high = separation.largest(np.einsum("kcj,kj->kc", offset, axis)) + self.radius.take(node)
         rows = np.flatnonzero(high > solid.low)
         node = node.take(rows)
@@ -422,9 +425,9 @@ class Obstacles:
         axis : (k, 3) array
             Unit axes.
         moment : (k,) int array or None, optional
-            Moments before which obstacles count; None for obstacles that always exist.
+            Moment of each solid; only earlier obstacles count. None: permanent obstacles only.
         reach : float, optional
-            Largest distance of interest, mm.
+            Maximum distance of interest, mm.
 
         Returns
         -------
@@ -442,7 +445,7 @@ class Obstacles:
         moment: Index | None = None,
         reach: float = np.inf,
     ) -> tuple[Array, Index]:
-        """Return the distances from solids to the nearest obstacle, and which one it is.
+        """Return the distances from solids to the nearest obstacle, and its index.
 
         Parameters
         ----------
@@ -453,16 +456,16 @@ class Obstacles:
         axis : (k, 3) array
             Unit axes.
         moment : (k,) int array or None, optional
-            Moments before which obstacles count; None for obstacles that always exist.
+            Moment of each solid; only earlier obstacles count. None: permanent obstacles only.
         reach : float, optional
-            Largest distance of interest, mm.
+            Maximum distance of interest, mm.
 
         Returns
         -------
         distance : (k,) array
-            Distances as `distance` returns them, mm.
+            Distances, mm, as `distance` returns.
         obstacle : (k,) int array
-            Numbers in the sorted order; NONE without an obstacle in reach.
+            Indices in the sorted order; NONE without an obstacle in reach.
         """
         gaps, nearest_ids = np.full(len(tip), reach), np.full(len(tip), NONE, dtype=np.intp)
         for begin in range(0, len(tip) if len(self.corners) else 0, QUERIES // 8):
@@ -476,7 +479,7 @@ class Obstacles:
     def _nearest(
         self, solid: Frustum, tip: Array, axis: Array, moment: Index, reach: float
     ) -> tuple[Array, Index]:
-        low, best = np.full((2, len(tip)), reach)  # bounds of the smallest distance so far
+        low, best = np.full((2, len(tip)), reach)  # bounds of the minimum distance so far
         nearest_ids = np.full(len(tip), NONE, dtype=np.intp)
         top = len(self._levels[-1].since)
         query, node = tree.each_with_each(len(tip), top)
@@ -513,7 +516,7 @@ class Obstacles:
             query, node, bounds_below = query[close], node[close], bounds_below[close]
             if depth:
                 query, node = tree.below(query, node, len(self._levels[depth - 1].since))
-        # the nearest by their balls first: most of the others are then known to be farther
+        # obstacles with the lowest bounds first: their distances exclude most other obstacles
         order = np.lexsort((bounds_below, query))
         query, node, bounds_below = query[order], node[order], bounds_below[order]
         share = 1
@@ -538,7 +541,7 @@ class Obstacles:
         best: Array,
         nearest_ids: Index,
     ) -> None:
-        """Lower the bounds of queries (n,) by their obstacles."""
+        """Lower the distance bounds of queries (n,) to the distances of paired obstacles."""
         for q, n in tree.parts(query, node):
             round_ = np.zeros(len(n)) if self.radius is None else self.radius[n]
             points = self.corners[n] - tip[q, None]
@@ -553,7 +556,7 @@ class Obstacles:
 def _lower_bounds(
     best: Array, nearest_ids: Index, query: Index, node: Index, upper_bound: Array
 ) -> None:
-    """Lower the `best` of queries (n,) to the upper bounds of nodes (n,), and note the nodes."""
+    """Lower `best` of queries (n,) to upper bounds of nodes (n,), and store node indices."""
     np.minimum.at(best, query, upper_bound)
     has = upper_bound <= best[query]
     nearest_ids[query[has]] = node[has]

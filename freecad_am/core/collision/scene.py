@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The obstacles of a nozzle or a link: bodies, including the platform, and the deposit at a moment.
+"""Collision scene of a nozzle or a link: bodies, including the platform, and deposit at a moment.
 
-A moment is a number that rises in print order: of a point, or of a row of a motion. A piece of a
-bead exists before the moment m if the number of its last point is less than m.
+A moment is an index that rises in print order: the index of a point or of a motion row. At moment
+m, a bead piece exists if the index of its last point is less than m.
 
-To check rapids, the scene contains `deposit.build_deposit` of the deposit rows of the motion, with
-the numbers of these rows as `moments` and a `grain`, and the platform as a body
-(`geometry.obstacles.disc`). The checked positions along the moves are tips and axes in part
-coordinates; their moment is the row at the end of the move. The solid is `nozzle.travelling(...)`.
-On retract and approach, which run like travels, its `exempt` is (k,) `max(exempt_height(radius,
-slope, height) - d, 0)`, with the distance d of each tip from the deposit point that it leaves or
-approaches; on travels it is 0. `distance` gives the clearance in mm.
+Check rapids as follows. Build the deposit with `deposit.build_deposit` from the deposit rows of
+the motion; pass the row indices as `moments`, and a `grain`. Add the platform as a body
+(`geometry.obstacles.disc`). Check tips and axes along the moves in part coordinates; their moment
+is the row at the end of the move. The solid is `travelling(...)`. Its `exempt` is 0 on travels. On
+retract and approach it is (k,) `max(exempt_height(radius, slope, height) - d, 0)`, where d is the
+distance between the tip and the deposit point that the tip leaves or approaches. `distance` returns
+the clearance, mm.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from .obstacles import Obstacles
 from .separation import middles, shortest_vectors
 from .tolerances import ABOVE_FACES, CHORD, FACES, HALFWAY
 
-PIECE = 8.0  # mm, longest edge of a triangle once it is cut up: slender triangles have large balls
-REMEMBERED = 1_000  # triangles of bodies that are kept as they are cut up
-MOST_PIECES = 60_000  # of all bodies; beyond this number the pieces are longer
+PIECE = 8.0  # mm; maximum edge after subdivision: slender triangles have large bounding balls
+REMEMBERED = 1_000  # maximum number of body triangles whose subdivision is cached
+MOST_PIECES = 60_000  # maximum number of triangles after subdivision, or twice the input if larger
 
 
 @dataclass(frozen=True)
 class Bodies:
-    """Triangles, and closed bodies within the reach of the solids to check; present at any moment."""
+    """Body triangles and closed bodies near the checked solids; both exist at every moment."""
 
     triangles: Obstacles
     solids: tuple[Inside, ...]
@@ -46,8 +46,8 @@ class Bodies:
     def find_touching(self, solid: Frustum, tip: Array, axis: Array) -> Mask:
         """Return whether solids meet a triangle or are inside a closed body.
 
-        A solid that meets no triangle of a closed body is entirely inside or outside: one
-        point of its axis decides.
+        A solid that meets no triangle of a closed body is entirely inside or outside the body,
+        so one point of the solid's axis decides.
 
         Parameters
         ----------
@@ -80,7 +80,7 @@ class Bodies:
         axis : (k, 3) array
             Unit axes.
         reach : float
-            Largest distance of interest, mm.
+            Maximum distance of interest, mm.
 
         Returns
         -------
@@ -108,23 +108,23 @@ class Bodies:
 def build_bodies(
     bodies: Sequence[Body], around: Array, reach: float, max_edge: float = PIECE
 ) -> Bodies:
-    """Return the triangles and insides of bodies near some points.
+    """Build the triangles and closed bodies near points.
 
     Parameters
     ----------
     bodies : sequence of Body
-        Bodies in part coordinates; an open body only has its triangles.
+        Bodies in part coordinates; an open body contributes only its triangles.
     around : (n, 3) array
         The points, mm.
     reach : float
-        Distance from the box about the points, mm.
+        Margin about the bounding box of the points, mm.
     max_edge : float, optional
-        Longest edge of a triangle after subdivision, mm.
+        Maximum triangle edge after subdivision, mm.
 
     Returns
     -------
     Bodies
-        The bodies within reach.
+        Triangles and closed bodies that meet the enlarged box.
     """
     if not bodies:
         return Bodies(Obstacles(np.zeros((0, 3, 3))), ())
@@ -134,7 +134,7 @@ def build_bodies(
         triangles = _build_all(corners.tobytes(), max_edge)
     else:
         triangles = Obstacles(_cut_up(corners, low, high, max_edge))
-    # only a body whose box reaches as far has room for a whole nozzle about one of the points
+    # a nozzle at one of the points can be inside a body only if the boxes meet
     nearby = [
         body
         for body in bodies
@@ -147,20 +147,21 @@ def build_bodies(
 
 @lru_cache(maxsize=1)
 def _build_all(corners: bytes, max_edge: float) -> Obstacles:
-    """Subdivide all triangles of bodies, cached: most jobs only have their platform, and check it
-    several times.
+    """Subdivide all body triangles.
+
+    The result is cached because most jobs check only a platform, several times.
     """
     triangles = np.frombuffer(corners).reshape(-1, 3, 3)
     return Obstacles(_cut_up(triangles, np.full(3, -np.inf), np.full(3, np.inf), max_edge))
 
 
 def _cut_up(corners: Array, low: Array, high: Array, max_edge: float) -> Array:
-    """Triangles (m, 3, 3) in pieces, as far as these meet a box."""
+    """Subdivide triangles (m, 3, 3) and return the pieces that meet a box."""
     count = len(corners)
     while True:
         corners = corners[_in_box(corners, low, high)]
         edges = sides(corners)
-        # halve the longest edges first, so that the largest triangles are divided if space runs out
+        # halve the longest edges first: MOST_PIECES then limits only the smaller triangles
         longest = np.maximum(np.maximum(edges[:, 0], edges[:, 1]), edges[:, 2])
         long = longest > max(max_edge, 0.5 * float(longest.max(initial=0.0)))
         if not long.any() or len(corners) + int(long.sum()) > max(MOST_PIECES, 2 * count):
@@ -171,7 +172,10 @@ def _cut_up(corners: Array, low: Array, high: Array, max_edge: float) -> Array:
 
 
 def _in_box(corners: Array, low: Array, high: Array) -> Mask:
-    """(m,) whether the boxes of triangles (m, 3, 3) meet another one; axis by axis, in a fifth of the time of reductions."""
+    """Return whether the bounding boxes of triangles (m, 3, 3) meet the box from `low` to `high`.
+
+    Axis by axis, this takes a fifth of the time of numpy reductions.
+    """
     hits = np.ones(len(corners), dtype=bool)
     for axis in range(3):
         a, b, c = (corners[:, k, axis] for k in range(3))
@@ -182,43 +186,46 @@ def _in_box(corners: Array, low: Array, high: Array) -> Mask:
 
 
 def _halves(corners: Array, edge: Index) -> Array:
-    """Triangles cut in two through the middle of an edge each."""
+    """Bisect each triangle at the midpoint of one of its edges."""
     row = np.arange(len(corners))
     a, b, c = (corners[row, (edge + k) % 3] for k in range(3))
     middle = 0.5 * (a + b)
     return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
 
-LEAST_UPRIGHT = 0.25  # minimum rise of the lower side of a leaning nozzle per mm along its axis
+LEAST_UPRIGHT = 0.25  # mm per mm of tool axis; minimum rise of a leaning nozzle's lower side
 
 
 @dataclass(frozen=True)
 class Nozzle:
-    """The same nozzle less what touches where it deposits, and less what bodies and beads are off their true places."""
+    """Solids of one nozzle: `bodies` to check against bodies, `deposit` to check against deposit.
+
+    Both omit the intended contact near the tip and allow for model deviations (`tolerances`).
+    """
 
     bodies: Frustum
     deposit: Frustum
 
     @property
     def reach(self) -> float:
-        """Largest distance of a point of the nozzle from the tip, mm."""
+        """Maximum distance between the tip and a point of the nozzle, mm."""
         return max(self.bodies.reach, self.deposit.reach)
 
     @property
     def foot(self) -> float:
-        """Diameter of the lower end to check against deposit, mm: around it is the current bead."""
+        """Diameter of the lower end of `deposit`, mm; the current bead surrounds this end."""
         return float(np.max(2.0 * (self.deposit.radius + self.deposit.slope * self.deposit.low)))
 
     def rows(self, index: Index) -> Nozzle:
-        """The nozzles of some of the rows, where they differ."""
+        """Return the nozzles of rows `index`, as `Frustum.rows` does."""
         return Nozzle(self.bodies.rows(index), self.deposit.rows(index))
 
     def halfway(self) -> Nozzle:
-        """The nozzle to check halfway between points where it is clear."""
+        """Return the nozzle to check at midpoints between points where the nozzle is clear."""
         return self.larger(-HALFWAY)
 
     def larger(self, by: float) -> Nozzle:
-        """The nozzle with its side and its upper end `by` mm farther out."""
+        """Return the nozzle with its side and upper end offset outwards by `by` mm."""
         return Nozzle(
             *(
                 replace(
@@ -234,9 +241,10 @@ class Nozzle:
 def exempt_height(radius: float, slope: float, bead_height: float, lean: float = 0.0) -> float:
     """Return the height below which contact with deposit is exempt.
 
-    The tip is in the bead that it prints, and adjacent beads overlap that bead by intention: up
-    to the bead's height they may be around the nozzle, also below the lower side of a leaning
-    one. The minimum is the height at which the nozzle's side is one tip diameter from the tip.
+    The tip is inside the bead that it prints, and adjacent beads overlap this bead by design. Up
+    to the bead's height, deposit may therefore surround the nozzle, also under the lower side of a
+    leaning nozzle. The minimum is the height at which the nozzle's side is one tip diameter from
+    the tip.
 
     Parameters
     ----------
@@ -252,7 +260,7 @@ def exempt_height(radius: float, slope: float, bead_height: float, lean: float =
     Returns
     -------
     float
-        Height over the tip plane, mm.
+        Height above the tip plane, mm.
     """
     upright = max(float(np.cos(lean) - slope * np.sin(lean)), LEAST_UPRIGHT)
     return max(side_height(radius, slope), (bead_height + radius * float(np.sin(lean))) / upright)
@@ -261,9 +269,9 @@ def exempt_height(radius: float, slope: float, bead_height: float, lean: float =
 def depositing(
     radius: float, slope: float, length: float, bead_height: float, lean: float = 0.0
 ) -> Nozzle:
-    """Return the nozzle while it deposits.
+    """Return the nozzle solids to check on deposit moves.
 
-    Bodies are exempt only as far as the nozzle touches its support.
+    Contact with bodies is exempt only near the tip, where the nozzle touches its support.
 
     Parameters
     ----------
@@ -274,14 +282,14 @@ def depositing(
     length : float
         Length of the nozzle, mm.
     bead_height : float
-        Height of the highest bead, mm.
+        Maximum bead height, mm.
     lean : float, optional
-        Intended angle between tool axis and build direction, rad.
+        Planned angle between tool axis and build direction, rad.
 
     Returns
     -------
     Nozzle
-        The nozzle as tested against bodies and deposit.
+        Solids to check against bodies and deposit.
     """
     return Nozzle(
         Frustum(radius, slope, side_height(radius, slope) + ABOVE_FACES, length),
@@ -290,7 +298,7 @@ def depositing(
 
 
 def travelling(radius: float, slope: float, length: float, exempt: float | Array = 0.0) -> Nozzle:
-    """Return the nozzle on a rapid.
+    """Return the nozzle solids to check on a rapid.
 
     Parameters
     ----------
@@ -301,14 +309,13 @@ def travelling(radius: float, slope: float, length: float, exempt: float | Array
     length : float
         Length of the nozzle, mm.
     exempt : float or (k,) array, optional
-        Height above the tip that is exempt, mm. On retract and approach it is
-        `exempt_height` at the deposit point less the distance of the tip from it, at least
-        0.
+        Exempt height above the tip, mm. On retract and approach: `exempt_height` minus the
+        distance between the tip and the deposit point, at least 0.
 
     Returns
     -------
     Nozzle
-        The nozzle as tested against bodies and deposit.
+        Solids to check against bodies and deposit.
     """
     return Nozzle(
         Frustum(max(radius - FACES, 0.0), slope, np.maximum(exempt, FACES), length),
@@ -318,8 +325,9 @@ def travelling(radius: float, slope: float, length: float, exempt: float | Array
 
 @dataclass(frozen=True)
 class Scene:
-    """bodies: present at any moment; deposit: from its moments on, None without any; as `InParts` it
-    gives no distances.
+    """Bodies, which exist at every moment, and deposit, whose pieces exist from their moments on.
+
+    deposit: None without deposit; `InParts` supports contact tests but no distances.
     """
 
     bodies: Bodies
@@ -338,17 +346,16 @@ class Scene:
         Parameters
         ----------
         solid : Nozzle or Frustum
-            The k solids; a nozzle has different ones for bodies and deposit.
+            The k solids; a nozzle has separate solids for bodies and deposit.
         tip : (k, 3) array
             Tips in part coordinates, mm.
         axis : (k, 3) array
             Unit axes in part coordinates.
         moment : (k,) int array or None, optional
-            Moments before which deposit counts; None for all deposit.
+            Moment of each solid; only earlier deposit counts. None for all deposit.
         layer_start : (k,) int array or None, optional
-            Moments at which the current layers began. Their beads next to the tip,
-            within their width, count as the lines of their points: they may touch the
-            nozzle.
+            Moment at which the current layer of each solid began. Beads of this layer may
+            touch the nozzle near the tip: within their width, only their path lines count.
 
         Returns
         -------
@@ -380,21 +387,21 @@ class Scene:
         Parameters
         ----------
         solid : Nozzle or Frustum
-            The k solids; a nozzle has different ones for bodies and deposit.
+            The k solids; a nozzle has separate solids for bodies and deposit.
         tip : (k, 3) array
             Tips in part coordinates, mm.
         axis : (k, 3) array
             Unit axes in part coordinates.
         moment : (k,) int array or None, optional
-            Moments before which deposit counts; None for all deposit.
+            Moment of each solid; only earlier deposit counts. None for all deposit.
         reach : float, optional
-            Largest distance of interest, mm.
+            Maximum distance of interest, mm.
 
         Returns
         -------
         (k,) array
-            Distances, mm; 0 on contact, at most `reach`. Never too large; too small by
-            at most tolerances.CONVERGED, except where both graze.
+            Distances, mm; 0 on contact, at most `reach`. Never above the true distance; below
+            by at most tolerances.CONVERGED, except for grazing pairs.
         """
         nozzle = solid if isinstance(solid, Nozzle) else Nozzle(solid, solid)
         distances = self.bodies.distance(nozzle.bodies, tip, axis, reach)
@@ -411,7 +418,7 @@ class Scene:
     ) -> tuple[Array, Array, Array]:
         """Find the nearest obstacle of each solid.
 
-        A solid within a body counts by the body's triangles.
+        Inside a body, the distance to the body's triangles counts.
 
         Parameters
         ----------
@@ -422,9 +429,9 @@ class Scene:
         axis : (k, 3) array
             Unit axes in part coordinates.
         moment : (k,) int array
-            Moments before which deposit counts.
+            Moment of each solid; only earlier deposit counts.
         reach : float
-            Largest distance of interest, mm.
+            Maximum distance of interest, mm.
 
         Returns
         -------
@@ -434,7 +441,7 @@ class Scene:
             Unit vectors from the obstacle towards the solid; zero on contact or beyond
             reach.
         position : (k, 3) array
-            The nearest points of the solids, mm.
+            Nearest points of the solids, mm.
         """
         gap = np.full(len(tip), reach)
         normal = np.zeros((len(tip), 3))
@@ -461,7 +468,7 @@ class Scene:
 def scene(
     bodies: Sequence[Body], around: Array, reach: float, deposit: Obstacles | InParts | None = None
 ) -> Scene:
-    """Return the scene of bodies near some points, and a deposit.
+    """Build the scene of a deposit and the bodies near points.
 
     Parameters
     ----------
@@ -470,9 +477,9 @@ def scene(
     around : (n, 3) array
         The points, mm.
     reach : float
-        Distance from the box about the points, mm.
+        Margin about the bounding box of the points, mm.
     deposit : Obstacles or InParts or None, optional
-        The deposit; None without one.
+        The deposit, if any.
 
     Returns
     -------

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Distances between solids of revolution and the convex hulls of few points, many pairs at once.
+"""Distances between solids of revolution and convex hulls of a few points, for many pairs at once.
 
-After Gilbert, Johnson and Keerthi (1988): the set of differences of both solids' points is convex, and its point nearest
-to the origin is approached by simplices of its extreme points. With each comes a lower bound, so that a pair that is
-farther apart, or nearer, than matters is done at once.
+Method of Gilbert, Johnson and Keerthi (1988): the Minkowski difference of two convex solids is
+convex. Simplices of its extreme points converge to its point nearest to the origin. Each step also
+yields a lower bound, so the iteration can stop early for pairs that are clearly near or far.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ from ..types import Array, Index, Mask
 from .frustum import Frustum
 from .tolerances import CONVERGED, ROUNDING
 
-# edges from the newest point of a simplex with four points: each edge, the sides that these edges
-# form, and the faces by their two edges
+# subsets of a four-point simplex that contain the newest point: indices of its three edges, rows of
+# the edge and face candidates, and the two edges of each face
 _EDGE_IDS, _SIDE, _FACE = np.arange(3), np.arange(1, 4), np.arange(4, 7)
 _FACE_EDGE_A, _FACE_EDGE_B = np.array([0, 0, 1]), np.array([1, 2, 2])
-# required products of edges: squares, then products of two edges
+# factors of the required edge products: squares, then mixed products
 _FACTOR_A, _FACTOR_B = (
     np.concatenate([_EDGE_IDS, _FACE_EDGE_A]),
     np.concatenate([_EDGE_IDS, _FACE_EDGE_B]),
 )
-# cross products of the two other edges: the factors among 9 components, the positive terms first
+# factors, among 9 components, of the cross product of the other two edges; positive terms first
 _NEXT, _AFTER = np.array([[1], [2], [0]]), np.array([[2], [0], [1]])
 _CROSS = np.array(
     [
@@ -35,8 +35,8 @@ _CROSS = np.array(
         for one, part in ((_NEXT, _NEXT), (_AFTER, _AFTER), (_NEXT, _AFTER), (_AFTER, _NEXT))
     ]
 )
-# for four points, by the sum of the codes of the active points: three points, first the active
-# ones, then one of them repeated
+# corner indices by the sum of the active corners' codes: up to three active corners, padded with
+# the first active corner
 _CODE = np.array([1, 2, 4, 8])
 _SIMPLEX_CORNERS = np.array(
     [
@@ -44,12 +44,14 @@ _SIMPLEX_CORNERS = np.array(
         for having in (tuple(k for k in range(4) if code >> k & 1) for code in range(16))
     ]
 )
-BATCH = 500  # pairs that are done as soon together as in two parts
-MAX_STEPS = 64  # steps of a pair; an unsettled pair is then close to grazing and keeps its bounds
+BATCH = 500  # pairs; up to this number, one pass is as fast as two
+MAX_STEPS = (
+    64  # maximum steps of a pair; an unconverged pair is nearly grazing and keeps its bounds
+)
 
 
 class Hull(Protocol):
-    """Convex shapes (k,): selectable by rows, with the points (k, 3) farthest along directions."""
+    """k convex shapes that support row selection and farthest points (k, 3) along directions."""
 
     def __len__(self) -> int: ...
     def __getitem__(self, rows: Index) -> Hull: ...
@@ -66,8 +68,8 @@ def bounds(
 ) -> tuple[Array, Array]:
     """Return lower and upper bounds of the distance between solids and hulls.
 
-    The bounds agree within CONVERGED, unless the distance is surely below `nearer` or above
-    `farther`.
+    Both bounds of a pair agree within CONVERGED, unless the distance is certainly below `nearer`
+    or above `farther`.
 
     Parameters
     ----------
@@ -78,18 +80,18 @@ def bounds(
     points : (k, c, 3) array or Hull
         Corners of the hulls from the tips, mm.
     nearer, farther : float or (k,) array, optional
-        Distances at which the search may stop, mm.
+        Thresholds, mm; the search stops when a distance is certainly below or above.
     start : (k, 3) array or None, optional
-        Vectors from the hulls to the solids to begin with; None for `from_middles`.
+        Initial vectors from the hulls to the solids; None for `from_middles`.
 
     Returns
     -------
     low, high : (k,) array
-        The bounds, mm; 0 where the two meet.
+        Bounds, mm; 0 where solid and hull meet.
 
     Notes
     -----
-    The algorithm of Gilbert, Johnson and Keerthi on the Minkowski difference.
+    Algorithm of Gilbert, Johnson and Keerthi on the Minkowski difference.
     """
     count = len(points)
     low = np.zeros(count)
@@ -122,7 +124,7 @@ def bounds(
             else _nearest(simplex, newest)
         )
         now = np.sqrt(dots(nearest_point, nearest_point))
-        # no nearer than before: rounding has the last word
+        # a step that does not reduce the distance is rounding error: keep the previous bound
         high[rows] = np.where(now > CONVERGED, np.minimum(now, size), 0.0)
         going = np.flatnonzero((now > np.maximum(nearer.take(rows), CONVERGED)) & (now < size))
         if len(going) < len(rows):
@@ -148,14 +150,14 @@ def shortest_vectors(
     points : (k, c, 3) array or Hull
         Corners of the hulls from the tips, mm.
     middle : (k, 3) array
-        A point of each hull.
+        A start point in each hull, from the tips, mm.
 
     Returns
     -------
     points : (k, 3) array
         Points of the hulls, from the tips, mm.
     vectors : (k, 3) array
-        Vectors from there to the solids; zero for pairs that meet.
+        Vectors from these points to the solids; zero for pairs that meet.
     """
     vectors = np.concatenate([solid.nearest(middle, axis) - middle, middle], axis=1)
     rows = np.flatnonzero(dots(vectors[:, :3], vectors[:, :3]) > CONVERGED**2)
@@ -192,7 +194,7 @@ def shortest_vectors(
 
 
 def _farthest(points: Array | Hull, direction: Array) -> Array:
-    """Return the points (k, 3) of hulls farthest along directions (k, 3)."""
+    """Return the hull points (k, 3) farthest along directions (k, 3)."""
     if not isinstance(points, np.ndarray):
         return points.farthest(direction)
     corner_ids = np.einsum("kcj,kj->kc", points, direction).argmax(axis=1)
@@ -214,9 +216,9 @@ def find_overlaps(
     points : (k, c, 3) array
         Corners of the hulls from the tips, mm.
     radius : (k,) array
-        Rounding about the hulls, mm.
+        Rounding radii of the hulls, mm.
     start : (k, 3) array or None, optional
-        Vectors to begin with, as for `bounds`.
+        Initial vectors, as for `bounds`.
 
     Returns
     -------
@@ -232,15 +234,16 @@ def find_overlaps(
 def find_any_overlap(
     query: Index, solid: Frustum, axis: Array, points: Array, radius: Array
 ) -> Mask:
-    """Return `find_overlaps` as far as needed to know whether any hull of a query overlaps.
+    """Find at least one overlapping hull for each query that has an overlap.
 
-    The hull with the nearest middle is tested first, the others only if it does not overlap,
-    unless there are few.
+    Closed-form distances from centroids and corners are tested first. Then each query's closest
+    hull is tested, and its other hulls only if this hull does not overlap. Up to BATCH pairs are
+    tested in one pass.
 
     Parameters
     ----------
     query : (k,) int array
-        Query of each pair.
+        Query index of each pair.
     solid : Frustum
         The k solids.
     axis : (k, 3) array
@@ -248,12 +251,12 @@ def find_any_overlap(
     points : (k, c, 3) array
         Corners of the hulls from the tips, mm.
     radius : (k,) array
-        Rounding about the hulls, mm.
+        Rounding radii of the hulls, mm.
 
     Returns
     -------
     (k,) bool array
-        True for overlaps that were tested; at least one for each query with an overlap.
+        True for overlaps found; at least one for each query with an overlap.
     """
     deep = np.maximum(radius - CONVERGED, 0.0)
     middle = middles(points)
@@ -262,7 +265,8 @@ def find_any_overlap(
     overlaps: Mask = (gap < deep) | (gap == 0.0)
     met = np.zeros(query.max(initial=-1) + 1, dtype=bool)
     met[query[overlaps]] = True
-    # where the point nearest to a middle is, a plane touches the solid: the hull is no nearer than its corners are to that
+    # the plane through the solid's point nearest to the centroid supports the solid: the corner
+    # nearest to this plane bounds the distance from below
     offsets = points - middle[:, None]
     nearer = largest(np.einsum("kcj,kj->kc", offsets, vectors)) / np.where(gap > 0.0, gap, 1.0)
     remaining = np.flatnonzero(
@@ -290,7 +294,7 @@ def find_any_overlap(
 
 
 def from_middles(solid: Frustum, axis: Array, points: Array) -> Array:
-    """Return the vectors from the middles of hulls to the nearest points of solids.
+    """Return the vectors from hull centroids to the nearest points of solids.
 
     Parameters
     ----------
@@ -312,9 +316,10 @@ def from_middles(solid: Frustum, axis: Array, points: Array) -> Array:
 
 
 def _from_corners(solid: Frustum, axis: Array, points: Array, vectors: Array) -> Array:
-    """Return vectors (k, 3) from hulls of points (k, c, 3) to solids, to start from: the vector of the
-    nearest corner where it is shorter than `vectors` (k, 3). From there `bounds` takes half of the
-    steps.
+    """Return start vectors (k, 3) for `bounds` from hulls of points (k, c, 3) to solids.
+
+    The vector of the nearest corner replaces a longer vector of `vectors` (k, 3). `bounds` then
+    takes half as many steps.
     """
     rows, hull_ids = np.arange(len(points)), np.repeat(np.arange(len(points)), points.shape[1])
     corners = points.reshape(-1, 3)
@@ -328,7 +333,7 @@ def _from_corners(solid: Frustum, axis: Array, points: Array, vectors: Array) ->
 
 
 def from_origin(segment: Array) -> Array:
-    """Return the distances of segments from the origin.
+    """Return the distances between segments and the origin.
 
     Parameters
     ----------
@@ -348,9 +353,9 @@ def from_origin(segment: Array) -> Array:
 
 
 def middles(points: Array) -> Array:
-    """Return the means of few points each.
+    """Return the centroids of groups of a few points.
 
-    Column by column this is many times as fast as along a short axis.
+    Column by column, this is many times as fast as a reduction along a short axis.
 
     Parameters
     ----------
@@ -360,7 +365,7 @@ def middles(points: Array) -> Array:
     Returns
     -------
     (k, 3) array
-        Their means.
+        The centroids.
     """
     middle = points[:, 0].copy()
     for column in range(1, points.shape[1]):
@@ -370,7 +375,7 @@ def middles(points: Array) -> Array:
 
 
 def largest(values: Array) -> Array:
-    """Return the largest of few values each.
+    """Return the row maxima of an array with few columns.
 
     Parameters
     ----------
@@ -380,7 +385,7 @@ def largest(values: Array) -> Array:
     Returns
     -------
     (k,) array
-        Their maxima.
+        The maxima.
     """
     maxima: Array = values[:, 0]
     for column in range(1, values.shape[1]):
@@ -389,7 +394,7 @@ def largest(values: Array) -> Array:
 
 
 def _nearest_on_segments(points: Array, newest: Array) -> tuple[Array, Array]:
-    """Return the results of `_nearest` for segments from points (k, 3) to the newest ones."""
+    """Return the results of `_nearest` for segments from `points` (k, 3) to `newest` (k, 3)."""
     edge = points - newest
     along, origin = edge[:, :3], newest[:, :3]
     square, pull, square_norm = dots(along, along), -dots(origin, along), dots(origin, origin)
@@ -410,16 +415,15 @@ def _nearest_on_segments(points: Array, newest: Array) -> tuple[Array, Array]:
 
 
 def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
-    """Return the point (k, 3) nearest to the origin in the hulls of three points (k, 3, 3) and a
-    newest one (k, 3).
+    """Return the hull points (k, 3) nearest to the origin, and the active corners (k, 3, 3).
 
-    Some of the three may coincide; the newest one is part of the solution. Also returns the up to
-    three other active points (k, 3, 3). Extra columns after the three coordinates are interpolated
-    with the same weights.
+    Each hull has the three points of `simplex` (k, 3, 3), which may coincide, and the `newest`
+    point (k, 3), which is always active. Columns after the three coordinates are interpolated with
+    the same weights.
     """
     edges, origin = simplex - newest[:, None], columns(newest[:, :3])
-    # by edges, components, rows; all corners, sides and faces that hold the newest point at once: most calls are about a
-    # handful of simplices
+    # axes: edge, component, row. All vertices, edges and faces with the newest point are evaluated
+    # at once, because most calls have only a few simplices
     edge = np.ascontiguousarray(edges[:, :, :3].transpose(1, 2, 0))
     squares = _summed(edge.take(_FACTOR_A, axis=0) * edge.take(_FACTOR_B, axis=0))
     square = squares[:3]
@@ -431,7 +435,7 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
     with np.errstate(divide="ignore", invalid="ignore"):
         parameter = np.minimum(
             np.maximum(np.where(square > 0.0, pull / square, 0.0), 0.0), 1.0
-        )  # np.clip takes many times that
+        )  # np.clip is many times slower
         shares[_SIDE, _EDGE_IDS] = parameter
         value[1:4] = square_norm - 2.0 * parameter * pull + parameter * parameter * square
         a, c, pull_a, pull_c = (
@@ -446,7 +450,7 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
         )
         shares[_FACE, _FACE_EDGE_A], shares[_FACE, _FACE_EDGE_B] = share_a, share_b
         value[4:] = np.where(holds, square_norm - share_a * pull_a - share_b * pull_c, np.inf)
-        # normals of the faces opposite to each edge: the cross products of the two after it
+        # for each edge, the normal of the face that the other two edges span
         one_way, other_way, back, other_back = edge.reshape(9, -1).take(_CROSS, axis=0)
         normal = one_way * other_way - back * other_back
         volume = _summed((edge[0] * normal[0])[None])[0]
@@ -468,18 +472,21 @@ def _nearest(simplex: Array, newest: Array) -> tuple[Array, Array]:
 
 
 def _summed(products: Array) -> Array:
-    """(m, k) sums of the components of products (m, 3, k), added up in the order of `dots`."""
+    """Sum the components of products (m, 3, k) to (m, k), in the order of `dots`."""
     total: Array = products[:, 0] + products[:, 2]
     total += products[:, 1]
     return total
 
 
-PARALLEL = 1e-9  # of the square of a sine
+PARALLEL = 1e-9  # squared sine of the angle up to which axes count as parallel
 
 
 @dataclass(frozen=True, eq=False)
 class PlacedCylinders:
-    """One rod in k places: where it starts (k, 3), its unit axes (k, 3), its length and radius; mm."""
+    """A cylinder in k positions.
+
+    start: (k, 3) centres of the first end, mm. axis: (k, 3) unit vectors. length, radius: mm.
+    """
 
     start: Array
     axis: Array
@@ -487,18 +494,18 @@ class PlacedCylinders:
     radius: float
 
     def of(self, rows: Index) -> PlacedCylinders:
-        """Return the cylinders at some of the places."""
+        """Return the cylinders of `rows`."""
         return PlacedCylinders(self.start[rows], self.axis[rows], self.length, self.radius)
 
     @property
     def solid(self) -> Frustum:
-        """Return the cylinder as a solid about its axis, from its start."""
+        """Return the cylinder as a frustum with the tip at `start`."""
         return Frustum(self.radius, 0.0, 0.0, self.length)
 
 
 @dataclass(frozen=True)
 class _Pairs:
-    """The second cylinders as `separation.bounds` asks for points, seen from where the first ones start."""
+    """The second cylinders as a `Hull` for `bounds`, relative to the starts of the first."""
 
     cylinders: PlacedCylinders
 
@@ -509,7 +516,7 @@ class _Pairs:
         return _Pairs(self.cylinders.of(rows))
 
     def farthest(self, direction: Array) -> Array:
-        """Return the farthest points (k, 3) along directions (k, 3)."""
+        """Return the cylinder points (k, 3) farthest along directions (k, 3)."""
         points: Array = self.cylinders.start + self.cylinders.solid.farthest(
             direction, self.cylinders.axis
         )
@@ -517,22 +524,22 @@ class _Pairs:
 
 
 def nearer(cylinders: PlacedCylinders, others_at: PlacedCylinders, gap: float) -> Mask:
-    """Return whether two cylinders are nearer to each other than a gap.
+    """Return whether pairs of cylinders are closer than a gap.
 
     Parameters
     ----------
     cylinders, others_at : PlacedCylinders
-        The cylinders in k places each.
+        Cylinders in k positions each.
     gap : float
-        The gap, mm, more than 0.
+        The gap, mm; must be positive.
 
     Returns
     -------
     (k,) bool array
-        True for cylinders that are nearer or meet.
+        True for cylinders that are closer than the gap or meet.
     """
     distances = axes_apart(cylinders, others_at)
-    are_nearer: Mask = distances < gap  # the axes themselves are in the cylinders
+    are_nearer: Mask = distances < gap  # the axes are inside the cylinders
     doubtful = np.flatnonzero(~are_nearer & (distances < gap + cylinders.radius + others_at.radius))
     if len(doubtful):
         first_cylinders, second_cylinders = cylinders.of(doubtful), others_at.of(doubtful)
@@ -546,14 +553,14 @@ def nearer(cylinders: PlacedCylinders, others_at: PlacedCylinders, gap: float) -
         )
         middle = adjacent.cylinders.start + 0.5 * second_cylinders.length * second_cylinders.axis
         start = first_cylinders.solid.nearest(middle, first_cylinders.axis) - middle
-        # where that middle is inside the cylinder the distance is 0, and they intersect
+        # cylinders intersect if the midpoint of the second is inside the first
         inside = dots(start, start) <= CONVERGED**2
         are_nearer[doubtful[inside]] = True
         rows = np.flatnonzero(~inside)
         low, _ = bounds(
             first_cylinders.solid, first_cylinders.axis[rows], adjacent[rows], gap, gap, start[rows]
         )
-        are_nearer[doubtful[rows]] = low < gap  # doubtful pairs count as near
+        are_nearer[doubtful[rows]] = low < gap  # unresolved pairs count as near
     return are_nearer
 
 
@@ -563,12 +570,12 @@ def axes_apart(cylinders: PlacedCylinders, others_at: PlacedCylinders) -> Array:
     Parameters
     ----------
     cylinders, others_at : PlacedCylinders
-        The cylinders in k places each.
+        Cylinders in k positions each.
 
     Returns
     -------
     (k,) array
-        Distances of the segments from end to end, mm.
+        Distances between the axis segments, mm.
     """
     off = cylinders.start - others_at.start
     lean = dots(cylinders.axis, others_at.axis)
@@ -581,7 +588,7 @@ def axes_apart(cylinders: PlacedCylinders, others_at: PlacedCylinders) -> Array:
     )
     along = np.minimum(
         np.maximum(along, 0.0), cylinders.length
-    )  # np.clip takes many times that for a few
+    )  # np.clip is many times slower for few values
     along_other = np.minimum(np.maximum(lean * along + second_offset, 0.0), others_at.length)
     along = np.minimum(np.maximum(lean * along_other - first_offset, 0.0), cylinders.length)
     distances: Array = lengths(
@@ -596,14 +603,14 @@ def nearest(cylinders: PlacedCylinders, others_at: PlacedCylinders) -> tuple[Arr
     Parameters
     ----------
     cylinders, others_at : PlacedCylinders
-        The cylinders in k places each.
+        Cylinders in k positions each.
 
     Returns
     -------
     points : (k, 3) array
         Points of the second cylinders, mm.
     vectors : (k, 3) array
-        Vectors from there to the first cylinders; zero for pairs that meet.
+        Vectors from these points to the first cylinders; zero for pairs that meet.
     """
     adjacent = _Pairs(
         PlacedCylinders(

@@ -1,22 +1,20 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every tolerance of collision checks, mm, each with its reason. No other file defines one.
+"""All tolerances of collision checks, mm, with their reasons. No other file defines one.
 
-The model differs from reality: faces by their triangles, beads by their chords, links by their
-drawn shapes. A solid that must not touch is made smaller by that much where it is known to pass
-(nozzles), larger where no contact may be missed (links).
+The model approximates faces by triangles, beads by chords and links by drawn shapes. Nozzles, which
+are known to pass, are reduced by the deviation. Links, whose contacts must not be missed, are
+enlarged by it.
 """
 
-ROUNDING = 1e-9  # of depth in closed forms, which is rounding
-CONVERGED = 1e-6  # to which distances found by iteration are known
-FACES = 0.1  # that triangles of bodies are off their true faces: what a nozzle may be deep in them on rapids
+ROUNDING = 1e-9  # depths up to this in closed forms are rounding errors
+CONVERGED = 1e-6  # accuracy of iterated distances
+FACES = 0.1  # deviation of body triangles from true faces; permitted nozzle depth on rapids
 ABOVE_FACES = (
     2.0 * FACES
-)  # removed from a nozzle over its substrate, whose faces may be off on both sides
-ABOUT_FACES = (
-    2.0 * FACES
-)  # added about links: they and the bodies both are triangles, and beads are cut into long pieces
-CHORD = 0.05  # to which beads follow their curves: what a nozzle may be deep in them on rapids
-HALFWAY = (
-    0.1  # of depth let pass halfway between points of a bead, where directions are interpolated
-)
-ALONG = 1e-9  # rad off a nozzle's axis, below which a direction is along it
+)  # removed from a nozzle above its substrate, whose faces may deviate to both sides
+# added around links: links and bodies are both triangulated, and bead pieces are long
+ABOUT_FACES = 2.0 * FACES
+CHORD = 0.05  # deviation of beads from their curves; permitted nozzle depth on rapids
+# permitted depth halfway between bead points, where directions are interpolated
+HALFWAY = 0.1
+ALONG = 1e-9  # rad; maximum angle between a nozzle's axis and a direction that counts as axial

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A tree of bounding volumes over items in space: the items are sorted so that neighbours follow
-each other; BRANCH items make a node, BRANCH nodes make a node of the next level.
+"""Tree of bounding volumes over items in space.
+
+Items are sorted so that neighbours are consecutive. BRANCH items make a node, and BRANCH nodes make
+a node of the next level.
 """
 
 from __future__ import annotations
@@ -13,14 +15,14 @@ from ..geometry.columns import columns
 from ..types import Array, Index
 
 BRANCH = 8
-PAIRS = 50_000  # pairs of queries and nodes in one block: memory does not grow with either
+PAIRS = 50_000  # pairs of queries and nodes per block, which bounds the memory
 
 
 def packed(points: Array) -> Index:
     """Return an order of points in which every node of the tree holds neighbours.
 
-    Halves along the longest side of their box, repeatedly, cut between whole nodes; the lowest
-    groups, whose nodes hold single points, are sorted into slices across the longest side.
+    Split the bounding box repeatedly across its longest side, between whole nodes. Sort the lowest
+    groups, whose nodes hold single points, into slices across the longest side.
 
     Parameters
     ----------
@@ -30,7 +32,7 @@ def packed(points: Array) -> Index:
     Returns
     -------
     (n,) array of int
-        Numbers of the points in that order.
+        Point indices in the new order.
     """
     order = np.arange(len(points))
     if not len(points):
@@ -47,7 +49,7 @@ def packed(points: Array) -> Index:
         members = order[low:high]
         coordinates = by_axis.take(members, axis=1)
         cut = -(-(high - low) // ball) // 2 * ball
-        # np.ptp takes twice as long for a few
+        # np.ptp takes twice as long for few points
         longest = (
             np.maximum.reduce(coordinates, axis=1) - np.minimum.reduce(coordinates, axis=1)
         ).argmax()
@@ -66,9 +68,9 @@ def packed(points: Array) -> Index:
 
 
 def chained(points: Array) -> Index:
-    """Return an order as `packed` for points whose successors are close.
+    """Return an order as `packed` does, for points that are close to their successors.
 
-    BRANCH points in a row stay one node, which takes a fraction of the time.
+    BRANCH consecutive points stay one node, which takes a fraction of the time.
 
     Parameters
     ----------
@@ -78,7 +80,7 @@ def chained(points: Array) -> Index:
     Returns
     -------
     (n,) array of int
-        Numbers of the points in that order.
+        Point indices in the new order.
     """
     node_count = len(points) // BRANCH
     middle = (
@@ -92,7 +94,7 @@ def chained(points: Array) -> Index:
 
 
 def sizes(count: int) -> list[int]:
-    """Return the number of items in a node, level by level from single items up, for `count` items."""
+    """Return the items per node of each tree level over `count` items, from single items up."""
     node_sizes = [1]
     while -(-count // node_sizes[-1]) > 2 * BRANCH:
         node_sizes.append(BRANCH * node_sizes[-1])
@@ -105,7 +107,7 @@ def each_with_each(queries: int, nodes: int) -> tuple[Index, Index]:
     Parameters
     ----------
     queries, nodes : int
-        Their numbers.
+        Number of queries and of nodes.
 
     Returns
     -------
@@ -123,17 +125,17 @@ def below(query: Index, node: Index, count: int) -> tuple[Index, Index]:
     Parameters
     ----------
     query, node : (k,) int array
-        Pairs of this level.
+        Pairs of the current level.
     count : int
-        Number of nodes of the next level.
+        Number of nodes on the next level.
 
     Returns
     -------
     query, node : int array
-        Each query with the children of its nodes.
+        Pairs of each query with the children of its nodes.
     """
     node = (node[:, None] * BRANCH + np.arange(BRANCH)).ravel()
-    repeated = np.empty((len(query), BRANCH), dtype=np.intp)  # np.repeat takes many times as long
+    repeated = np.empty((len(query), BRANCH), dtype=np.intp)  # np.repeat is many times slower
     repeated[:] = query[:, None]
     real = np.flatnonzero(node < count)
     if len(real) == len(node):

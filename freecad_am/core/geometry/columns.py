@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Components of vectors as contiguous arrays.
 
-A column of an (n, 3) array ends past that array. If the result follows in memory, numpy
-assumes that the two overlap and uses another sine or arc tangent, which differs in the
-last bit. Arguments of such functions must therefore be contiguous, so that the same job
-has the same bytes.
+The strided extent of a column of an (n, 3) array ends past the array. If the result follows in
+memory, numpy assumes an overlap and uses another sine or arc tangent, which differs in the last
+bit. Arguments of such functions must therefore be contiguous, so that a job always has the same
+bytes.
 """
 
 from __future__ import annotations
@@ -18,10 +18,10 @@ from ..types import Array
 
 
 class Implicit(Protocol):
-    """A solid."""
+    """A solid given by an implicit function."""
 
     def value(self, points: Array) -> tuple[Array, Array]:
-        """Evaluate the function of the solid.
+        """Evaluate the implicit function.
 
         Parameters
         ----------
@@ -33,15 +33,15 @@ class Implicit(Protocol):
         value : (...) array
             Negative inside.
         gradient : (..., 3) array
-            Its gradient.
+            Gradient of the function.
         """
 
 
 @dataclass(frozen=True, eq=False)
 class Round:
-    """A cylinder, cone or sphere's distance from its surface (mm, along the radius), or a half space.
+    """A cylinder, cone or sphere; its function is the radial distance from the surface, mm.
 
-    Each kind has a constructor of its own.
+    Each kind has its own constructor.
     """
 
     origin: Array
@@ -59,7 +59,7 @@ class Round:
         radius : float
             Radius, mm.
         origin : (3,) array
-            A point of its axis, mm.
+            A point on the axis, mm.
         axis : (3,) array
             Direction of the axis, of any length.
 
@@ -72,16 +72,16 @@ class Round:
 
     @classmethod
     def cone(cls, half_angle: float, apex: Array, axis: Array) -> Round:
-        """Return a cone; it is valid only where the axial coordinate is positive.
+        """Return a cone, valid only where the axial coordinate is positive.
 
         Parameters
         ----------
         half_angle : float
-            Half the opening angle, rad.
+            Half opening angle, rad.
         apex : (3,) array
             Apex, mm.
         axis : (3,) array
-            Direction in which it opens, of any length.
+            Direction in which the cone opens, of any length.
 
         Returns
         -------
@@ -104,12 +104,12 @@ class Round:
         Returns
         -------
         Round
-            The ball, in the frame of the centre.
+            The ball.
         """
         return cls(np.asarray(centre, float), np.array([0.0, 0.0, 1.0]), radius, 0.0, 1.0)
 
     def value(self, points: Array) -> tuple[Array, Array]:
-        """Distance from the surface measured across the axis (from the centre, for a sphere), and its gradient."""
+        """Return the radial distances from the surface and their gradients."""
         local = points - self.origin
         height = local @ self.axis
         across = local - (1.0 - self.along) * height[..., None] * self.axis
@@ -126,7 +126,7 @@ class HalfSpace:
     normal: Array
 
     def value(self, points: Array) -> tuple[Array, Array]:
-        """Distance from the plane and its gradient."""
+        """Return the distances from the plane and their gradients."""
         normal = _unit(self.normal)
         value: Array = (points - self.origin) @ normal
         return value, np.broadcast_to(normal, points.shape)
@@ -137,7 +137,7 @@ def _unit(vector: Array) -> Array:
     return unit
 
 
-MIN_COLUMN_ROWS = 1000  # rows from which on columns are sooner done
+MIN_COLUMN_ROWS = 1000  # rows; from this number on, working by columns is faster
 
 
 def columns(vectors: Array) -> Array:
@@ -151,7 +151,7 @@ def columns(vectors: Array) -> Array:
     Returns
     -------
     (k, ...) array
-        Their components.
+        Components.
     """
     component_axis = vectors.ndim - 1
     return np.ascontiguousarray(vectors.transpose(component_axis, *range(component_axis)))
@@ -160,7 +160,7 @@ def columns(vectors: Array) -> Array:
 def dots(u: Array, v: Array) -> Array:
     """Return the scalar products of vectors, row by row.
 
-    This takes half of einsum's time for many rows, and adds in the same order.
+    For many rows this takes half the time of einsum. The order of the sums is the same.
 
     Parameters
     ----------
@@ -245,12 +245,12 @@ def sides(corners: Array) -> Array:
 
 
 def unit_rows(vectors: Array) -> Array:
-    """Return vectors at unit length.
+    """Scale vectors to unit length.
 
     Parameters
     ----------
     vectors : (n, k) array
-        Vectors; those of zero length are unchanged.
+        Vectors; zero vectors stay zero.
 
     Returns
     -------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cylinders: round straight bodies with flat ends that hold everything of a shape, and perhaps a little more."""
+"""Cylinders that enclose shapes."""
 
 from __future__ import annotations
 
@@ -12,13 +12,13 @@ from ..types import Array, Integers, Mask
 from .columns import lengths
 
 MAX_PIECES = 8  # maximum number of pieces of a shape
-MIN_LENGTH_RATIO = 0.5  # pieces are no shorter than this share of the shape's width
+MIN_LENGTH_RATIO = 0.5  # minimum ratio of piece length to shape width
 _ROUNDING = 1e-6  # mm
 
 
 @dataclass(frozen=True, eq=False)
 class Cylinder:
-    """A cylinder: the middles of its flat ends `start` and `end` (3,), its `radius`; mm."""
+    """A cylinder with the centres `start` and `end` (3,) of its flat ends, and its `radius`; mm."""
 
     start: Array
     end: Array
@@ -26,11 +26,11 @@ class Cylinder:
 
     @property
     def length(self) -> float:
-        """From end to end, mm."""
+        """Length from end to end, mm."""
         return float(np.linalg.norm(self.end - self.start))
 
     def holds(self, points: Array) -> Mask:
-        """Return whether points (n, 3) are in the cylinder or on it, (n,)."""
+        """Return whether points (n, 3) are inside the cylinder or on its surface, (n,)."""
         axis = (self.end - self.start) / self.length
         offset = points - self.start
         along = offset @ axis
@@ -44,19 +44,17 @@ class Cylinder:
 
 
 def enclosing_cylinder(points: Array) -> Cylinder:
-    """Return the cylinder about points with the least volume among three.
-
-    Their axes are the main directions of the points.
+    """Return the smallest of three enclosing cylinders along the principal axes of points.
 
     Parameters
     ----------
     points : (n, 3) array
-        mm.
+        Points, mm.
 
     Returns
     -------
     Cylinder
-        In the frame of the points.
+        Cylinder in the frame of the points.
     """
     middle = points.mean(axis=0)
     offset = points - middle
@@ -77,21 +75,21 @@ def enclosing_cylinder(points: Array) -> Cylinder:
 
 
 def enclosing_row(points: Array, triangles: Integers) -> list[Cylinder]:
-    """Return cylinders in a row that together hold a shape of triangles.
+    """Return a row of cylinders that together enclose a triangulated shape.
 
-    The shape is cut along its longest direction, and each piece has its cylinder.
+    The shape is cut into pieces along its longest direction, and a cylinder encloses each piece.
 
     Parameters
     ----------
     points : (n, 3) array
-        mm.
+        Points, mm.
     triangles : (m, 3) array of int
-        Numbers of the corners.
+        Point indices of the corners.
 
     Returns
     -------
     list of Cylinder
-        In the frame of the points; a single one if a row has no less volume.
+        Cylinders in the frame of the points; a single cylinder unless a row has less volume.
     """
     used = points[np.unique(triangles)]
     whole_cylinder = enclosing_cylinder(used)
@@ -104,7 +102,7 @@ def enclosing_row(points: Array, triangles: Integers) -> list[Cylinder]:
     cuts = np.linspace(low, high, count + 1)
     edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
     start, end = height[edges[:, 0]], height[edges[:, 1]]
-    # the pieces have the corners of the shape, and the crossings of its edges with the planes between them
+    # a piece has corners of the shape, and crossings of the edges with the cutting planes
     crossings = []
     for cut in cuts[1:-1]:
         over = (start - cut) * (end - cut) < 0.0
@@ -124,19 +122,19 @@ def enclosing_row(points: Array, triangles: Integers) -> list[Cylinder]:
 
 
 def drop_redundant(cylinders: Sequence[Cylinder], points: Sequence[Array]) -> list[Cylinder]:
-    """Drop cylinders whose points are all in another remaining cylinder.
+    """Drop each cylinder whose points are all inside another remaining cylinder.
 
     Parameters
     ----------
     cylinders : sequence of Cylinder
         The cylinders.
     points : sequence of (n, 3) array
-        Points that each is about, mm.
+        Points that each cylinder encloses, mm.
 
     Returns
     -------
     list of Cylinder
-        In their order.
+        Remaining cylinders in the given order.
     """
     order = sorted(
         range(len(cylinders)), key=lambda k: cylinders[k].length * cylinders[k].radius ** 2

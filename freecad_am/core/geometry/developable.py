@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Planes, cylinders and cones to grow on: their equidistant neighbours, and unrolling (Dai 2020,
-2.1 and 2.2).
+"""Base planes, cylinders and cones: equidistant surfaces and unrolling (Dai 2020, 2.1 and 2.2).
 
-All coordinates are in the hub's own frame: its axis is Z, the base circle of radius R is
-at z = 0, the apex of a cone at z = H (eq. 1). With tan(a) = R / H a point at (rho, theta,
-z) is rho cos(a) + z sin(a) - R cos(a) away from the surface; since rho is never negative
-this is only the nappe below the apex. A cylinder is the case a = 0, not a limit.
+All coordinates are in the hub frame: Z is the axis, the base circle of radius R is at z = 0, and
+the apex of a cone is at z = H (eq. 1). With tan(a) = R / H, the distance of a point (rho, theta, z)
+from the surface is rho cos(a) + z sin(a) - R cos(a). Since rho is never negative, this describes
+only the nappe below the apex. A cylinder is the case a = 0, not a limit.
 
-Unrolled, x runs around the hub and y up along it: with the distance s = (H - z) / cos(a)
-from the apex, s0 the distance of the base circle and phi = (theta - middle) sin(a), x = s
-sin(phi) and y = s0 - s cos(phi). Both maps are exact isometries; written from the base
-circle, not from the apex, they keep their digits however slim the cone (ERRATA on section
-2.2).
+In the unrolled plane x runs around the hub and y up along the surface. Let s = (H - z) / cos(a) be
+the distance from the apex, s0 its value at the base circle, and phi = (theta - middle) sin(a). Then
+x = s sin(phi) and y = s0 - s cos(phi). Unrolling and wrapping are exact isometries. The formulas
+start from the base circle, not from the apex, and so keep full precision for slender cones (ERRATA
+on section 2.2).
 """
 
 from __future__ import annotations
@@ -28,7 +27,7 @@ from .frames import TURN
 
 @dataclass(frozen=True)
 class Developable:
-    """A cone of base radius `radius` mm at z = 0 that ends in its apex at z = `height` mm; infinite for a cylinder."""
+    """A cone with base radius `radius` at z = 0 and apex at z = `height` (inf: a cylinder), mm."""
 
     radius: float
     height: float = math.inf
@@ -39,25 +38,25 @@ class Developable:
 
     @property
     def is_cylinder(self) -> bool:
-        """Whether it has no apex."""
+        """Whether the surface has no apex."""
         return math.isinf(self.height)
 
     @property
     def taper(self) -> float:
-        """Half the opening angle a at the apex, rad; 0 for a cylinder."""
+        """Half opening angle a at the apex, rad; 0 for a cylinder."""
         return 0.0 if self.is_cylinder else math.atan2(self.radius, self.height)
 
     def offset(self, distance: float) -> Developable:
-        """The equidistant surface `distance` mm further out: R + d / cos(a), H + d / sin(a) (2.2 and 5).
+        """Return the surface `distance` mm outwards: R + d / cos(a), H + d / sin(a) (2.2 and 5).
 
-        ValueError where the distance leads inwards past the axis.
+        Raises ValueError if a negative distance passes the axis.
         """
         a = self.taper
         height = math.inf if self.is_cylinder else self.height + distance / math.sin(a)
         return Developable(self.radius + distance / math.cos(a), height)
 
     def distance(self, points: Array) -> Array:
-        """Return how far points are outside the surface, along its normal.
+        """Return the distances of points from the surface, along its normal.
 
         Parameters
         ----------
@@ -75,11 +74,11 @@ class Developable:
         return height
 
     def bend(self, distance: float, extent: float) -> float:
-        """The radius, mm, that beads `distance` mm further out are bent by, around a part of an extent, mm."""
+        """Return the bend radius, mm, of beads `distance` mm outwards; `extent` has no effect."""
         return self.radius + distance
 
     def normals(self, points: Array) -> Array:
-        """Return the outward normals at points, the same for all equidistant surfaces.
+        """Return the outward normals at points, which all equidistant surfaces share.
 
         Parameters
         ----------
@@ -89,8 +88,7 @@ class Developable:
         Returns
         -------
         (..., 3) array
-            Unit normals; on the axis, which has no radial direction, only the axial
-            component.
+            Unit normals; only their axial component for points on the axis.
         """
         a = self.taper
         rho = np.hypot(points[..., 0], points[..., 1])
@@ -101,7 +99,7 @@ class Developable:
         )
 
     def distance_rate(self, position: Array, direction: Array) -> tuple[Array, Array]:
-        """Return `distance` and its rate along vectors.
+        """Return `distance` and its derivative along vectors.
 
         Parameters
         ----------
@@ -115,7 +113,7 @@ class Developable:
         distance : (n,) array
             mm.
         rate : (n,) array
-            Per unit of the vectors.
+            Derivatives per unit of the vectors.
         """
         a = self.taper
         x, y, z = position
@@ -128,12 +126,12 @@ class Developable:
 
     @property
     def slant(self) -> float:
-        """Way s0 from the apex to the base circle, mm."""
+        """Distance s0 from the apex to the base circle along the surface, mm."""
         return self.height / math.cos(self.taper)
 
     @property
     def flat_turn(self) -> float:
-        """Angle (rad) of the sector that a whole turn becomes on the plane; 0 for a cylinder, whose turn is a length."""
+        """Angle of the unrolled full turn about the apex, rad; 0 for a cylinder."""
         return TURN * math.sin(self.taper)
 
     def azimuth(self, points: Array) -> Array:
@@ -181,7 +179,7 @@ class Developable:
         Parameters
         ----------
         theta : (...) array
-            Azimuths from the middle, rad, which need not be within one turn.
+            Azimuths from the middle, rad, not limited to one turn.
         z : (...) array
             Heights, mm.
 
@@ -199,7 +197,7 @@ class Developable:
         )
 
     def from_unrolled(self, flat: Array) -> tuple[Array, Array]:
-        """Return azimuth and height of unrolled points.
+        """Return the azimuths and heights of unrolled points.
 
         Parameters
         ----------
@@ -225,7 +223,7 @@ class Developable:
         return np.arctan2(x, to_apex) / math.sin(a), lower * math.cos(a)
 
     def wrap(self, flat: Array, middle: float = 0.0) -> Array:
-        """Return the points of the surface at unrolled points: the inverse of `unroll`.
+        """Wrap unrolled points onto the surface; the inverse of `unroll`.
 
         Parameters
         ----------
@@ -245,22 +243,21 @@ class Developable:
         return np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=-1)
 
 
-# ---- The platform plane and its parallels, with the interface of cylinders and cones
-# (`developable`)
+# ---- The platform plane and parallel planes, with the interface of `Developable`
 
 
 @dataclass(frozen=True)
 class Plane:
-    """The plane z = height, mm, of its frame."""
+    """The plane z = height, mm, in its frame."""
 
     height: float = 0.0
 
     def offset(self, distance: float) -> Plane:
-        """The parallel plane `distance` mm further up."""
+        """Return the parallel plane `distance` mm higher."""
         return Plane(self.height + distance)
 
     def distance(self, points: Array) -> Array:
-        """Return how far points are above the plane.
+        """Return the heights of points above the plane.
 
         Parameters
         ----------
@@ -276,9 +273,9 @@ class Plane:
         return above
 
     def bend(self, distance: float, extent: float) -> float:
-        """Return the approximate bend radius, mm, of beads of a part of an extent, mm."""
+        """Return the approximate bend radius of beads, mm: the `extent` of the part, mm."""
         return extent
 
     def unroll(self, points: Array, middle: float = 0.0) -> Array:
-        """Return points (..., 3) seen from above, (..., 2) mm, whatever `middle`."""
+        """Return the x and y (..., 2), mm, of points (..., 3); `middle` has no effect."""
         return points[..., :2].copy()

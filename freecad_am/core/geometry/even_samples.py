@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Places spread evenly over a box of many dimensions, the same each time."""
+"""Deterministic, evenly spread points in a box of many dimensions."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import numpy as np
 
 from ..types import Array
 
-_ROUNDS = 64  # of an iteration that halves its error and more each time
+_ROUNDS = 64  # iterations; each at least halves the error
 
 
 def spread_points(count: int, dimensions: int) -> Array:
@@ -23,11 +23,11 @@ def spread_points(count: int, dimensions: int) -> Array:
     Returns
     -------
     (count, dimensions) array
-        From 0 to 1; any first points are as evenly spread as all.
+        Coordinates from 0 to 1; every leading subset is evenly spread too.
 
     Notes
     -----
-    They step by powers of the root of x^(dimensions + 1) = x + 1.
+    The steps are negative powers of the root of x^(dimensions + 1) = x + 1.
 
     References
     ----------

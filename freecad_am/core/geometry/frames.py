@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Rotations, poses and angles as arrays: (..., 3, 3) rotations, (..., 4, 4) poses, mm and rad.
 
-A pose maps coordinates of its own frame to coordinates of its parent frame. Leading
-dimensions are free everywhere, so one call serves one pose and a hundred thousand.
+A pose maps coordinates of its own frame to coordinates of its parent frame. Leading dimensions are
+arbitrary, so one call serves a single pose or a hundred thousand.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from ..types import Array, ArrayLike
 
 
 def pose(rotation: ArrayLike, origin: ArrayLike) -> Array:
-    """Return poses of rotations and origins.
+    """Build poses from rotations and origins.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def inverse(poses: ArrayLike) -> Array:
     Returns
     -------
     (..., 4, 4) array
-        Their inverses.
+        Inverse poses.
     """
     poses = np.asarray(poses, float)
     turned = np.swapaxes(poses[..., :3, :3], -1, -2)
@@ -57,10 +57,10 @@ def inverse(poses: ArrayLike) -> Array:
 
 
 def transform_point(poses: Array, point: Array) -> Array:
-    """Return the positions of a point in poses.
+    """Return a point transformed by poses.
 
-    One product over the rows of all poses takes a third of the time of k products, and so may
-    differ in the last digit.
+    One product over the rows of all poses takes a third of the time of k products. The last digit
+    may differ.
 
     Parameters
     ----------
@@ -72,7 +72,7 @@ def transform_point(poses: Array, point: Array) -> Array:
     Returns
     -------
     (k, 3) array
-        mm.
+        Transformed points, mm.
     """
     rows = np.ascontiguousarray(poses).reshape(-1, 4)
     return np.asarray((rows @ np.append(point, 1.0)).reshape(-1, 4)[:, :3])
@@ -178,12 +178,12 @@ def rotation_about(axis: ArrayLike, angle: ArrayLike) -> Array:
 
 
 def bryant(six: ArrayLike) -> Array:
-    """Return poses of six numbers each, R = Rx(RX) Ry(RY) Rz(RZ).
+    """Build poses from positions and Bryant angles, R = Rx(RX) Ry(RY) Rz(RZ).
 
     Parameters
     ----------
     six : (..., 6) array
-        x y z in mm and RX RY RZ in rad.
+        x, y, z in mm and RX, RY, RZ in rad.
 
     Returns
     -------
@@ -199,10 +199,10 @@ def bryant(six: ArrayLike) -> Array:
 
 
 def to_bryant(rotation: ArrayLike) -> Array:
-    """Return RX RY RZ of rotations.
+    """Return the Bryant angles RX, RY and RZ of rotations.
 
-    Where RY is a right angle RX and RZ are not unique (gimbal lock); RX is 0 there. Near it RZ
-    is computed with the RX obtained, so that the three always reproduce the rotation.
+    If RY is +-pi/2, RX and RZ are not unique (gimbal lock) and RX is 0. RZ is computed with the
+    resulting RX, so the three angles reproduce the rotation also near gimbal lock.
 
     Parameters
     ----------
@@ -215,7 +215,7 @@ def to_bryant(rotation: ArrayLike) -> Array:
         RX and RZ in -pi to pi, RY in -pi/2 to pi/2, rad.
     """
     entries = np.moveaxis(np.asarray(rotation, float), (-2, -1), (0, 1))
-    # each entry contiguous, see `columns`
+    # make each entry contiguous, see `columns`
     rotation = np.moveaxis(np.array(entries, order="C"), (0, 1), (-2, -1))
     rx = np.arctan2(-rotation[..., 1, 2], rotation[..., 2, 2])
     locked = np.hypot(rotation[..., 1, 2], rotation[..., 2, 2]) < 1e-12
@@ -230,7 +230,7 @@ def to_bryant(rotation: ArrayLike) -> Array:
 
 
 def from_rpy(origin: ArrayLike, rpy: ArrayLike) -> Array:
-    """Return poses with roll, pitch and yaw, R = Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
+    """Build poses from origins, roll, pitch and yaw, R = Rz(yaw) Ry(pitch) Rx(roll), as in URDF.
 
     Parameters
     ----------
@@ -249,9 +249,10 @@ def from_rpy(origin: ArrayLike, rpy: ArrayLike) -> Array:
 
 
 def smallest_rotation(start: ArrayLike, end: ArrayLike) -> Array:
-    """Return the rotations by the smallest angle between unit vectors.
+    """Return the rotations with the smallest angle between unit vectors.
 
-    Opposite vectors have no such rotation: they get a half turn about an axis normal to both.
+    For opposite vectors this rotation is not unique: the result is a half turn about an axis normal
+    to both.
 
     Parameters
     ----------
@@ -265,8 +266,8 @@ def smallest_rotation(start: ArrayLike, end: ArrayLike) -> Array:
 
     Notes
     -----
-    Composed from two reflections, first in the plane normal to `start`, then in that normal to
-    their bisector, which keeps all digits up to the half turn.
+    Composed of two reflections, first in the plane normal to `start`, then in the plane normal to
+    the bisector. This keeps full precision up to the half turn.
     """
     start, end = np.broadcast_arrays(np.asarray(start, float), np.asarray(end, float))
     bisector = start + end
@@ -275,7 +276,8 @@ def smallest_rotation(start: ArrayLike, end: ArrayLike) -> Array:
     bisector = bisector / np.where(length > 1e-14, length, 1.0)
     if opposite.any():
         bisector[opposite] = _normal_to(start[opposite])
-    # the sum of nearly opposite vectors has lost the digits of its component along them, which is half its length
+    # cancellation in the sum of nearly opposite vectors spoils its component along `start`, which
+    # is half its length
     along = (bisector * start).sum(axis=-1, keepdims=True)
     bisector = bisector + (0.5 * length - along) * start
     bisector /= np.linalg.norm(bisector, axis=-1, keepdims=True)
@@ -283,9 +285,7 @@ def smallest_rotation(start: ArrayLike, end: ArrayLike) -> Array:
 
 
 def _normal_to(vectors: Array) -> Array:
-    """Return unit vectors normal to unit vectors (..., 3): the coordinate axis least along each,
-    made normal to it.
-    """
+    """Return unit vectors normal to unit vectors (..., 3), and to their least aligned axes."""
     smallest_axis = np.eye(3)[np.argmin(np.abs(vectors), axis=-1)]
     normal = np.cross(vectors, smallest_axis)
     result: Array = normal / np.linalg.norm(normal, axis=-1, keepdims=True)
@@ -293,10 +293,10 @@ def _normal_to(vectors: Array) -> Array:
 
 
 def _reflection(normals: Array) -> Array:
-    """The reflection (..., 3, 3) in the planes through the origin with the unit normals (..., 3)."""
+    """Return reflections (..., 3, 3) in planes through the origin with unit normals (..., 3)."""
     twice = 2.0 * normals
     result = np.empty((*normals.shape, 3))
-    # entry by entry: many times as fast as along axes of three
+    # entry by entry, many times as fast as operations along axes of length three
     for row in range(3):
         for column in range(row, 3):
             entry = (1.0 if row == column else 0.0) - twice[..., row] * normals[..., column]
@@ -305,12 +305,12 @@ def _reflection(normals: Array) -> Array:
 
 
 def unit(vectors: Array) -> Array:
-    """Return vectors at unit length.
+    """Scale vectors to unit length.
 
     Parameters
     ----------
     vectors : (..., 3) array
-        Vectors; a vector of no length stays.
+        Vectors; zero vectors stay zero.
 
     Returns
     -------
@@ -321,13 +321,13 @@ def unit(vectors: Array) -> Array:
     return result
 
 
-# ---- Angles in radians, and the whole turn that they may be counted on by
+# ---- Angles, rad
 
 TURN = 2.0 * math.pi
 
 
 def shortest(angles: Array) -> Array:
-    """Bring angles within half a turn.
+    """Wrap angles to -pi to pi.
 
     Parameters
     ----------
@@ -337,7 +337,7 @@ def shortest(angles: Array) -> Array:
     Returns
     -------
     (...) array
-        From -pi to pi.
+        Wrapped angles, rad.
     """
     brought: Array = angles - TURN * np.round(angles / TURN)
     return brought

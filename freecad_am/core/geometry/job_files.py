@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Paths and bytes of the files of a job: the path is the stated one or, for a job of another
-machine, that of a copy.
+"""Paths and bytes of job files; a job of another machine uses copies of its files.
 
-All code that opens a file of a job, or checks that it exists, asks here. Stored and reported names
-are those of the job, so planning gives the same result on every machine.
+All code that opens a job file or checks its existence calls this module. Stored and reported names
+are the names in the job, so planning gives the same result on every machine.
 """
 
 from __future__ import annotations
@@ -21,18 +20,18 @@ from typing import NamedTuple
 
 from ..issues import InputError
 
-# JSON of a Relocation; also the processes that this one starts find it there
+# JSON of a Relocation; child processes inherit the variable
 ENVIRONMENT_VARIABLE = "FREECAD_AM_FILES"
 
 _recorded_names: ContextVar[set[str] | None] = ContextVar("recorded_names", default=None)
 
 
 class Relocation(NamedTuple):
-    """Where the files of a job of another machine are. All paths are absolute.
+    """Locations of the files of a job of another machine. All paths are absolute.
 
-    copies: a folder with copies, below their names there. local: folders whose files keep their
-    paths. home: home folder there of the user whose job it is. machines: folders there with the
-    user's machine files.
+    copies: folder with copies of the files, below their original paths. local: folders whose files
+    keep their paths. home, machines: home folder of the job's user and folders with the user's
+    machine files, on the other machine.
     """
 
     copies: str
@@ -42,12 +41,12 @@ class Relocation(NamedTuple):
 
 
 def relocation() -> Relocation | None:
-    """Return where the files of a job of another machine are; None for a job of this machine."""
+    """Return the file locations of a job of another machine; None for a job of this machine."""
     return _parse_relocation(os.environ.get(ENVIRONMENT_VARIABLE, ""))
 
 
 def locate(path: str | os.PathLike[str]) -> Path:
-    """Return the path of the file of this name on this machine, whether or not it exists."""
+    """Return the path on this machine of a job file, whether or not the file exists."""
     moved, names = relocation(), _recorded_names.get()
     if moved is None and names is None:
         return Path(path)
@@ -63,12 +62,12 @@ def locate(path: str | os.PathLike[str]) -> Path:
 
 
 def is_there(path: str | os.PathLike[str]) -> bool:
-    """Return whether a file of this name exists."""
+    """Return whether a job file exists."""
     return os.path.isfile(locate(path))
 
 
 def expanded(name: str) -> str:
-    """A name with the home folder of the user whose job it is instead of `~`."""
+    """Replace `~` in a name by the home folder of the job's user."""
     moved = relocation()
     if moved is not None and (name == "~" or name.startswith("~/")):
         return moved.home + name[1:]
@@ -77,9 +76,7 @@ def expanded(name: str) -> str:
 
 @contextlib.contextmanager
 def record_names() -> Iterator[set[str]]:
-    """Collect the absolute names of the files that are requested meanwhile, whether or not they
-    exist.
-    """
+    """Collect the absolute names of the job files requested in this context, existing or not."""
     names: set[str] = set()
     token = _recorded_names.set(names)
     try:
@@ -98,7 +95,7 @@ def _parse_relocation(text: str) -> Relocation | None:
     )
 
 
-# ---- The bytes of a file from outside, which may be no file at all or larger than memory
+# ---- Bytes of external files, which may be devices or pipes, or larger than memory
 
 MB = 1_000_000
 
@@ -111,7 +108,7 @@ def read_content(path: str | Path, largest: int, code: str, where: str) -> bytes
     path : str or Path
         Path of the file.
     largest : int
-        Largest size, MB.
+        Maximum size, MB.
     code : str
         Code of the error for larger files.
     where : str
@@ -133,14 +130,14 @@ def read_content(path: str | Path, largest: int, code: str, where: str) -> bytes
 
 
 def digest(path: str | Path, largest: int, code: str, where: str) -> str:
-    """Return the SHA-256 of a file, without holding all its bytes.
+    """Return the SHA-256 of a file without loading the whole file.
 
     Parameters
     ----------
     path : str or Path
         Path of the file.
     largest : int
-        Largest size, MB.
+        Maximum size, MB.
     code : str
         Code of the error for larger files.
     where : str
@@ -163,7 +160,7 @@ def digest(path: str | Path, largest: int, code: str, where: str) -> str:
 
 
 def _read_blocks(path: str | Path, largest: int, code: str, where: str) -> Iterator[bytes]:
-    waits_not = getattr(os, "O_NONBLOCK", 0)  # as for a pipe
+    waits_not = getattr(os, "O_NONBLOCK", 0)  # do not block on a pipe
     descriptor = os.open(locate(path), os.O_RDONLY | waits_not | getattr(os, "O_BINARY", 0))
     with open(descriptor, "rb") as stream:
         status = os.fstat(descriptor)
@@ -171,7 +168,7 @@ def _read_blocks(path: str | Path, largest: int, code: str, where: str) -> Itera
             raise InputError(
                 code, where, "this is not a file but a device, a pipe or a folder; name a file"
             )
-        size = status.st_size  # 0 for files of the kernel, whatever their content
+        size = status.st_size  # 0 for kernel files, regardless of their content
         while size <= largest * MB and (block := stream.read(MB)):
             yield block
             size = max(size, stream.tell())

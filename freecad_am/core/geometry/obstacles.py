@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Bodies around a wall while it is deposited: the part it grows on, and fixtures, as
-triangles.
-"""
+"""Obstacles around a wall during deposition, as triangles: the supporting part, and fixtures."""
 
 from __future__ import annotations
 
@@ -19,7 +17,7 @@ DISC_SIDES = 72
 class Body:
     """A solid or mesh that the nozzle must not touch, in part coordinates.
 
-    name: what messages call it. vertices: (n, 3) mm. triangles: (m, 3) whole numbers, the vertices of each.
+    name: name in messages. vertices: (n, 3) mm. triangles: (m, 3) vertex indices.
     """
 
     name: str
@@ -38,19 +36,19 @@ class Body:
         return corners
 
     def move(self, pose: Array) -> Body:
-        """Return the body moved by a pose (4, 4), mm."""
+        """Return the body transformed by a pose (4, 4), mm."""
         return Body(self.name, self.vertices @ pose[:3, :3].T + pose[:3, 3], self.triangles)
 
 
 def box(size: tuple[float, float, float], pose: Array, name: str) -> Body:
-    """Return a box about the origin of a pose.
+    """Return a box centred on the origin of a pose.
 
     Parameters
     ----------
     size : tuple[float, float, float]
-        Lengths of its edges, mm.
+        Edge lengths, mm.
     pose : (4, 4) array
-        The pose; the edges are along its axes.
+        Pose of the box; the edges are parallel to its axes.
     name : str
         Name for messages.
 
@@ -71,14 +69,14 @@ def box(size: tuple[float, float, float], pose: Array, name: str) -> Body:
 
 
 def disc(diameter: float, frame: Array, name: str = "platform") -> Body:
-    """Return a flat disc, as a polygon about its circle.
+    """Return a flat disc as a circumscribed polygon.
 
     Parameters
     ----------
     diameter : float
         Diameter, mm.
     frame : (4, 4) array
-        Pose of the disc, in whose plane z = 0 it is.
+        Pose of the disc, which is in the plane z = 0.
     name : str, optional
         Name for messages.
 
@@ -100,19 +98,19 @@ def disc(diameter: float, frame: Array, name: str = "platform") -> Body:
 
 
 def enclosed_volume(around: Sequence[Body]) -> tuple[float, Array]:
-    """Return the volume of all closed bodies.
+    """Return the total volume of closed bodies, and their centroid.
 
     Parameters
     ----------
     around : sequence of Body
-        The bodies; open ones do not count.
+        The bodies; open bodies do not count.
 
     Returns
     -------
     volume : float
         Total volume, mm3.
     centroid : (3,) array
-        Its centroid, mm; zero without volume.
+        Common centroid, mm; zero without volume.
     """
     volume, weighted = 0.0, np.zeros(3)
     for body in around:
@@ -134,7 +132,7 @@ def enclosed_volume(around: Sequence[Body]) -> tuple[float, Array]:
 
 
 def meeting_boxes(low: Array, high: Array) -> list[Index]:
-    """Find the boxes that overlap or touch, without comparing all pairs.
+    """Find boxes that overlap or touch, without comparing all pairs.
 
     Parameters
     ----------
@@ -144,7 +142,7 @@ def meeting_boxes(low: Array, high: Array) -> list[Index]:
     Returns
     -------
     list of (k,) int array
-        For each box the numbers of the others that it meets, rising.
+        For each box, the indices of the boxes that it meets, rising.
     """
     spread = np.ptp(low, axis=0) / np.maximum((high - low).mean(axis=0), 1e-300)
     axis = int(np.argmax(spread))

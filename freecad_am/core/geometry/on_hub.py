@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids on cylinders and cones of a hub, as triangles, grouped by the surface on which they
-start.
-"""
+"""Solids on cylinders and cones of a hub, as triangles, grouped by base surface."""
 
 from __future__ import annotations
 
@@ -25,15 +23,18 @@ from .obstacles import Body, meeting_boxes
 
 @dataclass(frozen=True, eq=False)
 class Base:
-    """A cylinder, a cone, or the first plane of a stack or along a guide, in the part: name: what messages call it; frame:
-    (4, 4) pose of its own frame in part coordinates, Z its axis, towards the apex of a cone."""
+    """A base surface in the part: a cylinder, a cone, or the first plane of a stack or a guide.
+
+    name: name in messages. frame: (4, 4) pose of the base frame in part coordinates; Z is the axis,
+    towards the apex of a cone.
+    """
 
     name: str
     surface: Developable | Plane | Guide
     frame: Array
 
     def inside(self, points: Array) -> Array:
-        """Return points of the part in the base's frame.
+        """Transform points from part coordinates to the base frame.
 
         Parameters
         ----------
@@ -43,61 +44,64 @@ class Base:
         Returns
         -------
         (..., 3) array
-            mm.
+            Points in the base frame, mm.
         """
         local: Array = (points - self.frame[:3, 3]) @ self.frame[:3, :3]
         return local
 
     def to_part(self, points: Array) -> Array:
-        """Return points of the base's frame in part coordinates.
+        """Transform points from the base frame to part coordinates.
 
         Parameters
         ----------
         points : (..., 3) array
-            Points in the base's frame, mm.
+            Points in the base frame, mm.
 
         Returns
         -------
         (..., 3) array
-            mm.
+            Points in part coordinates, mm.
         """
         in_part: Array = points @ self.frame[:3, :3].T + self.frame[:3, 3]
         return in_part
 
     def rotate_to_part(self, vectors: Array) -> Array:
-        """Return vectors of the base's frame in part coordinates.
+        """Rotate vectors from the base frame to part coordinates.
 
         Parameters
         ----------
         vectors : (..., 3) array
-            Vectors in the base's frame.
+            Vectors in the base frame.
 
         Returns
         -------
         (..., 3) array
-            The rotated vectors.
+            Rotated vectors.
         """
         in_part: Array = vectors @ self.frame[:3, :3].T
         return in_part
 
     def where(self, point: Array) -> str:
-        """Return a point of the base's frame as text.
+        """Format a point of the base frame.
 
         Parameters
         ----------
         point : (3,) array
-            The point in the frame of the base, mm.
+            Point in the base frame, mm.
 
         Returns
         -------
         str
-            Its coordinates in the part.
+            Part coordinates of the point.
         """
         return place(self.to_part(point[None])[0])
 
 
 class Stretch(NamedTuple):
-    """Where a face of a base is: from low to high, mm along its axis, and from the azimuth start, rad, on by span."""
+    """Extent of a base face.
+
+    low, high: mm along the axis. start, span: first azimuth and angular extent, rad.
+    """
 
     low: float
     high: float
@@ -105,21 +109,21 @@ class Stretch(NamedTuple):
     span: float = TURN
 
     def near(self, points: Array, margin: float, all_round: bool = False) -> Mask:
-        """Return which points are on the face, or near it along the axis.
+        """Return whether points are on the face, within a margin.
 
         Parameters
         ----------
         points : (n, 3) array
-            Points in the base's frame, mm.
+            Points in the base frame, mm.
         margin : float
-            Distance past its ends that still counts, mm.
+            Accepted distance past the ends of the face, mm.
         all_round : bool, optional
-            Whether azimuths do not matter.
+            Whether to ignore azimuths.
 
         Returns
         -------
         (n,) bool array
-            True for points on the face.
+            True for points within the margin.
         """
         x, y, z = columns(points)
         along = (z > self.low - margin) & (z < self.high + margin)
@@ -136,9 +140,10 @@ class Stretch(NamedTuple):
 
 
 class Seat(NamedTuple):
-    """A base and the positions of its faces.
+    """A base and the extents of its faces.
 
-    chosen: by the user, who may also mean the rest of the turn, where there is no face.
+    chosen: whether the user selected the base; the user may then mean the full turn, also where
+    there is no face.
     """
 
     base: Base
@@ -148,10 +153,10 @@ class Seat(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """Solids on one base, in the order of their azimuths.
+    """Solids on one base, in order of azimuth.
 
-    start: triangles (k, 3, 3), in part coordinates, of the faces on which curved layers
-    start; None: the faces on the base.
+    start: (k, 3, 3) triangles, in part coordinates, of the faces on which curved layers start;
+    None: the faces on the base.
     """
 
     base: Base
@@ -163,8 +168,8 @@ class Group:
 class OwnHub:
     """A hub that belongs to the part.
 
-    volume, hub: mm3 of the whole part and of the hub. apart: name and mm3 of the hub's solid,
-    if it is a separate solid.
+    volume, hub: volume of the whole part and of the hub, mm3. apart: name and volume (mm3) of the
+    hub's solid, if it is a separate solid.
     """
 
     volume: float
@@ -174,10 +179,11 @@ class OwnHub:
 
 @dataclass(frozen=True)
 class SolidsOnHub:
-    """The solids to deposit, group by group.
+    """The solids to deposit, in groups.
 
-    surroundings: hub and fixtures. chord_error: mm between the triangles and the solids. own:
-    the hub, if it belongs to the part and is not deposited. depths: None, as beads fill them.
+    surroundings: hub and fixtures. chord_error: maximum distance between triangles and solids, mm.
+    own: the hub, if it belongs to the part and is not deposited. depths: None, because beads fill
+    the solids.
     """
 
     depths: ClassVar[None] = None
@@ -190,18 +196,16 @@ class SolidsOnHub:
     own: OwnHub | None = None
 
     def has_plane_layers(self) -> bool:
-        """Return whether layers are planes, one above the other, so that no earlier deposit is above
-        a layer.
-        """
+        """Return whether layers are stacked planes, so that no earlier deposit is above a layer."""
         return not any(isinstance(group.base.surface, Developable) for group in self.groups)
 
     @property
     def frame(self) -> Array:
         """Return the frame of the feature.
 
-        Z is the axis of the first base, upwards in the part; the origin is at the lowest
-        end of the solids; X is the part's X seen along Z. For planes Z is the stacking
-        direction, wherever it points.
+        Z is the axis of the first base, upwards in the part. The origin is at the lowest end of
+        the solids. X is the part's X projected along Z. For planes, Z is the stacking direction,
+        in whatever direction it points.
 
         Returns
         -------
@@ -219,19 +223,19 @@ class SolidsOnHub:
 
 
 def middle_azimuth(base: Base, points: Array) -> float:
-    """Return the azimuth of the middle of the sector of points, opposite their widest gap.
+    """Return the centre azimuth of the sector that points occupy, opposite their widest gap.
 
     Parameters
     ----------
     base : Base
-        The base whose axis counts.
+        Base whose axis defines the azimuth.
     points : (n, 3) array
-        Points of the part, mm.
+        Points in part coordinates, mm.
 
     Returns
     -------
     float
-        rad about the axis, from 0 to a turn.
+        Azimuth about the axis, rad, from 0 to 2 pi.
     """
     local = base.inside(points)
     start, span = sector(np.arctan2(local[:, 1], local[:, 0]))
@@ -240,7 +244,7 @@ def middle_azimuth(base: Base, points: Array) -> float:
 
 
 def sector(azimuths: Array) -> tuple[float, float]:
-    """Return the sector of azimuths: all but their widest gap.
+    """Return the sector that azimuths occupy: the full turn without their widest gap.
 
     Parameters
     ----------
@@ -250,9 +254,9 @@ def sector(azimuths: Array) -> tuple[float, float]:
     Returns
     -------
     start : float
-        Where it begins, from 0 to a turn, rad.
+        Start of the sector, rad, from 0 to 2 pi.
     span : float
-        Its width, rad.
+        Angular extent of the sector, rad.
     """
     angle = np.sort(np.remainder(azimuths, TURN))
     gaps = np.diff(angle, append=angle[0] + TURN)
@@ -267,12 +271,12 @@ def downwards(z: Array) -> bool:
     Parameters
     ----------
     z : (3,) array
-        Unit vector in the part; without a component along Z, its X or else Y counts.
+        Unit vector in the part; if its Z component is zero, X or else Y decides.
 
     Returns
     -------
     bool
-        True if that component is negative.
+        True if the deciding component is negative.
     """
     for component in (2, 0, 1):
         if abs(z[component]) > 1e-9:
@@ -281,7 +285,7 @@ def downwards(z: Array) -> bool:
 
 
 def upright(origin: Array, z: Array) -> Array:
-    """Return the frame with an origin and Z.
+    """Return the frame with a given origin and Z axis.
 
     Parameters
     ----------
@@ -293,7 +297,7 @@ def upright(origin: Array, z: Array) -> Array:
     Returns
     -------
     (4, 4) array
-        Its X is the part's X seen along Z, or Y where X is along it.
+        Pose whose X is the part's X projected along Z, or the part's Y if X is parallel to Z.
     """
     x = np.eye(3)[0] - z[0] * z
     if np.linalg.norm(x) < 1e-6:
@@ -305,7 +309,7 @@ def upright(origin: Array, z: Array) -> Array:
     return frame
 
 
-PLACES = 10_000  # of the solid's surface, if its triangles were squares
+PLACES = 10_000  # surface samples of a solid; they set the maximum triangle side
 
 
 def volume_beyond(surface: Developable, vertices: Array, triangles: Integers) -> float:
@@ -329,7 +333,7 @@ def volume_beyond(surface: Developable, vertices: Array, triangles: Integers) ->
     area = doubled_areas(corner) / 2.0
     longest = float(np.sqrt(np.linalg.norm(area, axis=1).sum() / PLACES))
     volume = 0.0
-    while len(corner):  # halve until no side is longer
+    while len(corner):  # bisect until no side is longer than `longest`
         side = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
         top = np.argmax(side, axis=1)
         small = side[np.arange(len(top)), top] <= longest
@@ -345,7 +349,7 @@ def volume_beyond(surface: Developable, vertices: Array, triangles: Integers) ->
 
 
 def solids_beyond(solids: SolidsOnHub) -> float | None:
-    """Return the volume, mm3, of all solids outside their hubs; None if they may overlap."""
+    """Return the total volume of solids outside their hubs, mm3; None if solids may overlap."""
     volume = 0.0
     for group in solids.groups:
         surface = group.base.surface
@@ -364,7 +368,7 @@ def solids_beyond(solids: SolidsOnHub) -> float | None:
 
 
 def _may_meet(bodies: Sequence[Body]) -> bool:
-    """Whether the boxes of any two bodies overlap."""
+    """Return whether the bounding boxes of any two bodies overlap."""
     if len(bodies) < 2:
         return False
     low = np.array([body.vertices.min(axis=0) for body in bodies])
@@ -376,7 +380,7 @@ def _may_meet(bodies: Sequence[Body]) -> bool:
 
 
 def _field(surface: Developable, points: Array) -> Array:
-    """Return the field (n, 3) at points (n, 3)."""
+    """Return a vector field (n, 3) at points (n, 3) with divergence 1 outside the hub."""
     cos = np.cos(surface.taper)
     height = np.maximum(surface.distance(points), 0.0)
     rho = np.maximum(np.hypot(points[:, 0], points[:, 1]), 1e-300)

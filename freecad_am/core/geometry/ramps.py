@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ramps along a path: what rises and falls no faster than something else lets it, such as squares of speeds."""
+"""Ramps along a path: limit the rate at which a quantity, such as squared speed, changes."""
 
 import numpy as np
 
@@ -8,15 +8,15 @@ from .step_count import round_down, round_up
 
 
 def limit_growth(ceiling: Array, growth: Array) -> Array:
-    """Return the largest values below a ceiling that change no faster than a limit.
+    """Return the maximum values below a ceiling that change no faster than a limit.
 
     Parameters
     ----------
     ceiling : (n,) array
         Upper bounds.
     growth : (n,) array
-        Accumulated change allowed from the start to each point; its differences limit
-        neighbours.
+        Permitted accumulated change from the start to each point; its differences limit the
+        changes between neighbours.
 
     Returns
     -------
@@ -25,7 +25,7 @@ def limit_growth(ceiling: Array, growth: Array) -> Array:
 
     Notes
     -----
-    For squares of speeds, the growth is twice the acceleration times the length along the path.
+    For squared speeds, `growth` is twice the acceleration times the path length.
     """
     rising = np.minimum.accumulate(ceiling - growth) + growth
     falling = np.minimum.accumulate((ceiling + growth)[::-1])[::-1] - growth
@@ -33,27 +33,26 @@ def limit_growth(ceiling: Array, growth: Array) -> Array:
     return lower
 
 
-# ---- Ramps between the speed of a phase at an end of a bead and the bead's speed, in steps: a
-# move has one speed
+# ---- Stepped ramps between the speed at a bead end and the speed of the bead: a move has one speed
 
 SHARE, STEPS = (
     0.1,
     20,
-)  # of the faster speed that a step changes at most, and how many steps there may be
-MIN_STEP = 0.5  # mm of a step
+)  # maximum change per step as a fraction of the faster speed; maximum number of steps
+MIN_STEP = 0.5  # mm; minimum step length
 
 
 def ramp(length: float, start: float, end: float) -> Array:
     """Return the speeds of equal parts of a ramp.
 
-    Each is the speed of a steady ramp in the middle of the part.
+    Each speed is that of a linear ramp at the midpoint of the part.
 
     Parameters
     ----------
     length : float
         Length of the ramp, mm.
     start, end : float
-        Speeds at its ends, mm/s; 0 means that of the other end.
+        Speeds at the ends of the ramp, mm/s; 0 means the speed of the other end.
 
     Returns
     -------

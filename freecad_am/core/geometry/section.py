@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The section of a part that a plane layer fills, and how well its beads do."""
+"""The section of a part that a plane layer fills, and its coverage by beads."""
 
 from __future__ import annotations
 
@@ -14,9 +14,10 @@ from ..types import Array
 class Section:
     """The section of a part that a plane layer fills.
 
-    frame: (4, 4) pose of its plane in part coordinates. loops: closed curves (n, 2) mm on it, first points not repeated,
-    material to the left. spacing: mm between neighbouring beads. is_sparse: beads leave it open on purpose. narrowest: share of
-    the nominal bead width that the narrowest bead has; nothing is missing where the section is narrower still.
+    frame: (4, 4) pose of the plane in part coordinates. loops: closed curves (n, 2) mm on the
+    plane, first points not repeated, material to the left. spacing: mm between adjacent beads.
+    is_sparse: beads leave the section open by design. narrowest: minimum bead width as a fraction
+    of the nominal width; parts of the section narrower than this do not count as missing.
     """
 
     frame: Array
@@ -27,12 +28,13 @@ class Section:
 
     @property
     def edges(self) -> Array:
-        """The edges of all loops.
+        """Return the edges of all loops.
 
         Returns
         -------
         Array
-            (k, 2, 2) mm on the plane: start and end of each edge. The last edge of a loop ends at its first point.
+            (k, 2, 2) start and end of each edge on the plane, mm. The last edge of a loop ends at
+            the first point.
         """
         return np.concatenate(
             [np.zeros((0, 2, 2))]
@@ -40,22 +42,23 @@ class Section:
         )
 
     def flat(self, points: Array) -> Array:
-        """Points (n, 3) of the part on its plane, (n, 2) mm."""
+        """Project points (n, 3) of the part onto the section plane, (n, 2) mm."""
         return np.asarray((points - self.frame[:3, 3]) @ self.frame[:3, :2])
 
     def to_part(self, points: Array) -> Array:
-        """Points (n, 2) of its plane in part coordinates, (n, 3)."""
+        """Return points (n, 2) of the section plane in part coordinates, (n, 3) mm."""
         return np.asarray(points @ self.frame[:3, :2].T + self.frame[:3, 3])
 
 
 @dataclass(frozen=True, eq=False)
 class Coverage:
-    """How well the beads of a layer fill its section.
+    """Coverage of a layer's section by beads of effective width.
 
-    Shares of the part of the section that the narrowest bead can reach, all with effective widths: void: without a
-    bead, NaN where beads leave the section open on purpose; over: deposited more than once; outside: beads beyond the border.
-    void_place, over_place: middle (3,) mm of the largest circle in void or double deposit, and void_size, over_size: its
-    diameter, mm; None where it was not searched for or there is none.
+    void, over, outside: area fractions of the section that the narrowest bead can reach. void: area
+    without a bead, NaN if beads leave the section open by design. over: area deposited more than
+    once. outside: bead area beyond the border. void_place, over_place: centre (3,) mm of the
+    largest circle in a void or in double deposit; None without a search or a circle. void_size,
+    over_size: diameter of this circle, mm.
     """
 
     void: float

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The number of parts into which a length is cut.
+"""Number of parts into which a length is divided.
 
-Lengths equal except for their last bits, as two versions of a geometry kernel compute
-them, have the same number of parts: without a tolerance a side of five steps would have
-five or six.
+Two versions of a geometry kernel compute lengths that differ in the last bits. A tolerance makes
+the number of parts equal; without the tolerance, a side of five steps could have five or six.
 """
 
 from __future__ import annotations
@@ -14,45 +13,45 @@ import numpy as np
 
 from ..types import Array, Index
 
-TOLERANCE = 1e-9  # of a part, and of the number of parts
+TOLERANCE = 1e-9  # parts; relative to the number of parts if greater than 1
 
 
 def step_count(length: float, step: float, min_count: int = 1) -> int:
-    """Return the number of equal parts of a length.
+    """Return the number of equal parts for dividing a length.
 
     Parameters
     ----------
     length : float
         The length.
     step : float
-        Longest part.
+        Maximum length of a part.
     min_count : int, optional
-        Smallest number.
+        Minimum number.
 
     Returns
     -------
     int
-        The number; rounding errors do not add a part.
+        Number of parts; rounding errors do not add a part.
     """
     return max(min_count, round_up(length / step))
 
 
 def step_counts(lengths: Array, steps: Array | float, min_count: int = 1) -> Index:
-    """Return the number of equal parts of many lengths, as `step_count`.
+    """Return the numbers of equal parts for dividing many lengths, as `step_count`.
 
     Parameters
     ----------
     lengths : (n,) array
         The lengths.
     steps : float or (n,) array
-        Longest parts.
+        Maximum lengths of parts.
     min_count : int, optional
-        Smallest number.
+        Minimum number.
 
     Returns
     -------
     (n,) int array
-        The numbers.
+        Numbers of parts.
     """
     ratio = np.asarray(lengths, dtype=np.float64) / steps
     counts = np.ceil(ratio - TOLERANCE * np.maximum(np.abs(ratio), 1.0))
@@ -60,12 +59,12 @@ def step_counts(lengths: Array, steps: Array | float, min_count: int = 1) -> Ind
 
 
 def round_up(number: float) -> int:
-    """The least whole number that is not below `number` by more than a rounding error."""
+    """Round up to an integer, except for rounding errors."""
     return math.ceil(number - TOLERANCE * max(abs(number), 1.0))
 
 
 def round_down(number: float) -> int:
-    """The greatest whole number that is not above `number` by more than a rounding error."""
+    """Round down to an integer, except for rounding errors."""
     return math.floor(number + TOLERANCE * max(abs(number), 1.0))
 
 
@@ -73,7 +72,7 @@ def round_down(number: float) -> int:
 
 
 def turn_segments(radius: float, chord_error: float, turn: float, min_full_turn: int) -> int:
-    """Return the number of equal segments of an arc within a chord error.
+    """Return the number of equal segments that approximate an arc within a chord error.
 
     Parameters
     ----------
@@ -82,18 +81,18 @@ def turn_segments(radius: float, chord_error: float, turn: float, min_full_turn:
     chord_error : float
         Chord error, mm.
     turn : float
-        Extent of the arc, rad.
+        Angle of the arc, rad.
     min_full_turn : int
-        Fewest segments of a full turn; a part of a turn has its share.
+        Minimum number of segments of a full turn; an arc has a proportional minimum.
 
     Returns
     -------
     int
-        The number, at least 2.
+        Number of segments, at least 2.
 
     Notes
     -----
-    A segment of angle u leaves the circle by radius (1 - cos(u/2)), hence u <= 2 acos(1 -
+    A segment of angle u deviates from the circle by radius (1 - cos(u/2)), hence u <= 2 acos(1 -
     chord_error/radius).
 
     References
@@ -104,11 +103,14 @@ def turn_segments(radius: float, chord_error: float, turn: float, min_full_turn:
     fewest = max(2, math.ceil(min_full_turn * share - 1e-9))
     if chord_error >= 2.0 * radius:
         return fewest
-    # acos(1 - x) = 2 asin(sqrt(x / 2)), exact also where x is small
+    # acos(1 - x) = 2 asin(sqrt(x / 2)), accurate also for small x
     step = 4.0 * math.asin(math.sqrt(0.5 * chord_error / radius))
     return step_count(turn, step, fewest)
 
 
 def largest_step(acceleration: float, chord_error: float) -> float:
-    """Largest parameter step on a curve whose second derivative stays below `acceleration` (mm per parameter^2)."""
+    """Return the maximum parameter step within a chord error, mm.
+
+    acceleration: upper bound of the curve's second derivative, mm per parameter^2.
+    """
     return float(np.sqrt(8.0 * chord_error / acceleration))

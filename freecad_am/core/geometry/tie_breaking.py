@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Choices that do not depend on the last bits of a tie.
+"""Minimum and maximum searches whose results do not depend on the last bits of ties.
 
-A symmetric problem has two best answers, and the processor and the library decide which
-of them is a hair smaller. The first of values equal within a tolerance is taken.
+A symmetric problem has two optimal solutions, and rounding on a processor or in a library decides
+which of the two values is smaller. These functions take the first value within a tolerance.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ TIE_TOLERANCE, TIE_SHARE = 1e-9, 1e-14
 
 
 def is_tied(values: ArrayLike, best: ArrayLike) -> Mask:
-    """Return whether values tie with the best, or are less.
+    """Return whether values tie with the best values, or are less.
 
     Parameters
     ----------
     values : array_like
         Values.
     best : array_like
-        Least values, of a shape that broadcasts.
+        Minimum values, of a shape that broadcasts.
 
     Returns
     -------
     array of bool
-        True up to the best plus the tolerance; False for NaN, all True where the best is infinite.
+        True up to `best` plus the tolerance; False for NaN; all True if `best` is infinite.
     """
     limit = np.asarray(best) + TIE_TOLERANCE + TIE_SHARE * np.abs(best)
     good: Mask = np.asarray(values) <= limit
@@ -35,19 +35,19 @@ def is_tied(values: ArrayLike, best: ArrayLike) -> Mask:
 
 
 def index_of_minimum(values: Array, axis: int = -1) -> Index:
-    """Return the index of the first value that ties with the smallest.
+    """Return the index of the first value that ties with the minimum.
 
     Parameters
     ----------
     values : array
-        Values; NaN counts as largest.
+        Values; NaN counts as infinite.
     axis : int, optional
-        The axis to search along.
+        Axis to search along.
 
     Returns
     -------
     array of int
-        Of the shape of the values without that axis.
+        Indices, in the shape of the values without that axis.
     """
     comparable = np.where(np.isnan(values), np.inf, values)
     with np.errstate(invalid="ignore"):
@@ -58,18 +58,18 @@ def index_of_minimum(values: Array, axis: int = -1) -> Index:
 
 
 def first_most(values: Array, axis: int = -1) -> Index:
-    """Return the index of the first value that ties with the largest.
+    """Return the index of the first value that ties with the maximum.
 
     Parameters
     ----------
     values : array
-        Values; NaN counts as smallest.
+        Values; NaN counts as minus infinity.
     axis : int, optional
-        The axis to search along.
+        Axis to search along.
 
     Returns
     -------
     array of int
-        Of the shape of the values without that axis.
+        Indices, in the shape of the values without that axis.
     """
     return index_of_minimum(-values, axis)

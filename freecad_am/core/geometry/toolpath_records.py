@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Records on a toolpath: a scan that its layers were fitted to, and the comparison of its
-predicted deposit with the part.
-"""
+"""Records of a toolpath: the fit of layers to a scan, and predicted deposit against the part."""
 
 from __future__ import annotations
 
@@ -9,21 +7,21 @@ from dataclasses import dataclass
 
 from ..types import Array, Index
 
-REMAINS_CODE = "SCAN_REMAINS"  # that the last layer is still off the plan
+REMAINS_CODE = "SCAN_REMAINS"  # the last layer still deviates from the plan
 
 
 @dataclass(frozen=True, eq=False)
 class Fitted:
     """The fit of layers to a scan.
 
-    file: name of the scan. points: number of its points used. left_out: number that face
-    another way than the layers grow. layer: number of the first fitted layer. layers: number
-    of layers, from that one, over which the deposit returns to the plan. places: (m, 3) mm in
-    part coordinates, spread over that layer as planned; off: (m,) mm along the build
-    direction from there to the scan. laid: (k, 3) mm, positions on that layer as deposited
-    now, between points too; left: (k,) mm from there to the scan. slope: maximum rise of the
-    scan along beads against the plan, per mm. remains: mm that the last layer is still off
-    the plan. motion: (4, 4) from the scan's coordinates to the part.
+    file: name of the scan. points: number of scan points used. left_out: number of points dropped
+    because they do not face the build direction. layer: index of the first fitted layer. layers:
+    number of fitted layers, after which the deposit follows the plan again. places: (m, 3) mm in
+    part coordinates, samples of the first fitted layer as planned; off: (m,) mm from these samples
+    to the scan along the build direction. laid: (k, 3) mm, samples of that layer as fitted, also
+    between path points; left: (k,) mm from these samples to the scan. slope: maximum rise of the
+    scan against the plan along beads, mm per mm. remains: remaining deviation of the last layer
+    from the plan, mm. motion: (4, 4) pose of the scan in part coordinates.
     """
 
     file: str
@@ -44,12 +42,12 @@ class Fitted:
 class DeviationMap:
     """The deviation of the predicted deposit from the faces of a part.
 
-    places: (k, 3) mm, spread over the faces. normals: (k, 3) outward. beyond: (k,) mm that
-    the deposit reaches beyond the faces there. worst: (w, 3) layer, bead and point nearest to
-    each of the first w places, which are the smallest, in rising order. edges: (n + 1,) mm of
-    ranges of `beyond`; shares: (n,) of the faces' area in each, over all examined places.
-    layers: (layers, 2) smallest and mean mm of the places nearest to each layer, NaN without
-    places.
+    places: (k, 3) mm, samples of the faces. normals: (k, 3) outwards. beyond: (k,) mm by which
+    the deposit extends beyond the faces at the samples. worst: (w, 3) layer, bead and point nearest
+    to each of the first w samples, which have the smallest values, rising. edges: (n + 1,) bin
+    edges of `beyond`, mm; shares: (n,) fraction of the face area in each bin, over all examined
+    samples. layers: (layers, 2) minimum and mean of the samples nearest to each layer, mm, NaN
+    without samples.
     """
 
     places: Array
@@ -63,17 +61,17 @@ class DeviationMap:
 
 @dataclass(frozen=True, eq=False)
 class PredictedShape:
-    """Figures of the predicted deposit.
+    """Statistics of the predicted deposit.
 
-    fed, laid: mm3 that the wire feeds, and that the predicted deposit holds. edge: mm of the
-    cubes of the prediction. drift: (layers,) mm by which the surface of each layer ends above
-    where the next one should begin, NaN without beads. allowance: mm required on all faces.
-    places: number of examined positions on the faces. least, mean, most: mm that the deposit
-    reaches beyond the faces there, along their normals, negative where the part sticks out.
-    short: share of the faces with less than the allowance; outside: share that sticks out.
-    bare: share without deposit within `reach` mm. worst: (3,) mm, the position with the
-    smallest value; layer, bead, point: the path point nearest to it. deviation: the map to
-    draw, None in predictions made before it was stored.
+    fed, laid: volume of the wire feed and of the predicted deposit, mm3. edge: voxel edge of the
+    prediction, mm. drift: (layers,) height of each layer's surface above the planned start of the
+    next layer, mm, NaN without beads. allowance: required allowance on all faces, mm. places:
+    number of samples on the faces. least, mean, most: minimum, mean and maximum distance by which
+    the deposit extends beyond the faces along their normals, mm; negative where the part protrudes.
+    short: area fraction with less than the allowance. outside: area fraction where the part
+    protrudes. bare: area fraction without deposit within `reach` mm. worst: (3,) sample with the
+    minimum value, mm. layer, bead, point: path point nearest to `worst`. deviation: the map to
+    draw; None in predictions stored without a map.
     """
 
     fed: float

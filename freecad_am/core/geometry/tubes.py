@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads as bodies for display: tubes of their width and height along polylines, above the
-points.
+"""Beads as bodies for display: tubes along polylines, above the path points.
 
-The section is a rounded rectangle of exactly the width and the height. Corners are
-mitred, ends closed.
+The section is a rounded rectangle of exactly the bead's width and height. Corners are mitred, and
+ends are closed.
 """
 
 from __future__ import annotations
@@ -15,11 +14,9 @@ import numpy as np
 from ..types import Array, Index, Mask, NDArray
 from .frames import unit
 
-TURN = np.radians(
-    20.0
-)  # a section is kept wherever the course has turned by this since the last one
-_SHARPEST = 0.5  # of the cosine of half a turn: mitres grow no longer than twice the width
-# corners of half the section, by the number of sides; the first is at the side
+TURN = np.radians(20.0)  # rad; direction change of the path after which another section is kept
+_SHARPEST = 0.5  # minimum cosine of half the turn angle: mitres are at most twice the width
+# corners of the section in half widths and half heights, by number of sides; first the side
 SECTIONS = {
     4: ((1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)),
     6: ((1.0, 0.0), (0.62, 1.0), (-0.62, 1.0), (-1.0, 0.0), (-0.62, -1.0), (0.62, -1.0)),
@@ -37,8 +34,10 @@ SECTIONS = {
 
 
 class Frames(NamedTuple):
-    """Unit vectors `side` and `up` (n, 3) across the path at every point, and the elongation (n,)
-    of the mitres there.
+    """Frames at the path points.
+
+    side, up: (n, 3) unit vectors across the path. mitre: (n,) elongation of the mitres. turn: (n,)
+    direction change of the path, rad.
     """
 
     side: Array
@@ -48,7 +47,7 @@ class Frames(NamedTuple):
 
 
 class Mesh(NamedTuple):
-    """points, normals (k * sides, 3), triangles (t, 3) their indices."""
+    """points, normals: (k * sides, 3). triangles: (t, 3) point indices."""
 
     points: Array
     normals: Array
@@ -65,14 +64,14 @@ def frames(points: Array, build: Array, starts: Index, closed: Mask) -> Frames:
     build : (n, 3) array
         Build directions, unit vectors.
     starts : (m + 1,) int array
-        First row of each bead, and n.
+        Index of the first point of each bead, and n.
     closed : (m,) bool array
-        Whether the last point of a bead is its first.
+        Whether a bead ends at its first point.
 
     Returns
     -------
     Frames
-        Vectors across the course, mitres and turns.
+        Vectors across the path, mitres and direction changes.
     """
     step = np.diff(points, axis=0)
     length = np.linalg.norm(step, axis=1, keepdims=True)
@@ -91,7 +90,7 @@ def frames(points: Array, build: Array, starts: Index, closed: Mask) -> Frames:
     )
     along = direction_before + direction_after
     cosine = np.linalg.norm(along, axis=1)
-    along = np.where(cosine[:, None] > 1e-6, along, direction_before)  # the course reverses
+    along = np.where(cosine[:, None] > 1e-6, along, direction_before)  # the path reverses
     side = unit(np.cross(build, along))
     up = unit(np.cross(along, side))
     turn = np.arccos(np.clip(np.einsum("ij,ij->i", direction_before, direction_after), -1.0, 1.0))
@@ -101,16 +100,16 @@ def frames(points: Array, build: Array, starts: Index, closed: Mask) -> Frames:
 def select_sections(turn: Array, starts: Index, stride: int) -> Mask:
     """Return which points get a section.
 
-    These are each `stride`-th point, the ends of beads, and more where the course turns.
+    Sections are at every `stride`-th point, at the ends of beads, and where the path turns.
 
     Parameters
     ----------
     turn : (n,) array
-        Turns of the course, rad.
+        Direction changes of the path, rad.
     starts : (m + 1,) int array
-        First row of each bead, and n.
+        Index of the first point of each bead, and n.
     stride : int
-        Distance of sections in points.
+        Spacing of sections, in points.
 
     Returns
     -------
@@ -127,7 +126,7 @@ def select_sections(turn: Array, starts: Index, stride: int) -> Mask:
 def mesh(
     points: Array, across: Frames, width: Array, height: Array, ends: Mask, sides: int
 ) -> Mesh:
-    """Return tubes through points, which are the middles of their feet.
+    """Build tubes over points, which are the centres of the tube bottoms.
 
     Parameters
     ----------
@@ -163,8 +162,9 @@ def mesh(
 
 
 def _triangles(ends: Mask, sides: int) -> NDArray[np.int32]:
-    """Return the triangles, counter-clockwise seen from outside if `side`, `up` and the course
-    are right-handed.
+    """Return the triangles.
+
+    They are counter-clockwise seen from outside if `side`, `up` and the path are right-handed.
     """
     number, turn = np.arange(sides), np.roll(np.arange(sides), -1)
     rows = np.flatnonzero(~ends[:-1])[:, None] * sides

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Toolpaths of AdaOne (.ada3dp) as curves: protocol buffers of a schema published by users
-of its manufacturer.
+"""AdaOne toolpaths (.ada3dp) as curves: protocol buffers with a published schema.
 
-Schema: ada3dp.proto of https://github.com/CEAD-group/adaone-utils (959f212). This module
-reads positions, directions, layers, segment types and whether a segment deposits; the job
-sets speeds, axes, fans and events itself. Fields outside the schema are noted, and
-toolpaths that remove material are rejected. Directions are those in which the nozzle
-points: in the published cone, whose layers rise along Z by their height in mm, they are
-0, 0, -1.
+Schema: ada3dp.proto of https://github.com/CEAD-group/adaone-utils (959f212), published by users of
+AdaOne. This module reads positions, directions, layers, segment types and whether a segment
+deposits. The job sets speeds, axes, fans and events. Fields outside the schema are reported, and
+toolpaths that remove material are rejected. A direction is that in which the nozzle points: in the
+published cone, whose layers rise along Z by the layer height in mm, directions are 0, 0, -1.
 """
 
 from __future__ import annotations
@@ -31,9 +29,9 @@ POINTS, PROCESS_ON, TYPE = 1, 2, 3  # PathSegment
 TOOL, MATERIAL = 10, 11
 STRATEGY, DYNAMIC_AXES = 2, (5, 6)  # Parameters
 POSITION, DIRECTION = 1, 2  # Point
-MIN_STEP_MM = 1e-6  # mm; closer points count as one
-MAX_MM = 1e7  # mm
-# the last field of each message of the schema
+MIN_STEP_MM = 1e-6  # mm; closer points coincide
+MAX_MM = 1e7  # mm; maximum coordinate
+# last field number of each message in the schema
 LAST_FIELD = {"toolpath": 2, "parameters": 7, "layer": 2, "segment": 11, "point": 8}
 TYPES = (
     *(
@@ -50,7 +48,7 @@ TYPES = (
     ),
     *("DEPOSITION_START_ZONE", "DEPOSITION_END_ZONE", "PURGE"),
 )
-# strategies that deposit nothing, by their numbers
+# numbers and names of strategies that deposit nothing
 NO_DEPOSIT = {
     10: "heating",
     12: "drilling",
@@ -66,7 +64,7 @@ Value = int | float | bytes
 
 @dataclass(frozen=True, eq=False)
 class _Run:
-    """A segment that deposits: layer, points and unit directions (n, 3), type."""
+    """A segment that deposits: layer, points (n, 3) mm, unit directions (n, 3), segment type."""
 
     layer: int
     points: Array
@@ -80,7 +78,7 @@ class _Run:
 
 @dataclass
 class _Seen:
-    """Content of a file that is not read: fields outside the schema, tools and materials."""
+    """Unread content of a file: fields outside the schema, tools and materials."""
 
     unknown: dict[str, int]
     tools: set[int]
@@ -89,7 +87,7 @@ class _Seen:
 
 
 def curves_of(data: bytes, where: str, roles: str = roles_of.PART) -> tuple[BeadCurve, ...]:
-    """Return only the beads of `read`.
+    """Read only the beads, as `read`.
 
     Parameters
     ----------
@@ -98,12 +96,12 @@ def curves_of(data: bytes, where: str, roles: str = roles_of.PART) -> tuple[Bead
     where : str
         Name of the file, for messages.
     roles : str, optional
-        Roles that are deposited.
+        Roles to deposit.
 
     Returns
     -------
     tuple of BeadCurve
-        The beads; directions where all points of a segment have one.
+        Beads, with directions if all points of a segment have a direction.
 
     Raises
     ------
@@ -114,9 +112,7 @@ def curves_of(data: bytes, where: str, roles: str = roles_of.PART) -> tuple[Bead
 
 
 def read(data: bytes, where: str, roles: str = roles_of.PART) -> ReadCurves:
-    """Return the beads of an AdaOne toolpath.
-
-    The beads are the segments that deposit and have the requested roles.
+    """Read the beads of an AdaOne toolpath: segments that deposit and have the requested roles.
 
     Parameters
     ----------
@@ -125,12 +121,12 @@ def read(data: bytes, where: str, roles: str = roles_of.PART) -> ReadCurves:
     where : str
         Name of the file, for messages.
     roles : str, optional
-        Roles that are deposited, as in `gcode.read`.
+        Roles to deposit, as in `gcode.read`.
 
     Returns
     -------
     ReadCurves
-        The beads in the coordinates of the file, and issues about unread content.
+        Beads in file coordinates, and issues about unread content.
 
     Raises
     ------
@@ -197,7 +193,7 @@ def _counted_fields(data: bytes, name: str, unread: _Seen) -> list[tuple[int, Va
 
 
 def _check_parameters(data: bytes, where: str, unread: _Seen) -> None:
-    """Raise InputError BAD_ADA3DP for a strategy that deposits nothing."""
+    """Check the strategy. Raises InputError BAD_ADA3DP if it deposits nothing."""
     for number, value in _counted_fields(data, "parameters", unread):
         if number == STRATEGY and value in NO_DEPOSIT:
             raise InputError(
@@ -229,7 +225,7 @@ def _beads(data: bytes, where: str, unread: _Seen) -> Iterator[_Run]:
 
 
 def _segment(layer: int, fields: list[tuple[int, Value]], unread: _Seen) -> _Run | None:
-    """Return a segment; None if it does not deposit or has no length."""
+    """Read a segment; return None if it does not deposit or has no length."""
     values = dict(fields)
     if not values.get(PROCESS_ON):
         return None
@@ -259,7 +255,7 @@ def _segment(layer: int, fields: list[tuple[int, Value]], unread: _Seen) -> _Run
 
 
 def _point(data: bytes, unread: _Seen) -> tuple[list[float], list[float]]:
-    """Return position and direction; components missing from a vector are 0."""
+    """Read position and direction; missing components are 0."""
     fields = dict(_counted_fields(data, "point", unread))
     vectors = []
     for name in (POSITION, DIRECTION):
@@ -269,8 +265,9 @@ def _point(data: bytes, unread: _Seen) -> tuple[list[float], list[float]]:
 
 
 def _fields(data: bytes) -> Iterator[tuple[int, Value]]:
-    """Yield numbers and values of the fields of a message. Raises ValueError if the data is not
-    a message.
+    """Yield the numbers and values of a message's fields.
+
+    Raises ValueError if the data is not a message.
     """
     position = 0
     while position < len(data):
@@ -296,7 +293,7 @@ def _fields(data: bytes) -> Iterator[tuple[int, Value]]:
 
 
 def _varint(data: bytes, position: int) -> tuple[int, int]:
-    """Return the variable-length number at a byte, and the position after it."""
+    """Read a variable-length number; return its value and the next position."""
     value = shift = 0
     while True:
         if position >= len(data):

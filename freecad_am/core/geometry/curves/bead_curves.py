@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves to deposit as beads without slicing, with the tool direction of each, and their tables."""
+"""Curves to deposit as beads without slicing, with tool directions, and tables of such curves."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ...issues import InputError, Issue, Text, Word
 from ...types import Array
 from ..obstacles import Body
 
-# endings of files whose curves become beads, and their descriptions
+# endings and formats of files whose curves become beads
 POINT_FILES = {
     ".csv": "csv",
     ".gcode": "gcode",
@@ -22,16 +22,16 @@ POINT_FILES = {
     ".g": "gcode",
     ".ada3dp": "ada3dp",
 }
-MEETING = 1e-6  # mm between the ends of a closed curve
+MEETING = 1e-6  # mm; maximum distance between the ends of a closed curve
 
 
 @dataclass(frozen=True, eq=False)
 class BeadCurve:
     """A curve deposited as one bead.
 
-    points: (n, 3) mm; a closed curve repeats its first point as the last. directions: (n, 3)
-    unit vectors from the deposit towards the tool; None if the source has no directions.
-    layer: number of its layer, from 0.
+    points: (n, 3) mm; a closed curve repeats its first point at the end. directions: (n, 3) unit
+    vectors from the deposit towards the tool; None if the source has no directions. layer: layer
+    index, from 0.
     """
 
     points: Array
@@ -40,7 +40,7 @@ class BeadCurve:
 
     @property
     def closed(self) -> bool:
-        """Whether it ends where it begins."""
+        """Whether the curve ends at its first point."""
         return (
             len(self.points) > 3
             and float(np.linalg.norm(self.points[-1] - self.points[0])) < MEETING
@@ -49,11 +49,11 @@ class BeadCurve:
 
 @dataclass(frozen=True, eq=False)
 class Curves:
-    """Curves to deposit, in this order.
+    """Curves in deposition order.
 
-    surroundings: substrate and fixtures, as bodies. depths: None, a part of curves has no
-    volume. edges: names of the chosen edges of a shape, empty if all are used; None for
-    curves that do not come from a shape. own: None, they have no hub.
+    surroundings: substrate and fixtures, as bodies. depths: None, because curves have no volume.
+    edges: names of the selected edges of a shape, empty if all are used; None for curves that do
+    not come from a shape. own: None, because curves have no hub.
     """
 
     own: ClassVar[None] = None
@@ -67,25 +67,25 @@ class Curves:
 
 
 class ReadCurves(NamedTuple):
-    """Beads of a file, and issues about its content that does not become beads."""
+    """Beads of a file, and issues about content that does not become beads."""
 
     curves: tuple[BeadCurve, ...]
     issues: tuple[Issue, ...] = ()
 
 
-# ---- Curves from a text table of points: x, y, z in mm, optionally with the direction i, j, k
-# and the bead number
+# ---- Curves from a text table of points: x, y, z in mm, optionally direction i, j, k and bead
+# number
 
 COLUMNS = ("x", "y", "z", "i", "j", "k", "bead")
 BY_COUNT = {3: COLUMNS[:3], 4: (*COLUMNS[:3], "bead"), 6: COLUMNS[:6], 7: COLUMNS}
 CODE = "BAD_TABLE"
-MIN_STEP_MM = 1e-6  # mm; closer points count as one
-MAX_MM = 1e7  # mm; a larger coordinate is a typing error
+MIN_STEP_MM = 1e-6  # mm; closer points coincide
+MAX_MM = 1e7  # mm; maximum coordinate; larger values are typing errors
 FORM = "give a table with the columns x,y,z, then i,j,k for directions, then bead for several beads"
 
 
 def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
-    """Return the curves of a table, one for each bead number, in the order of the lines.
+    """Read the curves of a table, one per bead number, in the order of the lines.
 
     Cells are separated by commas or semicolons; the first line holds column names or numbers.
 
@@ -144,7 +144,7 @@ def _cells(line: str, separator: str) -> list[str]:
 
 
 def _columns(cells: Sequence[str], where: str) -> tuple[tuple[str, ...], int]:
-    """Return the columns, and the number of lines before the points."""
+    """Return the column names, and the number of header lines."""
     names = tuple(cell.lower().removesuffix("_mm") for cell in cells)
     if any(name in COLUMNS for name in names):
         expected = BY_COUNT.get(len(names))

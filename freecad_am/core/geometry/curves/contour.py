@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Meridian pieces joined into chains, the walls of a closed contour, and the wall midway
-between two walls.
+"""Chains of meridian pieces, walls of a closed contour, and the wall midway between two walls.
 
-All coordinates are in the half plane (radius, height) of the axis.
+All coordinates are in the half-plane (radius, height) of the axis.
 """
 
 from __future__ import annotations
@@ -17,19 +16,19 @@ from scipy.spatial import cKDTree
 from ...types import Array
 from .profile import Meridian, arc_lengths, turning_angle
 
-JOIN_MM = 1e-4  # mm; ends closer than this are one point
+JOIN_MM = 1e-4  # mm; ends closer than this coincide
 BRIDGE_MM = 0.2  # mm; wider gaps are not bridged
-LEVEL_MM = 1e-4  # mm; heights closer than this are the same
+LEVEL_MM = 1e-4  # mm; heights closer than this are equal
 SQUARE_RANGE_RAD = (
     np.radians(60.0),
     np.radians(120.0),
-)  # corners between a wall and the rim that ends it
-MAX_RIM_SHARE = 1.0 / 6.0  # of the contour; a longer piece is a wall
+)  # angles of a right corner between a wall and its rim
+MAX_RIM_SHARE = 1.0 / 6.0  # of the contour length; a longer piece is a wall
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A smooth stretch of meridian: samples points (n, 2) mm and unit tangents (n, 2). flat: all at one height."""
+    """A smooth piece of a meridian: points (n, 2) mm and unit tangents (n, 2)."""
 
     name: str
     points: Array
@@ -38,11 +37,11 @@ class Piece:
 
     @property
     def flat(self) -> bool:
-        """True where the piece is straight across the axis."""
+        """Whether all points have the same height."""
         return bool(np.ptp(self.points[:, 1]) < LEVEL_MM)
 
     def reversed(self) -> Piece:
-        """The same stretch run the other way."""
+        """Return the reversed piece."""
         return replace(self, points=self.points[::-1], tangents=-self.tangents[::-1])
 
 
@@ -68,7 +67,7 @@ def ends(chain: Chain) -> tuple[Array, Array]:
 def chains(segments: Sequence[Piece]) -> tuple[list[Chain], float]:
     """Join segments end to end, nearest ends first.
 
-    A closed contour is one chain whose last end meets its first.
+    A closed contour is a chain whose last end meets its first end.
 
     Parameters
     ----------
@@ -80,7 +79,7 @@ def chains(segments: Sequence[Piece]) -> tuple[list[Chain], float]:
     chains : list of Chain
         The chains.
     gap : float
-        Widest gap that was bridged, mm.
+        Maximum bridged gap, mm.
     """
     chains_so_far: list[Chain] = [[segment] for segment in segments]
     widest = 0.0
@@ -100,8 +99,8 @@ def chains(segments: Sequence[Piece]) -> tuple[list[Chain], float]:
 def _find_gaps(open_chains: Sequence[Chain]) -> list[tuple[float, int, int, int, int]]:
     """Return gaps (mm) of at most BRIDGE_MM between the ends of two chains.
 
-    Each gap has the numbers of the two chains and whether each must be reversed so that the
-    first continues into the second.
+    Each gap has the indices of both chains and whether each chain must be reversed so that the
+    first chain continues into the second.
     """
     tips = np.array([ends(chain) for chain in open_chains]).reshape(
         -1, 2
@@ -121,17 +120,16 @@ def _reverse(chain: Chain) -> Chain:
 
 
 def opening(chain: Chain) -> float:
-    """Return the distance from the last end of a chain to its first, mm."""
+    """Return the distance between the two ends of a chain, mm."""
     start, end = ends(chain)
     return float(np.hypot(*(end - start)))
 
 
 def is_closed(chain: Chain, is_whole: bool = False) -> bool:
-    """Return whether the chain bounds a section: it meets itself, or starts and ends on the
-    axis.
+    """Return whether a chain bounds a section: its ends meet, or both are on the axis.
 
-    is_whole: the chain is all of a closed surface, so it also meets itself across a gap as
-    wide as the widest one bridged between its pieces.
+    is_whole: whether the chain is a complete closed surface; its ends may then be up to BRIDGE_MM
+    apart.
     """
     meets = len(chain) > 1 or len(chain[0].points) > 2
     return (
@@ -147,9 +145,9 @@ def _starts_and_ends_on_axis(chain: Chain) -> bool:
 
 
 def upright(chain: Chain) -> Chain:
-    """Return the chain in the sense from its lower end to its upper end.
+    """Return the chain in the sense from its lower to its upper end.
 
-    With both ends at one height it starts at the end with the larger radius.
+    If both ends have the same height, the chain starts at the end with the larger radius.
     """
     start, end = ends(chain)
     if abs(start[1] - end[1]) < LEVEL_MM:
@@ -158,11 +156,11 @@ def upright(chain: Chain) -> Chain:
 
 
 def walls(chain: Chain) -> list[Chain]:
-    """Return the walls of a closed contour, the one at the larger radius first.
+    """Return the walls of a closed contour, larger radius first.
 
-    The contour is cut at its lowest and highest points. Flat pieces there, short rims square
-    to both walls there, and flat pieces at the ends of the remaining runs are end faces, not
-    walls. The contour of a full part has one wall, of a hollow part two.
+    The contour is cut at its lowest and highest points. End faces are removed: flat pieces and
+    short rims normal to both walls at these points, and flat pieces at the ends of the remaining
+    runs. The contour of a solid part has one wall, the contour of a hollow part two.
     """
     level = np.vstack([segment.points for segment in chain])[:, 1]
     low, high = float(level.min()), float(level.max())
@@ -194,8 +192,9 @@ def walls(chain: Chain) -> list[Chain]:
 def _rims(chain: Chain, meets: bool, low: float, high: float) -> set[int]:
     """Return the indices of slanted end faces.
 
-    These are straight pieces, shorter than MAX_RIM_SHARE of the contour, that reach the
-    lowest or highest level where no flat piece is, and join both neighbours at right angles.
+    A slanted end face is a straight piece, shorter than MAX_RIM_SHARE of the contour. It reaches
+    the lowest or highest level, where there is no flat piece, and joins both neighbours at about
+    right angles.
     """
     lengths = [float(arc_lengths(segment.points, segment.tangents).sum()) for segment in chain]
     flat_levels = [segment.points[0, 1] for segment in chain if segment.flat]
@@ -225,7 +224,7 @@ def _at_extreme(point: Array, low: float, high: float) -> bool:
 
 
 def _cut_at(segment: Piece, low: float, high: float) -> list[Piece]:
-    """Cut a piece at inner samples where it touches the lowest or highest level."""
+    """Cut a piece at inner points where it touches the lowest or highest level."""
     rise = segment.tangents[:, 1]
     turning = np.flatnonzero(rise[1:] * rise[:-1] <= 0.0)
     if segment.flat or len(turning) == 0:
@@ -253,7 +252,7 @@ def _cut_at(segment: Piece, low: float, high: float) -> list[Piece]:
 
 
 def _stretch(segment: Piece, curve: Meridian, a: float, b: float) -> Piece:
-    """Return the piece from arc length a to b of its own curve."""
+    """Return the part of a piece from arc length a to b of its curve."""
     inner = (curve.s > a + 1e-6) & (curve.s < b - 1e-6)
     r, h, t = curve.at([a, b])
     points = np.vstack([[r[0], h[0]], curve.points[inner], [r[1], h[1]]])
@@ -277,16 +276,16 @@ def _mean_radius(chain: Chain) -> float:
 
 
 def meridian_of(chain: Chain) -> Meridian:
-    """Return the chain as one curve."""
+    """Return the chain as a single meridian."""
     return Meridian.chained([(segment.points, segment.tangents) for segment in chain])
 
 
 def halfway(outer: Chain, inner: Chain) -> list[tuple[Array, Array]]:
-    """Return the wall in the middle of two walls.
+    """Return the wall midway between two walls.
 
-    Points at the same share of the lengths of both walls correspond. If both have the same
-    number of pieces, shares count from piece to piece, else from kink to kink, else over the
-    full length. Between parallel walls this is the parallel curve in the middle.
+    Points at equal length fractions of both walls correspond. Fractions count per piece if both
+    walls have the same number of pieces, otherwise per section between kinks, otherwise over the
+    full length. Between parallel walls, the result is the parallel curve midway.
 
     Parameters
     ----------
@@ -335,12 +334,12 @@ def _between(
     points, tangents = np.zeros((len(share), 2)), np.zeros((len(share), 2))
     for curve, a, b in zip(curves, start, end, strict=True):
         r, h, _ = curve.at(a + share * (b - a))
-        # just inside, so that a kink at the start gives the tangent above it
+        # slightly inside, so that a kink at the start gives the upper tangent
         _, _, t = curve.at(np.clip(a + share * (b - a), a + 2e-9, b))
         points += 0.5 * np.stack([r, h], axis=1)
         tangents += 0.5 * (b - a) * t
     size = np.linalg.norm(tangents, axis=1)
-    # where the two walls run against each other, as at the crest of a torus, only the points give the sense
+    # where the walls run in opposite directions, as at the crest of a torus, use the points
     along = np.gradient(points, axis=0)
     tangents = np.where((size > 1e-4 * size.max())[:, None], tangents, along)
     return points, tangents / np.linalg.norm(tangents, axis=1, keepdims=True)

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Slicer G-code as curves: each run of extruding moves is a bead; layers follow the
-comments, otherwise Z.
+"""Slicer G-code as curves: each run of extruding moves is a bead.
 
-Modes follow Marlin 2 and Klipper: G90 keeps M83, and G91 makes the extruder relative
-unless M82 or M83 was given. A move on which the two firmwares disagree (M82, then G91) is
-rejected. Sources: https://marlinfw.org/meta/gcode,
-https://www.klipper3d.org/G-Codes.html,
+Layers follow the comments, or Z if there are no layer comments. Modes follow Marlin 2 and Klipper:
+G90 keeps M83, and G91 makes the extruder relative unless M82 or M83 was given. A move that the two
+firmwares interpret differently (M82, then G91) is rejected. Sources:
+https://marlinfw.org/meta/gcode, https://www.klipper3d.org/G-Codes.html,
 https://docs.duet3d.com/User_manual/Reference/Gcodes.
 """
 
@@ -31,26 +30,26 @@ LAYER = re.compile(
     r"\s*(?:LAYER\s*:\s*-?\d+|LAYER_CHANGE|CHANGE_LAYER|layer\s+-?\d+\b.*|BEFORE_LAYER_CHANGE)",
     re.IGNORECASE,
 )
-MIN_STEP_MM = 1e-6  # mm; closer points count as one
-MAX_MM = 1e7  # mm; farther away is a slip of the pen
+MIN_STEP_MM = 1e-6  # mm; closer points coincide
+MAX_MM = 1e7  # mm; maximum coordinate; larger values are typing errors
 ARC_END = (
-    0.1  # mm by which the ends of an arc may be on different circles: slicers round to hundredths
+    0.1  # mm; maximum difference of the radii at the ends of an arc: slicers round to hundredths
 )
 EXTRUSION_TOLERANCE_MM = 1e-9
 SAME_HEIGHT = 1e-3  # mm; slicers write Z to hundredths or thousandths
-MAX_TURN_DEG = 1.0  # by which the direction turns from one point to the next
-NO_ROTARY, ANY_ROTARY = "none", "any"  # any: for a drawing, which shows no directions
+MAX_TURN_DEG = 1.0  # maximum rotation of a rotary axis between adjacent points
+NO_ROTARY, ANY_ROTARY = "none", "any"  # any: for drawings, which do not show directions
 ROTARY = (NO_ROTARY, "head-ac", "head-bc", "table-ac", "table-bc")
 FORM = "give absolute or relative moves, G0 to G3 with E, as a slicer for filament or pellets writes them"
 MOTIONS = frozenset({"G0", "G1", "G2", "G3"})
 LINEAR_WORDS, ARC_WORDS = frozenset("XYZEF"), frozenset("XYZEFIJKRP")
-LENGTH_WORDS = frozenset("XYZEFIJKR")  # in mm, or in inches after G20
+LENGTH_WORDS = frozenset("XYZEFIJKR")  # mm, or inches after G20
 INCH = 25.4  # mm
-# of each plane of arcs, its two axes and the one along which they climb, and the words of their middle. Controllers turn
-# arcs in G18 from Z to X, Klipper from X to Z, so these are rejected
+# for each arc plane: its two axes, the axis of helices, and the words of the arc centre. Arcs in
+# G18 are rejected, because controllers rotate them from Z to X and Klipper from X to Z
 PLANES = {"G17": ((0, 1, 2), "IJ"), "G18": ((2, 0, 1), "KI"), "G19": ((1, 2, 0), "JK")}
 UNITS = {"G20": INCH, "G21": 1.0}
-# codes without a meaning for the path: dwell, cancelled modes, first work offset, feed modes, fans, states
+# codes without effect on the path: dwell, cancelled modes, first work offset, feed modes
 NO_MOTION = frozenset(
     {
         "G4",
@@ -68,7 +67,7 @@ NO_MOTION = frozenset(
         "G97",
     }
 )
-# automatic moves: homing, levelling, cleaning, parking. The program must give positions again afterwards
+# automatic moves (homing, levelling, cleaning, parking); the program must then set positions again
 OWN_MOTION = frozenset(
     {"G12", "G27", "G28", "G29", "G29.1", "G29.2", "G30", "G32", "G33", "G34", "G35", "G392"}
 )
@@ -95,11 +94,11 @@ REFUSED = {
     "FORCE_MOVE": "it moves a single motor; remove it",
     "EXCLUDE_OBJECT": "it cancels an object while the program runs; remove the object in the slicer",
 }
-# codes to which printer manufacturers give their own meanings: probing, levelling, machine states
+# manufacturer-specific codes: probing, levelling, machine states
 VENDOR = re.compile(r"G39(?:\.\d+)?|G\d{3,}(?:\.\d+)?")
-CANCELLED = re.compile(r"\s*(?:C|P\s*\d+)\s*", re.IGNORECASE)  # words of M486 that drop an object
+CANCELLED = re.compile(r"\s*(?:C|P\s*\d+)\s*", re.IGNORECASE)  # words of M486 that cancel an object
 WORK_OFFSETS = re.compile(r"G5[5-9](?:\.[123])?")
-# M codes and macros that are known to leave the path as it is
+# M codes and macros that do not change the path
 HARMLESS_M = frozenset(
     {
         f"M{k}"
@@ -303,8 +302,11 @@ HARMLESS_MACROS = frozenset(
 
 @dataclass(frozen=True, eq=False)
 class _Run:
-    """Points (n, 3) and directions (n, 3), None without rotary words, of a run of moves that extrude, the number of layer
-    comments before it, and the slicer's type."""
+    """A run of extruding moves.
+
+    points: (n, 3) mm. directions: (n, 3), None without rotary words. comments: number of layer
+    comments before the run. role: the slicer's type.
+    """
 
     points: Array
     directions: Array | None
@@ -324,17 +326,17 @@ class _Run:
 class _State:
     """Modes and positions of a program.
 
-    coordinates: as the program counts. extruders: as Klipper and Marlin count.
+    coordinates: program coordinates. extruders: extruder positions in Klipper and in Marlin.
     """
 
     coordinates: dict[str, float] = field(default_factory=lambda: dict.fromkeys("XYZABC", 0.0))
     extruders: list[float] = field(default_factory=lambda: [0.0, 0.0])
     shift: Array = field(default_factory=lambda: np.zeros(3))
     absolute: bool = True
-    extruder_mode: str = ""  # M82 or M83, '' before either
+    extruder_mode: str = ""  # M82 or M83; '' before the first of them
 
     def copied(self) -> _State:
-        """A copy that does not change with this one."""
+        """Return an independent copy."""
         return _State(
             dict(self.coordinates),
             list(self.extruders),
@@ -344,7 +346,7 @@ class _State:
         )
 
     def extruder_is_relative(self) -> tuple[bool, bool]:
-        """Whether E counts from the position before, for Klipper and for Marlin."""
+        """Return whether E is relative, for Klipper and for Marlin."""
         relative = self.extruder_mode == "M83"
         return (
             relative or not self.absolute,
@@ -353,7 +355,7 @@ class _State:
 
     @property
     def modes(self) -> tuple[bool, str]:
-        """Whether moves are absolute, and the mode of the extruder."""
+        """Whether moves are absolute, and the extruder mode."""
         return self.absolute, self.extruder_mode
 
     @property
@@ -364,7 +366,7 @@ class _State:
 def curves_of(
     text: str, where: str, chord_error: float, roles: str = roles_of.PART, rotary: str = NO_ROTARY
 ) -> tuple[BeadCurve, ...]:
-    """Return the beads of a program in its coordinates.
+    """Read the beads of a program, in program coordinates.
 
     Parameters
     ----------
@@ -375,14 +377,14 @@ def curves_of(
     chord_error : float
         Chord error of arcs, mm.
     roles : str, optional
-        Roles of the slicer that are deposited.
+        Slicer roles to deposit.
     rotary : str, optional
-        How words A, B and C turn the tool, if at all.
+        How the words A, B and C rotate the tool, one of `ROTARY`.
 
     Returns
     -------
     tuple of BeadCurve
-        The beads in order.
+        Beads in order.
 
     Raises
     ------
@@ -395,21 +397,21 @@ def curves_of(
 def read(
     text: str, where: str, chord_error: float, roles: str = roles_of.PART, rotary: str = NO_ROTARY
 ) -> ReadCurves:
-    """Read the beads of a program, and report its content that is not read.
+    """Read the beads of a program, and report unread content.
 
     Parameters
     ----------
     text
         The program.
     where
-        Its name, for messages.
+        Name of the program, for messages.
     chord_error
-        Largest distance between an arc and its chords, mm.
+        Maximum distance between an arc and its chords, mm.
     roles
-        ``part``, ``all``, or groups and types of the slicer separated by commas; other moves
-        are left out, with a note.
+        ``part``, ``all``, or slicer groups and types separated by commas; a note reports omitted
+        moves.
     rotary
-        How the words A, B and C turn the tool, one of `ROTARY`; ``none`` rejects them.
+        How the words A, B and C rotate the tool, one of `ROTARY`; ``none`` rejects these words.
 
     Raises
     ------
@@ -425,7 +427,7 @@ def read(
 
 
 def _leaves_the_path(command: Command) -> bool:
-    """Whether a code or macro of the machine is known to leave the path as it is."""
+    """Return whether a machine code or macro is known not to change the path."""
     name = command.name
     if name == "M92":  # steps per mm scale an axis
         return not {letter for letter, _ in command.words} & set("XYZ")
@@ -433,13 +435,13 @@ def _leaves_the_path(command: Command) -> bool:
 
 
 class _Reader:
-    """Position of the head, interpreted words, and beads up to the current line."""
+    """Interpreter of a program: head position, modes, and beads up to the current line."""
 
     def __init__(self, where: str, chord_error: float, rotary: str) -> None:
         self.where, self.chord_error, self.rotary = where, chord_error, rotary
         self.state, self.stored = _State(), dict[str, _State]()
-        self.pushed: list[tuple[bool, str]] = []  # modes at each M120 without its M121
-        self.known: set[str] = set()  # axes given so far
+        self.pushed: list[tuple[bool, str]] = []  # modes at each M120 that has no M121 yet
+        self.known: set[str] = set()  # axes with a defined position
         self.motion = ""
         self.plane, self.unit = "G17", 1.0
         self.points: list[Array] = []
@@ -448,7 +450,7 @@ class _Reader:
         self.comments, self.line = 0, 0
         self.role: str | None = None
         self.tool, self.tools = "T0", set[str]()
-        self.ended = ""  # the code that ended the program
+        self.ended = ""  # code that ended the program
         self.not_read: dict[str, list[int]] = {}  # names of macros and codes, and their lines
 
     def take(self, line: str, number: int) -> None:
@@ -520,7 +522,7 @@ class _Reader:
             self._other(command)
 
     def _modal(self, command: Command) -> str:
-        """The motion that words without a command mean; '' of the number of a program."""
+        """Return the modal motion of words without a command; '' for a program number."""
         letter = command.words[0][0]
         if letter == "O" and len(command.words) == 1 and command.words[0][1] is not None:
             return ""
@@ -531,8 +533,9 @@ class _Reader:
         return self.motion
 
     def _is_refused(self, command: Command) -> bool:
-        """Raise for a code that would be misinterpreted; return True for codes that are harmless
-        with these words.
+        """Return True for codes that are harmless with these words.
+
+        Raises InputError for codes that would be misinterpreted.
         """
         name = command.name
         reason = REFUSED.get(name) or (
@@ -580,7 +583,7 @@ class _Reader:
             self.state.extruder_mode = command.name
 
     def _home(self, command: Command) -> None:
-        """Handle an automatic move; homed axes count from the machine's own origin."""
+        """Handle an automatic move; homed axes use the machine origin."""
         self._end()
         axes = {letter for letter, _ in command.words if letter in "XYZ"} or set("XYZ")
         self.known -= axes
@@ -592,16 +595,14 @@ class _Reader:
                     self.state.coordinates[axis], self.state.shift[k] = 0.0, 0.0
 
     def _retract(self, command: Command) -> None:
-        """Retract and recover, or set temperatures of a tool; offsets are rejected."""
+        """Handle retract, recover and tool temperatures; reject offsets."""
         self._end()
         letters = {letter for letter, _ in command.words}
         if letters & set("XYZABCL"):
             raise self._error(Text("{} sets unknown offsets; remove it", command.name))
 
     def _other(self, command: Command) -> None:
-        """Handle codes and macros of the machine: they leave the path unchanged, and unknown ones
-        are noted.
-        """
+        """Handle machine codes and macros that do not change the path; record unknown codes."""
         name = command.name
         if name in ("M2", "M30", "M112") and not command.arguments:
             self._end()
@@ -626,8 +627,9 @@ class _Reader:
         return match[1] if match else "default"
 
     def _restore(self, command: Command) -> None:
-        """Handle RESTORE_GCODE_STATE of Klipper: restore modes and origins; the head stays unless
-        MOVE is 1.
+        """Handle RESTORE_GCODE_STATE of Klipper: restore modes and origins.
+
+        The head does not move unless MOVE is 1.
         """
         stored = self.stored.get(self._state_name(command))
         if stored is None:
@@ -642,7 +644,7 @@ class _Reader:
         self.state = state
 
     def _push_or_pop(self, name: str) -> None:
-        """M120 and M121 store and restore modes on RepRapFirmware, and switch endstops on Marlin."""
+        """Handle M120 and M121, which store and restore modes in RepRapFirmware only."""
         if name == "M120":
             self.pushed.append(self.state.modes)
             return
@@ -654,7 +656,7 @@ class _Reader:
             )
 
     def _numbers(self, command: Command) -> dict[str, float]:
-        """The words of a motion. Raises InputError for words that it does not have, or without a number."""
+        """Return the words of a motion, mm. Raises InputError for wrong words or no numbers."""
         allowed = LINEAR_WORDS if self.motion in ("G0", "G1") else ARC_WORDS
         numbers: dict[str, float] = {}
         for letter, value in command.words:
@@ -721,7 +723,7 @@ class _Reader:
         state.shift = position - np.array([state.coordinates[axis] for axis in "XYZ"])
 
     def _extrude(self, words: dict[str, float]) -> bool:
-        """Return whether a move extrudes. Raises InputError where Klipper and Marlin differ."""
+        """Return whether a move extrudes. Raises InputError if Klipper and Marlin disagree."""
         if "E" not in words:
             return False
         value, extrudes = words["E"], []
@@ -799,9 +801,9 @@ class _Reader:
         self.tools.add(self.tool)
 
     def _direction(self, angles: Array) -> Array:
-        """The unit vector from the deposit towards the tool, for A, B and C in degrees."""
+        """Return the unit vector from deposit to tool for the angles A, B and C, deg."""
         a, b, c = np.radians(angles)
-        if self.rotary.startswith("table"):  # the part turns by the angles, so the tool by less
+        if self.rotary.startswith("table"):  # the part rotates, hence negative tool angles
             a, b, c = -a, -b, -c
         if self.rotary.endswith("ac"):
             tilted = (0.0, -math.sin(a), math.cos(a))
@@ -813,7 +815,7 @@ class _Reader:
     def _arc(
         self, name: str, start: Array, end: Array, words: dict[str, float], extrudes: bool
     ) -> list[Array]:
-        """Return the points (3,) of an arc without its first."""
+        """Return the points (3,) of an arc without the first point."""
         if extrudes and words.get("P", 0.0) > 1.0:
             raise self._error(
                 "P asks for several turns, which are not supported; write out each turn"
@@ -875,9 +877,7 @@ class _Reader:
     def _middle(
         self, name: str, start: Array, end: Array, words: dict[str, float], letters: str
     ) -> Array:
-        """Return the middle (2,) of an arc in its plane, from words with these two letters or from
-        its radius.
-        """
+        """Return the centre (2,) of an arc in its plane, from the words `letters` or from R."""
         if words.keys() & {*letters}:
             if "R" in words:
                 raise self._error(
@@ -926,9 +926,7 @@ class _Reader:
         return InputError(CODE, f"{self.where} line {self.line}", message)
 
     def finish(self, roles: str) -> ReadCurves:
-        """Return the beads of these roles, each with its layer, and the issues about omitted
-        content.
-        """
+        """Return the beads of given roles with their layers, and issues about omitted content."""
         self._end()
         if not self.runs:
             raise InputError(
@@ -978,8 +976,8 @@ class _Reader:
 def _layers(runs: Sequence[_Run], has_comments: bool) -> list[int]:
     """Return the layer of each run, from 0: by comments if the file has them, otherwise by Z.
 
-    Runs before the first comment at one height, such as a purge line, belong to the first
-    layer; neighbours at the same height share a layer.
+    Runs before the first comment at a common height, such as a purge line, belong to the first
+    layer. Consecutive runs at a common height share a layer.
     """
     keys: list[float] = [
         float(run.comments) if has_comments else round(float(run.points[0, 2]), 3) for run in runs
@@ -1007,6 +1005,6 @@ def _layers(runs: Sequence[_Run], has_comments: bool) -> list[int]:
 
 
 def _span(runs: Sequence[_Run]) -> float:
-    """Between the lowest and the highest point, mm."""
+    """Return the height between the lowest and the highest point of runs, mm."""
     low, high = zip(*(run.heights for run in runs))
     return float(max(high) - min(low))

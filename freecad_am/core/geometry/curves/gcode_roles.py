@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The roles that a slicer's comments give to moves: the part, or its skirt, brim, support,
-tower and the like.
+"""Roles of moves in slicer comments: part, skirt, brim, support, tower and similar.
 
 PrusaSlicer, SuperSlicer, Orca, Cura and ideaMaker write `;TYPE:name`, Bambu Studio `;
 FEATURE: name`, Simplify3D `; feature name` (before 4.0 only the name), FlashPrint
@@ -17,13 +16,13 @@ from ...issues import NOTE, InputError, Issue, Text
 
 PART, ALL = "part", "all"
 LEFT_OUT, NOT_READ = "ROLES_LEFT_OUT", "GCODE_NOT_READ"
-BEFORE = "before the first type"  # moves of a file with types that come before these
+BEFORE = "before the first type"  # role of moves before the first type comment
 _MARK = re.compile(
     r"\s*(?:(?:TYPE|FEATURE|structure|segType)\s*:\s*(?P<name>.*?)|feature\s+(?P<feature>[a-z][a-z /-]*?)"
     r"|'(?P<path>[^']+?)(?:\s+Path)?'.*)\s*$",
     re.IGNORECASE,
 )
-# comments that are only a name: Simplify3D before 4.0, Slic3r with comments enabled
+# comments that consist of a name: Simplify3D before 4.0, Slic3r with comments enabled
 _NAMES = frozenset(
     {
         "outer perimeter",
@@ -47,7 +46,7 @@ _NAMES = frozenset(
     }
     | {"internal single extrusion", "external single extrusion", "support material interface"}
 )
-# groups that strategy.roles may name, with the words by which names of types belong to them; the first that fits counts
+# groups for strategy.roles, with words in the type names; the first match counts
 GROUPS = (
     ("support", ("support", "interface")),
     ("tower", ("tower", "pillar", "ooze", "wipe", "prime", "shield")),
@@ -71,8 +70,9 @@ NOT_PART = ("support", "tower", "purge", "skirt", "brim", "raft", "ironing", "mi
 
 
 class Run(Protocol):
-    """A run of moves that deposit: the slicer's type, None in a file without types, and the
-    length in mm.
+    """A run of deposit moves.
+
+    role: the slicer's type, None in a file without types. length: mm.
     """
 
     @property
@@ -86,7 +86,7 @@ AnyRun = TypeVar("AnyRun", bound=Run)
 
 
 def read_role(comment: str) -> str | None:
-    """Return the type name that a comment gives; None for other comments."""
+    """Return the type name in a comment; None if the comment names no type."""
     match = _MARK.match(comment)
     if match is None:
         name = comment.strip().lower()
@@ -95,20 +95,20 @@ def read_role(comment: str) -> str | None:
 
 
 def group_of(role: str) -> str:
-    """The group of a type, '' of one that is not known."""
+    """Return the group of a type; '' for an unknown type."""
     name = re.sub(r"[_\s]+", " ", role.lower())
     return next((group for group, words in GROUPS if any(word in name for word in words)), "")
 
 
 def split_entries(text: str) -> tuple[str, ...]:
-    """Return the entries of strategy.roles."""
+    """Split the text of strategy.roles into entries."""
     return tuple(word.strip() for word in re.split(r"[,;]", text) if word.strip())
 
 
 def is_deposited(role: str | None, entries: Sequence[str]) -> bool:
     """Return whether moves of a type are deposited.
 
-    role: None in a file without types.
+    role: type name; None in a file without types.
     """
     if role is None or entries == (ALL,):
         return True
@@ -118,7 +118,7 @@ def is_deposited(role: str | None, entries: Sequence[str]) -> bool:
 
 
 def unknown_entries(entries: Sequence[str], roles: Sequence[str]) -> list[str]:
-    """Return the entries that are neither a group nor a type of the file."""
+    """Return the entries that are neither groups nor types of the file."""
     names = {PART, ALL, *(group for group, _ in GROUPS), *map(_plain, roles)}
     return [entry for entry in entries if _plain(entry) not in names]
 
@@ -130,16 +130,16 @@ def _plain(name: str) -> str:
 def choose_runs(
     runs: Sequence[AnyRun], roles: str, where: str, code: str
 ) -> tuple[list[AnyRun], list[Issue]]:
-    """Choose the runs of roles, and report omitted and unknown roles.
+    """Select the runs with given roles, and report omitted and unknown roles.
 
     Parameters
     ----------
     runs
         All runs of a file.
     roles
-        The text of strategy.roles.
+        Text of strategy.roles.
     where
-        The name of the file, for messages.
+        Name of the file, for messages.
     code
         Code of the error if no run remains.
 
@@ -196,7 +196,7 @@ def choose_runs(
 
 
 def _lengths(runs: Sequence[Run]) -> str:
-    """Types with their lengths."""
+    """List types with their total lengths."""
     lengths: dict[str, float] = {}
     for run in runs:
         lengths[run.role or ""] = lengths.get(run.role or "", 0.0) + run.length

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lines of G-code as commands: words by a grammar of numbers, comments, line numbers and
-checksums.
+"""Parse lines of G-code into commands, with numbers, comments, line numbers and checksums.
 
-A line may hold several commands, as RepRapFirmware accepts them. Every character of a
-command belongs to a word; otherwise the line is rejected. Words after M codes are
-arguments of the machine (temperatures, texts), which are not interpreted here.
+A line may contain several commands, as RepRapFirmware accepts. Every character of a command must
+belong to a word, or the line is rejected. Words after M codes are machine arguments (temperatures,
+texts) that are not interpreted here.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ _COMMAND = re.compile(
 _PLAIN_MOVE = re.compile(rf"G[0-3](?:[ \t]+[XYZEFIJ]{NUMBER})+")
 _CHECKSUM = re.compile(r"\*\s*(\d+)\s*$")
 _LINE_NUMBER = re.compile(r"\s*[Nn]\s*\d+(?![.\d])")
-# M codes whose rest of the line is a text: messages and names of files
+# M codes followed by a text to the end of the line: messages and file names
 TEXT_CODES = frozenset(
     {
         "M16",
@@ -60,7 +59,7 @@ TEXT_CODES = frozenset(
     }
     | {"M1002", "M1003", "M1006"}
 )
-# the first words of conditions, loops and variables of RepRapFirmware
+# keywords of conditions, loops and variables in RepRapFirmware
 META = frozenset(
     {"if", "elif", "else", "while", "break", "continue", "abort", "var", "set", "global", "skip"}
 )
@@ -72,7 +71,7 @@ _TEXT_CODE = re.compile(
 
 
 class BadWords(ValueError):
-    """A line that is not understood; `text` says why."""
+    """Raised for a line that cannot be parsed; `text` gives the reason."""
 
     def __init__(self, text: str) -> None:
         super().__init__(text)
@@ -83,9 +82,9 @@ class BadWords(ValueError):
 class Command:
     """A command with its words.
 
-    name: `G1`, `M104`, `T0`, the name of a macro, or '' for words without a command. words:
-    letters with their numbers, None for a letter without a number. arguments: the unparsed
-    text after a macro or an M code.
+    name: `G1`, `M104`, `T0`, a macro name, or '' for words without a command. words: letters with
+    their numbers, None for a letter without a number. arguments: unparsed text after a macro or an
+    M code.
     """
 
     name: str
@@ -94,7 +93,7 @@ class Command:
 
     @property
     def is_macro(self) -> bool:
-        """Whether it is a command of words, such as a macro of Klipper."""
+        """Whether the command has a word as name, such as a Klipper macro."""
         return len(self.name) > 1 and not self.name[1].isdigit()
 
 
@@ -116,14 +115,14 @@ def split_comments(line: str) -> tuple[str, list[str]]:
     Raises
     ------
     BadWords
-        For a bracket that does not close.
+        For an unclosed bracket.
     """
-    if "(" not in line and '"' not in line:  # most lines
+    if "(" not in line and '"' not in line:  # true for most lines
         plain, mark, comment = line.partition(";")
         return plain.strip(), [comment] if mark else []
     code, comments, quoted, position = "", [], False, 0
     is_text = _TEXT_CODE.match(line) is not None  # brackets in a message are not comments
-    closed = line.count('"') % 2 == 0  # an inch sign in a message does not begin a text
+    closed = line.count('"') % 2 == 0  # an inch sign in a message does not start a quoted text
     while position < len(line):
         sign = line[position]
         if sign == '"' and closed:
@@ -147,9 +146,9 @@ def split_comments(line: str) -> tuple[str, list[str]]:
 def commands_of(code: str) -> list[Command]:
     """Return the commands of a line without comments, in order.
 
-    Raises BadWords that names the text that is not understood.
+    Raises BadWords with the text that cannot be parsed.
     """
-    if _PLAIN_MOVE.fullmatch(code):  # most lines; a shortcut for the code below
+    if _PLAIN_MOVE.fullmatch(code):  # shortcut for most lines
         words = code.split()
         values = tuple((word[0], float(word[1:])) for word in words[1:])
         if len({letter for letter, _ in values}) == len(values):
@@ -172,12 +171,12 @@ def commands_of(code: str) -> list[Command]:
 
 
 def _is_words(code: str) -> bool:
-    """Whether a line begins with a word of one letter and a number, such as X10Y20."""
+    """Return whether a line begins with a letter and a number, such as X10Y20."""
     return re.match(rf"[A-Za-z]\s*{NUMBER}", code) is not None
 
 
 def _strip_checksum(code: str) -> str:
-    """Return the line without its checksum, the exclusive or of the bytes before the star.
+    """Remove the checksum of a line: the exclusive or of the bytes before the star.
 
     Raises BadWords for a wrong checksum.
     """
@@ -226,9 +225,7 @@ def _code_name(head: re.Match[str]) -> str:
 
 
 def _machine_code(code: str, head: re.Match[str]) -> tuple[Command, int]:
-    """Return an M code with its arguments up to the next G or M code, and the position of that
-    code.
-    """
+    """Return an M code with its arguments, and the position of the next G or M code."""
     if head[2] is None:
         raise _bad_words(code, head.start())
     name, end = _code_name(head), head.end()
@@ -248,13 +245,13 @@ def _machine_code(code: str, head: re.Match[str]) -> tuple[Command, int]:
 
 
 def _find_flags(text: str) -> tuple[tuple[str, float | None], ...]:
-    """Return letters with numbers among the arguments of an M code."""
+    """Return the letters with numbers in the arguments of an M code."""
     matches = re.findall(rf"(?<![A-Za-z])([A-Za-z])\s*({NUMBER})", re.sub(r'"[^"]*"', " ", text))
     return tuple((letter.upper(), float(value)) for letter, value in matches)
 
 
 def _read_words(code: str, position: int) -> tuple[tuple[tuple[str, float | None], ...], int]:
-    """Return the words up to the next G or M code, and the position of that code."""
+    """Return the words up to the next G or M code, and the position of this code."""
     words: list[tuple[str, float | None]] = []
     while position < len(code):
         match = _WORD.match(code, position)
@@ -273,7 +270,7 @@ def _read_words(code: str, position: int) -> tuple[tuple[tuple[str, float | None
 
 
 def _read_value(code: str, match: re.Match[str], letter: str) -> tuple[float | None, int]:
-    """Return the number of a word, with its exponent, and the position of the next word."""
+    """Return the number of a word, including an exponent, and the position of the next word."""
     if match[2] is None:
         return None, match.end()
     end = match.end()
@@ -292,10 +289,9 @@ def _read_value(code: str, match: re.Match[str], letter: str) -> tuple[float | N
 
 
 def _is_exponent(code: str, match: re.Match[str], exponent: re.Match[str], letter: str) -> bool:
-    """Return whether an E after a number is its exponent, not the extruder in a line without
-    spaces.
+    """Return whether E after a number is an exponent, not the extruder in a line without spaces.
 
-    Raises BadWords if it may be both.
+    Raises BadWords if E is ambiguous.
     """
     other_code = code[: match.start(1)] + " " + code[exponent.end() :]
     if letter == "E" or re.search(rf"[Ee]\s*{NUMBER}", other_code) is not None:

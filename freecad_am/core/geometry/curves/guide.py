@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A guide curve normal to the layers: its points, frames without twist about it, and the
-plane of any point of a part.
-"""
+"""A guide curve normal to the layers: points, twist-free frames, and the plane of any point."""
 
 from __future__ import annotations
 
@@ -18,24 +16,22 @@ if TYPE_CHECKING:
     from scipy.interpolate import CubicHermiteSpline
 
 
-SEARCHED = 4  # places between two nodes at which the nearest one is looked for
-STEPS = 40  # of the search for a foot at most
+SEARCHED = 4  # samples per node interval for the search of the nearest position
+STEPS = 40  # maximum number of steps of a foot search
 TOLERANCE_MM = 1e-9  # mm along the guide
-TIGHTEST = 0.95  # of the way to the centre of curvature
-MAX_JUMP_RATIO = 20.0  # mm along the guide to a mm of an edge, at most
+TIGHTEST = 0.95  # of the radius of curvature; maximum offset of a point towards the centre
+MAX_JUMP_RATIO = 20.0  # mm along the guide per mm of edge length
 DIFFERENCE_SHARE = (
-    1e-3  # of a node's distance to the next, over which the turn of the tangent is taken
+    1e-3  # of the shortest node interval; step of the difference quotient of the tangent
 )
 
 
 @dataclass(frozen=True, eq=False)
 class Guide:
-    """A curve without corners in the frame of the body cut along it, continued straight beyond
-    both ends.
+    """A curve without corners, in the frame of the body to slice, extended straight at both ends.
 
-    points, tangents: (n, 3) nodes, mm, and unit directions in which it runs there. way: (n,)
-    arc length, mm, rising; the first layer is at 0. across: (n, 3) unit vectors normal to the
-    curve that do not turn about it (Wang 2008).
+    points, tangents: (n, 3) nodes, mm, and unit tangents. way: (n,) arc length, mm, rising; the
+    first layer is at 0. across: (n, 3) twist-free unit vectors normal to the curve (Wang 2008).
     """
 
     points: Array
@@ -49,7 +45,7 @@ class Guide:
         Parameters
         ----------
         s : (k,) array
-            Arc lengths, mm; beyond the ends it continues straight.
+            Arc lengths, mm; the guide continues straight beyond its ends.
 
         Returns
         -------
@@ -75,7 +71,7 @@ class Guide:
         Returns
         -------
         (4, 4) array
-            Z is along the guide.
+            Pose whose Z is along the guide.
         """
         points, tangents = self.at(np.array([s]))
         z = tangents[0]
@@ -102,7 +98,7 @@ class Guide:
         Returns
         -------
         (...) array
-            mm; among several planes the one with the nearest foot.
+            Arc lengths, mm; among several planes, that of the nearest foot.
         """
         flat = points.reshape(-1, 3)
         nearest_node = np.asarray(self._tree.query(flat)[1], dtype=np.intp)
@@ -134,14 +130,14 @@ class Guide:
         Parameters
         ----------
         points : (k, 3) array
-            Points of the planes, mm.
+            Points on the planes, mm.
         s : (k,) array
             Arc lengths of the planes, mm.
 
         Returns
         -------
         (k,) array
-            1 at the centre of curvature, negative on the other side of the guide.
+            Relative loss: 1 at the centre of curvature, negative on the opposite side.
         """
         foot = self.at(s)[0]
         step = DIFFERENCE_SHARE * float(np.diff(self.way).min())
@@ -150,10 +146,10 @@ class Guide:
         return share
 
     def crossing(self, points: Array, triangles: Index, distances: Array) -> Array | None:
-        """Return a point where planes of the guide cross within a mesh.
+        """Return a point where normal planes of the guide intersect within a mesh.
 
-        Planes cross near the centre of curvature, or where the ends of an edge belong to
-        planes far apart.
+        Planes intersect near the centre of curvature, or where the ends of an edge belong to
+        distant planes.
 
         Parameters
         ----------
@@ -167,7 +163,7 @@ class Guide:
         Returns
         -------
         (3,) array or None
-            None if they do not cross.
+            A point, mm; None if the planes do not intersect.
         """
         bent = self.curvature_share(points, distances)
         if bent.max() > TIGHTEST:
@@ -178,7 +174,7 @@ class Guide:
         return np.asarray(points[start[leaps.argmax()]]) if leaps.any() else None
 
     def bend(self, distance: float, extent: float) -> float:
-        """The radius, mm, that beads of a part of an extent, mm, are about bent by."""
+        """Return the approximate bend radius of beads, mm: the `extent` of the part, mm."""
         return extent
 
     @cached_property
@@ -203,7 +199,7 @@ class Guide:
 def fit_guide(
     points: Array, tangents: Array, first_across: Array | None = None, start: float = 0.0
 ) -> Guide:
-    """Return the guide through nodes.
+    """Build the guide through nodes.
 
     Parameters
     ----------
@@ -235,9 +231,7 @@ def fit_guide(
 
 
 def _across(points: Array, tangents: Array) -> Array:
-    """Return unit vectors (n, 3) normal to a curve that do not turn about it, by double
-    reflection.
-    """
+    """Return twist-free unit vectors (n, 3) normal to a curve, by double reflection."""
     across = np.empty_like(points)
     lying = np.eye(3)[np.argmin(np.abs(tangents[0]))]
     across[0] = lying - (lying @ tangents[0]) * tangents[0]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The curve that a row of points outlines: a cubic over each segment, corners kept.
+"""A curve through a row of points: a cubic on each segment, with corners.
 
-A circle is met exactly in the middle of a segment and to the sixth order in its turn elsewhere; a curve whose tangents
-are known to the fourth order of the segment's length.
+A circle is exact at segment midpoints, and to sixth order in the segment angle elsewhere. A curve
+with known tangents is accurate to fourth order in the segment length.
 """
 
 from __future__ import annotations
@@ -14,15 +14,15 @@ import numpy as np
 from ...types import Array, Index
 from ..columns import lengths
 
-# a row of points that turns by more than this has a corner there, where nothing else is known, rad
+# rad; a larger turn angle is a corner, unless tangents are known
 CORNER = np.radians(35.0)
-# a segment longer than its neighbour by this ratio is not part of the same arc: a circle through both would bend it most
+# maximum length ratio of adjacent segments of an arc; a common circle would bend the longer most
 LENGTH_RATIO = 3.0
 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """points: (n, 3) mm. leaving, arriving: (n - 1, 3) derivatives at the two ends of each segment, by its share."""
+    """points: (n, 3) mm. leaving, arriving: (n - 1, 3) end derivatives per segment fraction, mm."""
 
     points: Array
     leaving: Array
@@ -34,9 +34,9 @@ class Outline:
         Parameters
         ----------
         segment : (k,) int array
-            Numbers of the segments.
+            Segment indices.
         share : float or (k,) array
-            Shares of their length.
+            Fractions of the segments.
 
         Returns
         -------
@@ -49,7 +49,7 @@ class Outline:
         start, chord = self.points[segment], self.points[segment + 1] - self.points[segment]
         leaving, arriving = self.leaving[segment], self.arriving[segment]
         remaining = 1.0 - s
-        # the chord plus its bow, so that segments without a bow stay exactly straight
+        # chord plus bow, so that segments without a bow stay exactly straight
         start_bow, toward = leaving - chord, arriving - chord
         point = start + s * chord + s * remaining * (remaining * start_bow - s * toward)
         slope = (
@@ -61,7 +61,7 @@ class Outline:
 
 
 def outline(points: Array, tangents: Array) -> Outline:
-    """Return the outline of points with tangents.
+    """Build the outline of points with tangents.
 
     Parameters
     ----------
@@ -79,9 +79,9 @@ def outline(points: Array, tangents: Array) -> Outline:
 
 
 def derivatives(points: Array, leaving: Array, arriving: Array) -> tuple[Array, Array]:
-    """Return derivatives at the ends of the cubics through points.
+    """Return end derivatives of the cubics through points.
 
-    Their size makes the cubic meet the middle of a circular arc.
+    With these magnitudes a cubic passes through the midpoint of a circular arc.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def derivatives(points: Array, leaving: Array, arriving: Array) -> tuple[Array, 
     Returns
     -------
     leaving, arriving : (n - 1, 3) array
-        Derivatives by the share of the segment.
+        Derivatives per segment fraction, mm.
     """
     chord = np.diff(points, axis=0)
     length = lengths(chord)
@@ -105,16 +105,16 @@ def derivatives(points: Array, leaving: Array, arriving: Array) -> tuple[Array, 
 def estimate_outline(points: Array, closed: bool) -> Outline:
     """Estimate the outline of points.
 
-    A tangent is that of the circle through a point and its neighbours. A segment next to a corner
-    is straight, and so is one much longer than its neighbour, as where an arc meets a line: points
-    of a curve are roughly evenly spaced.
+    A tangent is that of the circle through a point and its neighbours. Segments next to a corner
+    are straight. Segments much longer than their neighbours are straight too, as where a line meets
+    an arc, because points of a curve are roughly evenly spaced.
 
     Parameters
     ----------
     points : (n, 3) array
         mm.
     closed : bool
-        Whether the last point is the first.
+        Whether the last point repeats the first.
 
     Returns
     -------
@@ -130,7 +130,7 @@ def estimate_outline(points: Array, closed: bool) -> Outline:
     previous_length = np.concatenate([length[-1:] if rounded else length[:1], length])
     next_length = np.concatenate([length, length[:1] if rounded else length[-1:]])
     tangent = unit(previous_direction * next_length + next_direction * previous_length)
-    if not rounded and len(along) > 1:  # at an end, the circle of the point next to it
+    if not rounded and len(along) > 1:  # at an end, use the circle of the adjacent point
         tangent[0] = 2.0 * (along[0] @ tangent[1]) * along[0] - tangent[1]
         tangent[-1] = 2.0 * (along[-1] @ tangent[-2]) * along[-1] - tangent[-2]
     corner = (previous_direction * next_direction).sum(axis=1) < np.cos(CORNER)
@@ -142,7 +142,7 @@ def estimate_outline(points: Array, closed: bool) -> Outline:
 
 
 def at_points(leaving: Array, arriving: Array) -> Array:
-    """Return the vectors that arrive at and leave each point.
+    """Return the arriving and leaving vectors of each point.
 
     Parameters
     ----------
@@ -152,18 +152,18 @@ def at_points(leaving: Array, arriving: Array) -> Array:
     Returns
     -------
     (n, 2, 3) array
-        At the ends the only known vector counts twice.
+        Vectors; at the ends, the only known vector appears twice.
     """
     return np.stack([np.r_[leaving[:1], arriving], np.r_[leaving, arriving[-1:]]], axis=1)
 
 
 def unit(vectors: Array) -> Array:
-    """Return vectors at unit length.
+    """Scale vectors to unit length.
 
     Parameters
     ----------
     vectors : (..., 3) array
-        Vectors; a vector of no length stays.
+        Vectors; zero vectors stay zero.
 
     Returns
     -------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Polylines in the plane: area, winding number, nearest places, cuts by arc length."""
+"""Polylines in the plane: area, winding number, nearest points, cuts by arc length."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ import numpy as np
 from ...types import Array, Index, Mask
 from ..step_count import step_counts
 
-BLOCK_SIZE = 4_000_000  # pairs of points and edges
+BLOCK_SIZE = 4_000_000  # pairs of points and edges per batch
 
 
 class Nearest(NamedTuple):
-    """Places (n, 2) on a polyline, their edges (n,), shares along those (n,) and distances (n,) mm."""
+    """Nearest points (n, 2) on a polyline; edges, edge fractions and distances (n,), mm."""
 
     points: Array
     edge: Index
@@ -29,16 +29,16 @@ def doubled_area(ring: Array) -> float:
     Parameters
     ----------
     ring : (n, 2) array
-        Points, mm, the first not repeated.
+        Points, mm, first point not repeated.
 
     Returns
     -------
     float
-        mm^2, positive if the ring runs counter-clockwise.
+        mm^2, positive for counter-clockwise rings.
     """
     x, y = (
         ring - ring[0]
-    ).T.copy()  # the first point is the origin: the edge back to it adds nothing
+    ).T.copy()  # with the first point as origin, the closing edge adds nothing
     return float(x[:-1] @ y[1:] - x[1:] @ y[:-1])
 
 
@@ -48,14 +48,14 @@ def length(points: Array, closed: bool) -> float:
     Parameters
     ----------
     points : (n, 2) array
-        mm.
+        Points, mm.
     closed : bool
-        Whether it is closed, without its first point repeated.
+        Whether the polyline is closed; the first point is not repeated.
 
     Returns
     -------
     float
-        mm.
+        Length, mm.
     """
     return float(np.hypot(*steps(points, closed).T).sum())
 
@@ -68,12 +68,12 @@ def steps(points: Array, closed: bool) -> Array:
     points : (n, 2) array
         The polyline.
     closed : bool
-        Whether it is closed.
+        Whether the polyline is closed.
 
     Returns
     -------
     (n, 2) or (n - 1, 2) array
-        One more for a closed polyline.
+        Vectors; one more for a closed polyline.
     """
     return np.roll(points, -1, axis=0) - points if closed else np.diff(points, axis=0)
 
@@ -86,28 +86,28 @@ def arcs(points: Array, closed: bool = False) -> Array:
     points : (n, 2) array
         The polyline, mm.
     closed : bool, optional
-        Whether it is closed.
+        Whether the polyline is closed.
 
     Returns
     -------
     (n,) or (n + 1,) array
-        mm; the last value of a closed one is at its first point again.
+        Arc lengths, mm; the last value of a closed polyline is its total length.
     """
     return running_sums(np.hypot(*steps(points, closed).T))
 
 
 def running_sums(lengths: Array) -> Array:
-    """Return the sums of the first 0 to n of lengths.
+    """Return the running sums of lengths, beginning with 0.
 
     Parameters
     ----------
     lengths : (n,) array
-        mm, or another unit.
+        Lengths in any unit.
 
     Returns
     -------
     (n + 1,) array
-        From 0, in the unit of the lengths.
+        Sums in the unit of the lengths.
     """
     sums = np.zeros(len(lengths) + 1)
     np.cumsum(lengths, out=sums[1:])
@@ -115,17 +115,17 @@ def running_sums(lengths: Array) -> Array:
 
 
 def sines(vectors: Array, references: Array) -> Array:
-    """Return the sines of the angles from vectors to others.
+    """Return the sines of the angles from vectors to references.
 
     Parameters
     ----------
     vectors, references : (n, 2) array
-        The vectors.
+        Vectors and references.
 
     Returns
     -------
     (n,) array
-        Positive if the reference is to the left.
+        Sines, positive if the reference is to the left.
     """
     cross = vectors[:, 0] * references[:, 1] - vectors[:, 1] * references[:, 0]
     return np.asarray(cross / np.maximum(np.hypot(*vectors.T) * np.hypot(*references.T), 1e-300))
@@ -137,24 +137,24 @@ def winding(rings: Sequence[Array], points: Array) -> Index:
     Parameters
     ----------
     rings : sequence of (n, 2) array
-        Rings, mm, their first points not repeated.
+        Rings, mm, first points not repeated.
     points : (k, 2) array
         mm.
 
     Returns
     -------
     (k,) array of int
-        Sum over the rings; a counter-clockwise turn counts 1.
+        Sum over the rings; a counter-clockwise ring counts 1.
     """
     count = np.zeros(len(points), dtype=np.intp)
     for ring in rings:
         low, high = ring.min(axis=0), ring.max(axis=0)
         candidates = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
-        if not len(candidates):  # for most holes of a region and few points
+        if not len(candidates):  # true for most holes of a region if there are few points
             continue
         candidates = candidates[np.argsort(points[candidates, 1], kind="stable")]
         following = np.roll(ring, -1, axis=0)
-        # the points adjacent to an edge are neighbours in the order of y
+        # points in the y range of an edge are consecutive in the order of y
         span = np.searchsorted(
             points[candidates, 1], np.sort(np.stack([ring[:, 1], following[:, 1]]), axis=0)
         )
@@ -180,7 +180,7 @@ def winding(rings: Sequence[Array], points: Array) -> Index:
 
 
 def nearest(curve: Array, points: Array, closed: bool) -> Nearest:
-    """Return the points of a polyline nearest to points.
+    """Return the polyline points nearest to given points.
 
     Parameters
     ----------
@@ -194,7 +194,7 @@ def nearest(curve: Array, points: Array, closed: bool) -> Nearest:
     Returns
     -------
     Nearest
-        Points, edges and distances.
+        Nearest points, edges, fractions and distances.
     """
     step = steps(curve, closed)
     start = curve[: len(step)]
@@ -227,9 +227,9 @@ def nearest_among(lines: Sequence[tuple[Array, bool]], points: Array) -> tuple[A
     Returns
     -------
     feet : (n, 2) array
-        Nearest points; without lines the points themselves.
+        Nearest points; the given points if there are no lines.
     distance : (n,) array
-        Distances, mm; infinite without lines.
+        Distances, mm; infinite if there are no lines.
     """
     feet, distance = points, np.full(len(points), np.inf)
     for line, closed in lines:
@@ -268,7 +268,7 @@ def nearest_on_rings(
     first_distance = nearest(rings[ring_number], points, closed=True).distance
     is_candidate = (box_distance <= first_distance[:, None] * (1.0 + 1e-9)).any(
         axis=0
-    )  # no point of another ring is nearer than its box
+    )  # a ring is no nearer than its box
     is_candidate[ring_number] = True
     candidates = [
         nearest(ring, points, closed=True)
@@ -283,7 +283,7 @@ def nearest_on_rings(
 
 
 def fractions(points: Array) -> Array:
-    """Return the arc lengths of points as shares of the length of their polyline.
+    """Return the arc lengths of points as fractions of the polyline length.
 
     Parameters
     ----------
@@ -314,7 +314,7 @@ def divide_edges(points: Array, count: Index) -> tuple[Array, Mask]:
     points : (m, 2) or (m, 3) array
         All points.
     original : (m,) bool array
-        Which of them are original.
+        True for original points.
     """
     edge = np.repeat(np.arange(len(count)), count)
     number = np.arange(len(edge)) - np.repeat(np.cumsum(count) - count, count)
@@ -323,46 +323,46 @@ def divide_edges(points: Array, count: Index) -> tuple[Array, Mask]:
 
 
 def divided_by_step(points: Array, step: float) -> tuple[Array, Mask]:
-    """Divide the edges of an open polyline so that none is too long.
+    """Divide the edges of an open polyline down to a maximum length.
 
     Parameters
     ----------
     points : (n, 2) array
         The polyline, mm.
     step : float
-        Longest edge, mm.
+        Maximum edge length, mm.
 
     Returns
     -------
     points : (m, 2) array
         All points.
     original : (m,) bool array
-        Which of them are original.
+        True for original points.
     """
     lengths = np.hypot(*np.diff(points, axis=0).T)
     return divide_edges(points, step_counts(lengths, step))
 
 
 def dense(ring: Array, step: float) -> Array:
-    """Divide the edges of a ring so that none is too long.
+    """Divide the edges of a ring down to a maximum length.
 
     Parameters
     ----------
     ring : (n, 2) array
         The ring, mm.
     step : float
-        Longest edge, mm.
+        Maximum edge length, mm.
 
     Returns
     -------
     (m, 2) array
-        The ring.
+        Points of the ring.
     """
     return divided_by_step(np.vstack([ring, ring[:1]]), step)[0][:-1]
 
 
 def start_at(ring: Array, point: Array) -> Array:
-    """Start a ring where it is nearest to a point.
+    """Start a ring at the position nearest to a point.
 
     Parameters
     ----------
@@ -374,7 +374,7 @@ def start_at(ring: Array, point: Array) -> Array:
     Returns
     -------
     (m, 2) array
-        The ring; the nearest position is its first point.
+        Ring whose first point is the nearest position.
     """
     foot = nearest(ring, point[None], closed=True)
     edge, start = int(foot.edge[0]), foot.points[0]
@@ -400,7 +400,7 @@ def cut_at_length(points: Array, length: float) -> Array:
     Returns
     -------
     (m, 2) array
-        The beginning; all points if it is shorter.
+        Beginning of the polyline; all points if the polyline is shorter.
     """
     s = arcs(points)
     if length >= s[-1]:
@@ -419,16 +419,16 @@ def shorten_end(points: Array, values: Array, by: float) -> tuple[Array, Array]:
     points : (n, 2) array
         The polyline, mm.
     values : (n,) array
-        Of its points.
+        Values at the points.
     by : float
-        Length that goes, mm.
+        Length to remove, mm.
 
     Returns
     -------
     points : (m, 2) array
-        The shorter polyline; the first point alone where nothing is left.
+        Shorter polyline; only the first point if nothing remains.
     values : (m,) array
-        Of its points, interpolated at the new end.
+        Values at the points, interpolated at the new end.
     """
     arc = arcs(points)
     end = arc[-1] - by
@@ -452,7 +452,7 @@ def rotate_points(points: Array, angle: float) -> Array:
     Returns
     -------
     (..., 2) array
-        The rotated points.
+        Rotated points.
     """
     cos, sin = np.cos(angle), np.sin(angle)
     return np.stack(

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls of revolution: the generating curve (meridian) and its turn about the axis.
+"""Walls of revolution: a generating curve (meridian) rotated about the axis.
 
-The meridian is in the half plane (radius, height) of the feature frame, whose Z is the
-axis. It is a chain of exact samples with exact unit tangents, joined by cubic Hermite
-arcs in arc length. With neighbouring tangents less than 0.006 rad apart (see `sampling`),
-positions are accurate to 1e-7 mm and tangents to 1e-8.
+The meridian is in the half-plane (radius, height) of the feature frame, whose Z is the axis. It is
+a chain of exact samples with exact unit tangents, joined by cubic Hermite arcs in arc length. With
+adjacent tangents less than 0.006 rad apart (see `sample_curve`), positions are accurate to 1e-7 mm
+and tangents to 1e-8.
 """
 
 from __future__ import annotations
@@ -21,23 +21,21 @@ from ...types import Array, ArrayLike, Index, Mask
 from ..obstacles import Body
 from ..walls.part_depths import PartDepths
 
-KINK = 1e-5  # rad; smaller turns between two pieces are a smooth join
-SAME_PLACE = (
-    1e-9  # mm; the end of one piece and the start of the next closer than this are one point
-)
-STEP = 1e-4  # mm; a gap up to this is the rounding of a file and has no length of its own
+KINK = 1e-5  # rad; smaller angles between adjacent pieces are smooth joints
+SAME_PLACE = 1e-9  # mm; piece ends closer than this coincide
+STEP = 1e-4  # mm; gaps up to this come from rounding in files and count as zero length
 ON_AXIS = 1e-6  # mm; a smaller radius is a point on the axis
 
 
 def arc_lengths(points: Array, tangents: Array) -> Array:
-    """Return the arc length of each arc between neighbouring samples.
+    """Return the length of each arc between adjacent samples.
 
     Parameters
     ----------
     points : (n, 2) array
         Samples, mm.
     tangents : (n, 2) array
-        Their tangents.
+        Tangents at the samples.
 
     Returns
     -------
@@ -46,8 +44,8 @@ def arc_lengths(points: Array, tangents: Array) -> Array:
 
     Notes
     -----
-    The length of the cubic that leaves and meets its chord at the angles a and b is chord (1 +
-    (2 a^2 - a b + 2 b^2) / 30) to fourth order, relatively 1e-12 at 0.006 rad per arc.
+    A cubic at angles a and b to the chord at its ends has the length chord (1 + (2 a^2 - a b + 2
+    b^2) / 30) to fourth order. The relative error is 1e-12 at 0.006 rad per arc.
     """
     steps = np.diff(points, axis=0)
     chords = np.hypot(steps[:, 0], steps[:, 1])
@@ -58,7 +56,7 @@ def arc_lengths(points: Array, tangents: Array) -> Array:
 
 
 def turning_angle(a: Array, b: Array) -> Array:
-    """Return the angle from vectors to others.
+    """Return the angles from vectors `a` to vectors `b`.
 
     Parameters
     ----------
@@ -68,7 +66,7 @@ def turning_angle(a: Array, b: Array) -> Array:
     Returns
     -------
     (...) array
-        Counter-clockwise positive, rad.
+        Angles, counter-clockwise positive, rad.
     """
     cross = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     angle: Array = np.arctan2(cross, (a * b).sum(axis=-1))
@@ -77,8 +75,10 @@ def turning_angle(a: Array, b: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Meridian:
-    """The generating curve from the platform up. Node i has the arc length s[i] mm, (radius, height) points[i]
-    mm and the unit tangent tangents[i] towards rising s. Nodes are doubled at kinks: same s, other tangent.
+    """The generating curve from the platform upwards.
+
+    Node i has the arc length s[i], mm, (radius, height) points[i], mm, and unit tangent tangents[i]
+    towards rising s. Kinks have two nodes with equal s and different tangents.
     """
 
     s: Array
@@ -102,8 +102,8 @@ class Meridian:
     def chained(cls, segments: Sequence[tuple[Array, Array]]) -> Meridian:
         """Chain segments to a meridian.
 
-        A straight step bridges a gap between two segments and counts in the arc length; a gap of
-        at most STEP is skipped.
+        A straight line bridges a gap between two segments and counts in the arc length. Gaps up to
+        STEP are skipped.
 
         Parameters
         ----------
@@ -137,7 +137,7 @@ class Meridian:
 
     @property
     def length(self) -> float:
-        """Length of the whole curve, mm."""
+        """Total length of the curve, mm."""
         return float(self.s[-1])
 
     @property
@@ -157,13 +157,13 @@ class Meridian:
 
     @property
     def closed_top(self) -> bool:
-        """True when the curve ends on the axis."""
+        """Whether the curve ends on the axis."""
         return bool(self.points[-1, 0] == 0.0)
 
     def at(self, s: ArrayLike) -> tuple[Array, Array, Array]:
         """Evaluate the meridian.
 
-        At a kink the tangent is the one below, which carries the deposit.
+        At a kink, the tangent is that of the lower piece, which carries the deposit.
 
         Parameters
         ----------
@@ -190,14 +190,14 @@ class Meridian:
         return np.maximum(point[:, 0], 0.0), point[:, 1], tangent
 
     def _locate(self, s: Array) -> tuple[Index, Array, Array]:
-        # a layer that falls on a kink up to rounding belongs below it; side='left' then skips the doubled node
+        # a layer at a kink, up to rounding, belongs below it; side='left' skips the second node
         i = np.clip(np.searchsorted(self.s, s - 1e-9, side="left") - 1, 0, len(self.s) - 2)
         i = np.where(self.s[i + 1] > self.s[i], i, np.minimum(i + 1, len(self.s) - 2))
         h = self.s[i + 1] - self.s[i]
         return i, (s - self.s[i]) / h, h
 
     def s_at_height(self, heights: ArrayLike) -> list[Array]:
-        """Return all arc lengths at which the curve crosses or reaches heights.
+        """Return all arc lengths at which the curve crosses or touches given heights.
 
         Parameters
         ----------
@@ -235,7 +235,7 @@ class Meridian:
 def _bridge(
     points: list[Array], tangents: list[Array], lengths: list[float], to: Array, tangent: Array
 ) -> None:
-    """Append to the chain the nodes that lead from its end to the start of the next piece."""
+    """Append the nodes between the end of the chain and the start of the next piece."""
     end = points[-1][-1]
     gap = to - end
     distance = float(np.hypot(*gap))
@@ -252,13 +252,13 @@ def _bridge(
 
 @dataclass(frozen=True, eq=False)
 class RevolvedWall:
-    """A meridian turned about the Z of the feature frame.
+    """A meridian rotated about the Z axis of the feature frame.
 
-    frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`).
-    start, end: azimuths in rad about the axis, end > start; `full` when the wall closes on
-    itself. issues: issues raised while building the wall. label: the user's name of the part.
-    faces: names of the wall's faces, from the platform up. surroundings: fixtures. depths:
-    how the part is distributed about the wall, if it has faces. own: None, a wall has no hub.
+    frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). start, end:
+    azimuths about the axis, rad, end > start. full: whether the wall closes around the axis.
+    issues: issues from building the wall. label: the user's name of the part. faces: names of the
+    wall's faces, from the platform upwards. surroundings: fixtures. depths: distribution of the
+    part about the wall, if the wall has faces. own: None, because a wall has no hub.
     """
 
     own: ClassVar[None] = None
@@ -282,7 +282,7 @@ class RevolvedWall:
             raise ValueError("a wall needs a (4, 4) frame and a turn of positive angle")
 
     def points(self, radius: Array, height: Array, azimuth: Array) -> Array:
-        """Return points in part coordinates from cylindrical coordinates of the feature frame.
+        """Convert cylindrical coordinates of the feature frame to points in part coordinates.
 
         Parameters
         ----------
@@ -301,19 +301,19 @@ class RevolvedWall:
         return moved
 
     def directions(self, vectors: Array, azimuth: Array) -> Array:
-        """Return vectors in part coordinates from components of the feature frame.
+        """Convert cylindrical components in the feature frame to vectors in part coordinates.
 
         Parameters
         ----------
         vectors : (n, 3) array
             Components along radius, azimuth and axis.
         azimuth : (n,) array
-            Azimuths at which they apply, rad.
+            Azimuths of the vectors, rad.
 
         Returns
         -------
         (n, 3) array
-            The vectors.
+            Vectors in part coordinates.
         """
         c, s = np.cos(azimuth), np.sin(azimuth)
         r, t, z = vectors[..., 0], vectors[..., 1], vectors[..., 2]
@@ -325,23 +325,21 @@ class RevolvedWall:
 
 Curve = Callable[[Array], tuple[Array, Array]]
 
-TANGENT_TOLERANCE = 8e-9  # before the last halving, which brings it to 1e-9
+TANGENT_TOLERANCE = 8e-9  # before the last bisection, which reduces it to 1e-9
 POINT_TOLERANCE = 1e-8  # mm
-ROUNDS = (
-    14  # halvings; a curve that needs more has a corner inside, which `breaks` should have named
-)
+ROUNDS = 14  # bisections; a curve that needs more has a corner that is missing in `breaks`
 
 
 def sample_curve(curve: Curve, breaks: ArrayLike) -> tuple[Array, Array]:
-    """Sample a curve finely enough for its arcs.
+    """Sample a curve finely enough for Hermite arcs.
 
-    Intervals are halved until the middle of the Hermite arc over the full interval meets the
-    curve, so the halves are better still (by 8 in the tangent, 16 in the point).
+    Intervals are bisected until the midpoint of the Hermite arc over the full interval meets the
+    curve. The errors of the halves are smaller by a factor of 8 in the tangent and 16 in the point.
 
     Parameters
     ----------
     curve : Curve
-        Returns points (n, 2) and tangents (n, 2) of any length for parameters (n,).
+        Function of parameters (n,) that returns points (n, 2) and tangents (n, 2) of any length.
     breaks : (k,) array
         Rising parameters between which the curve is smooth.
 
@@ -355,7 +353,7 @@ def sample_curve(curve: Curve, breaks: ArrayLike) -> tuple[Array, Array]:
     Raises
     ------
     ValueError
-        If the curve has no speed.
+        If a tangent is zero.
     """
     t = _initial(np.asarray(breaks, dtype=np.float64))
     points, tangents = _evaluate(curve, t)
@@ -399,7 +397,7 @@ def _agrees(p: Array, a: Array, q: Array, b: Array, middle: Array, tangent: Arra
     a, b, d = a * length[:, None], b * length[:, None], q - p
     point = p + u * (a + u * (3.0 * d - 2.0 * a - b + u * (a + b - 2.0 * d)))
     off = np.linalg.norm(point - middle, axis=1)
-    # the error of a cubic's slope is largest off the middle, 3.1 times its largest position error over its length
+    # maximum slope error of a cubic, not at the midpoint: 3.1 maximum position error / length
     good: Mask = (off < POINT_TOLERANCE) & (3.1 * off < TANGENT_TOLERANCE * length + 1e-12)
     return good
 
@@ -415,14 +413,14 @@ def line(start: ArrayLike, end: ArrayLike) -> tuple[Array, Array]:
     Parameters
     ----------
     start, end : (2,) array
-        Its ends, mm.
+        Ends of the segment, mm.
 
     Returns
     -------
     points : (2, 2) array
         The ends.
     tangents : (2, 2) array
-        The tangent between them.
+        The common unit tangent, twice.
     """
     points = np.array([start, end], dtype=np.float64)
     along = points[1] - points[0]
@@ -439,7 +437,7 @@ def arc(centre: ArrayLike, radius: float, start: float, end: float) -> tuple[Arr
     radius : float
         Radius, mm.
     start, end : float
-        Angles of the ends, rad; either may be larger.
+        Angles of the ends, rad; the arc runs clockwise if `end` is smaller.
 
     Returns
     -------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves in space with corners: cubic arcs through points with exact tangents, and the nearest point on them."""
+"""Curves in space with corners: cubic arcs through points with exact tangents, nearest points."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from ..columns import lengths
 from ..step_count import step_counts
 from ..walls.surface import dot
 
-CORNER = 1e-5  # rad; smaller turns between two arcs are a smooth join
-CANDIDATES = 4  # nearest samples from which the nearest point is sought
-STEPS = 30  # Newton steps; few are taken but near a centre of curvature
+CORNER = 1e-5  # rad; smaller angles between adjacent arcs are smooth joints
+CANDIDATES = 4  # nearest samples at which the search for the nearest point starts
+STEPS = 30  # maximum Newton steps; only points near a centre of curvature need many
 
 
 class SpaceCurve:
     """A chain of cubic arcs between nodes. Closed curves repeat the first node as the last.
 
-    w: (m,) rising parameters. points: (m, 3) mm. into, out: (m, 3) derivatives dC/dw where
-    the curve arrives at and leaves a node; they differ only at corners. Arcs with turns of a
-    few degrees and exact tangents are accurate to 1e-7 of their length.
+    w: (m,) rising parameters. points: (m, 3) mm. into, out: (m, 3) derivatives dC/dw where the
+    curve arrives at and leaves a node; they differ only at corners. Arcs over a few degrees with
+    exact tangents are accurate to 1e-7 of their length.
     """
 
     def __init__(self, w: Array, points: Array, into: Array, out: Array, closed: bool) -> None:
@@ -46,7 +46,7 @@ class SpaceCurve:
         span = np.diff(w)[:, None]
         chord = np.diff(points, axis=0)
         start, end = self.out[:-1] * span, self.into[1:] * span
-        # powers of t in [0, 1] on each arc, (m - 1, 4, 3)
+        # coefficients of powers of t in [0, 1] on each arc, (m - 1, 4, 3)
         self.cubics: Array = np.stack(
             [points[:-1], start, 3.0 * chord - 2.0 * start - end, start + end - 2.0 * chord], axis=1
         )
@@ -54,25 +54,23 @@ class SpaceCurve:
 
     @property
     def period(self) -> float:
-        """Length of the parameter's range."""
+        """Length of the parameter range."""
         return float(self.w[-1] - self.w[0])
 
     @cached_property
     def corners(self) -> Index:
-        """Nodes at which the tangent jumps; the last node of a closed curve, equal to the first, is
-        not listed.
-        """
+        """Nodes at which the tangent jumps, without the repeated last node of a closed curve."""
         nodes: Index = np.flatnonzero(self.turns > CORNER)
         return nodes
 
     @cached_property
     def turns(self) -> Array:
-        """Return the angle by which the tangent turns at each node.
+        """Return the angle between both tangents at each node.
 
         Returns
         -------
         (m,) array
-            rad; 0 at ends and at the repeated last node.
+            Angles, rad; 0 at ends and at the repeated last node.
         """
         cross = np.linalg.norm(np.cross(self.into, self.out), axis=1)
         angle: Array = np.arctan2(cross, dot(self.into, self.out))
@@ -82,9 +80,7 @@ class SpaceCurve:
         return angle
 
     def started_at(self, node: int) -> SpaceCurve:
-        """Return the closed curve started at another node; the parameter continues across the old
-        start.
-        """
+        """Start a closed curve at another node; the parameter continues across the old start."""
         if not self.closed:
             raise ValueError("only a closed curve can be started elsewhere")
         order = np.r_[node : len(self.w) - 1, 0 : node + 1]
@@ -94,19 +90,19 @@ class SpaceCurve:
         return SpaceCurve(w, self.points[order], self.into[order], self.out[order], True)
 
     def stretch(self, start: int, end: int) -> SpaceCurve:
-        """Return the open curve from one node to another."""
+        """Return the open curve from node `start` to node `end`."""
         nodes = slice(start, end + 1)
         return SpaceCurve(
             self.w[nodes], self.points[nodes], self.into[nodes], self.out[nodes], False
         )
 
     def reversed(self) -> SpaceCurve:
-        """The same curve run the other way, over the same range of the parameter."""
+        """Return the reversed curve over the same parameter range."""
         w = self.w[0] + self.w[-1] - self.w[::-1]
         return SpaceCurve(w, self.points[::-1], -self.out[::-1], -self.into[::-1], self.closed)
 
     def arcs(self, w: Array) -> Index:
-        """Return the arcs that hold parameters.
+        """Return the arcs that contain parameters.
 
         Parameters
         ----------
@@ -116,19 +112,19 @@ class SpaceCurve:
         Returns
         -------
         (...) array of int
-            Numbers of the arcs; at a node the arc that leaves it.
+            Arc indices; at a node, the arc that starts there.
         """
         return self._arcs(self.wrap(w))
 
     def _arcs(self, w: Array) -> Index:
-        """The arcs that hold parameters within the range of the nodes."""
+        """Return the arcs that contain parameters within the range of the nodes."""
         index = self.w.searchsorted(w, side="right") - 1
-        # np.clip takes many times that for a few
+        # np.clip is many times slower for few values
         arcs: Index = np.minimum(np.maximum(index, 0), len(self.span) - 1)
         return arcs
 
     def wrap(self, w: Array) -> Array:
-        """Bring parameters of a closed curve into the range of its nodes.
+        """Wrap parameters of a closed curve into the range of its nodes.
 
         Parameters
         ----------
@@ -144,7 +140,7 @@ class SpaceCurve:
             return w
         period = self.period
         past = np.mod(w - self.w[0], period)
-        # a hair below the first node the remainder rounds to the whole period, which is the first node again
+        # just below the first node the remainder rounds to a full period, which is the first node
         return np.asarray(self.w[0] + np.where(past < period, past, 0.0))
 
     def evaluate_arcs(self, arc: Index, t: Array) -> tuple[Array, Array, Array]:
@@ -153,9 +149,9 @@ class SpaceCurve:
         Parameters
         ----------
         arc : (...) int array
-            Numbers of the arcs.
+            Arc indices.
         t : (...) array
-            Shares of the arcs, from 0 to 1.
+            Fractions of the arcs, from 0 to 1.
 
         Returns
         -------
@@ -198,7 +194,7 @@ class SpaceCurve:
         return self.evaluate_arcs(arc, (w - self.w[arc]) / self.span[arc])
 
     def interpolation_error(self) -> Array:
-        """Estimate the error of each arc against the curve from which the nodes were taken.
+        """Estimate the deviation of each arc from the curve on which the nodes are.
 
         Returns
         -------
@@ -207,9 +203,9 @@ class SpaceCurve:
 
         Notes
         -----
-        A cubic with exact ends has an error of span^4 / 384 times the fourth derivative,
-        which is the change of the third derivative from arc to arc. Changes across corners
-        do not count.
+        The error of a cubic with exact ends is span^4 / 384 times the fourth derivative. The
+        fourth derivative is estimated from the change of the third derivative between arcs, except
+        across corners.
         """
         third = 6.0 * self.cubics[:, 3] / self.span[:, None] ** 3
         following = np.roll(third, -1, axis=0)
@@ -247,9 +243,9 @@ class SpaceCurve:
         return float((np.linalg.norm(slope, axis=-1) * 0.5 * weight * self.span[:, None]).sum())
 
     def beyond_box(self, points: Array) -> Array:
-        """Return how far points are outside a box about the curve.
+        """Return the distances of points from the bounding box of the curve.
 
-        The value is slightly less than the distance, so no point of the curve is nearer.
+        The values are slightly too small, so that no point of the curve is nearer.
 
         Parameters
         ----------
@@ -268,9 +264,7 @@ class SpaceCurve:
 
     @cached_property
     def _box(self) -> tuple[Array, Array]:
-        """The lowest and highest coordinates (3,), mm, of the nodes and the handles of the arcs,
-        which enclose the curve.
-        """
+        """Bounds (3,), mm, of the nodes and Bezier control points, which enclose the curve."""
         nodes, third = self.points, self.span[:, None] / 3.0
         control_points = np.vstack(
             [nodes, nodes[:-1] + third * self.out[:-1], nodes[1:] - third * self.into[1:]]
@@ -279,7 +273,7 @@ class SpaceCurve:
 
     @cached_property
     def _samples(self) -> tuple[cKDTree, Index, Array]:
-        """Samples in the middle of about equally long cells, with their arcs and places on them."""
+        """Samples at midpoints of cells of similar length, with arc indices and fractions."""
         chord = np.linalg.norm(np.diff(self.points, axis=0), axis=1)
         cells = step_counts(chord, chord.sum() / len(chord))
         arc: Index = np.repeat(np.arange(len(cells)), cells)
@@ -287,10 +281,10 @@ class SpaceCurve:
         return cKDTree(self.evaluate_arcs(arc, t)[0]), arc, t
 
     def nearest(self, points: Array) -> tuple[Array, Array, Array]:
-        """Return the points of the curve nearest to points.
+        """Return the curve points nearest to given points.
 
-        Newton's method starts at the nearest samples and stays on their smooth pieces; the
-        nearest result is chosen.
+        Newton's method starts at the nearest samples and stays on their smooth pieces. The
+        nearest result counts.
 
         Parameters
         ----------
@@ -304,7 +298,7 @@ class SpaceCurve:
         foot : (n, 3) array
             Nearest points, mm.
         w : (n,) array
-            Their parameters.
+            Parameters of the nearest points.
         """
         tree, arcs, sample_t = self._samples
         count = min(CANDIDATES, len(arcs))
@@ -318,14 +312,14 @@ class SpaceCurve:
         return distance[row, best], foot[row, best], self.wrap(w[row, best])
 
     def descend(self, points: Array, w: Array) -> Array:
-        """Descend along the curve to the points nearest to others.
+        """Descend along the curve to the points nearest to given points.
 
         Parameters
         ----------
         points : (..., 3) array
             Points, mm.
         w : (...) array
-            Parameters to start from; the search stays on their smooth pieces.
+            Start parameters; the search stays on their smooth pieces.
 
         Returns
         -------
@@ -360,7 +354,7 @@ class SpaceCurve:
 
     @cached_property
     def _pieces(self) -> tuple[Array, Array]:
-        """Bounds of w (m - 1,) of the smooth piece of each arc; infinite on a closed smooth curve."""
+        """Bounds of w (m - 1,) of each arc's smooth piece; infinite for a closed smooth curve."""
         breaks = self.w[self.corners]
         if self.closed and len(breaks):
             breaks = np.r_[breaks[-1] - self.period, breaks, breaks[0] + self.period]
@@ -369,5 +363,5 @@ class SpaceCurve:
         else:
             breaks = np.r_[self.w[0], breaks, self.w[-1]]
         interval = np.searchsorted(breaks, self.w[:-1] + 0.5 * self.span, side="right") - 1
-        # an end is just short of the corner, or it would count as the start of the next arc
+        # end just before the corner, or the end would count as the start of the next arc
         return breaks[interval], breaks[interval + 1] - 1e-12 * self.period

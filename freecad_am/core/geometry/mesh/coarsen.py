@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Mesh coarsening: collapse short edges where that keeps the shape of the mesh (Hoppe et al.
-1993).
-"""
+"""Mesh coarsening: collapse short edges if the shape is kept (Hoppe et al. 1993). Smooth meshes."""
 
 from __future__ import annotations
 
@@ -17,7 +15,7 @@ from .refine import Edges
 
 
 def doubled_areas(corners: Array) -> Array:
-    """Return vectors normal to triangles, each twice as long as the area.
+    """Return vectors normal to triangles, with twice the area as length.
 
     Parameters
     ----------
@@ -34,15 +32,18 @@ def doubled_areas(corners: Array) -> Array:
     return normals
 
 
-NEIGHBOUR_COUNT = 28  # samples that count at a place
-REACH = 2.2  # typical distances of samples; farther ones do not count
+NEIGHBOUR_COUNT = 28  # nearest samples that influence a point
+REACH = 2.2  # typical sample distances; radius of influence of a sample
 STEPS = 12
-MIN_MOVE_MM = 1e-11  # mm
+MIN_MOVE_MM = 1e-11  # mm; a shorter move has converged
 
 
 class SmoothMesh:
-    """samples (n, 3) mm, the vertices of triangles (m, 3) about `spacing` mm apart; normals to the side from which these are
-    counter-clockwise."""
+    """A smooth surface through the vertices of a mesh.
+
+    samples: (n, 3) mm, vertices of triangles (m, 3), about `spacing` mm apart. Normals point to the
+    side from which the triangles are counter-clockwise.
+    """
 
     def __init__(self, samples: Array, triangles: Index, spacing: float) -> None:
         self.samples, self.triangles, self.reach = samples, triangles, REACH * spacing
@@ -80,15 +81,15 @@ class SmoothMesh:
         Returns
         -------
         points : (k, 3) array
-            Points of the surface, mm.
+            Points on the surface, mm.
         normals : (k, 3) array
-            Unit normals there.
+            Unit normals at these points.
         """
         feet = points.astype(np.float64, copy=True)
         normals = np.zeros_like(feet)
         busy = np.arange(len(feet))
         for step in range(STEPS):
-            if step < 2:  # from far away the first step changes the neighbours
+            if step < 2:  # far from the surface, the first step changes the neighbours
                 neighbours = self._neighbours(feet[busy])
             value, slope = self._level(feet[busy], neighbours)
             size = np.maximum((slope * slope).sum(axis=1), 0.04)
@@ -105,23 +106,21 @@ class SmoothMesh:
         return feet, normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
 
     def _neighbours(self, points: Array) -> _Neighbours:
-        """The nearest samples of points (k, 3)."""
+        """Return the samples nearest to points (k, 3)."""
         count = min(NEIGHBOUR_COUNT, len(self.samples))
         nearest = np.asarray(self._tree.query(points, k=count)[1]).reshape(len(points), count)
         normals, areas = self._facets
         return _Neighbours(self.samples[nearest], normals[nearest], areas[nearest])
 
     def _level(self, points: Array, neighbours: _Neighbours) -> tuple[Array, Array]:
-        """Return the approximate heights (k,) of points above the surface and their gradients (k,
-        3).
-        """
+        """Return approximate heights (k,) of points above the surface, and gradients (k, 3)."""
         samples, normal, area = neighbours
         offset = points[:, None] - samples
         square = np.einsum("klc,klc->kl", offset, offset)
         reach = np.maximum(self.reach**2, 2.0 * square.min(axis=1))[:, None]
         inner = np.maximum(1.0 - square / reach, 0.0)
         weight = area * inner**4
-        pull = -8.0 / reach * area * inner**3  # times `offset`: the gradient of the weight
+        pull = -8.0 / reach * area * inner**3  # times `offset`: gradient of the weight
         total = weight.sum(axis=1)
         weight, pull = weight / total[:, None], pull / total[:, None]
         mean = np.einsum("kl,klc->kc", weight, normal)
@@ -155,8 +154,12 @@ class _Neighbours(NamedTuple):
 
 
 ROUNDS = 4
-MIN_STRAIGHT_COSINE = np.cos(np.radians(25.0))  # of a turn of a curve at a vertex that may go
-MIN_NORMAL_COSINE = np.cos(np.radians(30.0))  # of a turn of a triangle when a corner moves
+MIN_STRAIGHT_COSINE = np.cos(
+    np.radians(25.0)
+)  # minimum cosine of the turn angle of a curve at a removed vertex
+MIN_NORMAL_COSINE = np.cos(
+    np.radians(30.0)
+)  # minimum cosine of the rotation of a triangle when a corner moves
 
 
 def collapse_edges(
@@ -164,8 +167,8 @@ def collapse_edges(
 ) -> tuple[Index, Index]:
     """Collapse short edges of a mesh.
 
-    Vertices on boundaries and between owners move only along those curves. Vertices are not
-    renumbered.
+    Vertices on boundaries and between owners move only along these curves. Vertices keep their
+    indices.
 
     Parameters
     ----------
@@ -178,14 +181,14 @@ def collapse_edges(
     shortest : float
         Edges shorter than this are collapsed, mm.
     longest : float
-        No edge becomes longer than this, mm.
+        Maximum length of new edges, mm.
 
     Returns
     -------
     triangles : (k, 3) int array
-        The remaining triangles.
+        Remaining triangles.
     owner : (k,) int array
-        Their owners.
+        Owners of the triangles.
 
     References
     ----------
@@ -204,22 +207,23 @@ def collapse_edges(
         )
         removed, shortest_edge = np.unique(
             removed[order], return_index=True
-        )  # one collapse for each vertex, the shortest
+        )  # for each vertex only the shortest collapse
         stays = stays[order][shortest_edge]
         target = np.full(len(vertices), -1, dtype=np.intp)
         target[removed] = stays
         allowed = _find_allowed_collapses(vertices, triangles, edges, target, longest)
         mixed = np.random.default_rng(0).permutation(
             np.flatnonzero(allowed[removed])
-        )  # otherwise long rows wait for each other
+        )  # random order, or long rows of vertices wait for each other
         removed, stays = removed[mixed], stays[mixed]
-        # no two adjacent collapses: only the first of the vertices of a triangle is collapsed
+        # no adjacent collapses: collapse only the first vertex of a triangle
         number = np.full(len(vertices), len(removed), dtype=np.intp)
         number[removed] = np.arange(len(removed))
         lowest_number = np.full(len(triangles), len(removed), dtype=np.intp)
         np.minimum(number[triangles].min(axis=1), lowest_number, out=lowest_number)
         np.minimum.at(rank, triangles.ravel(), np.repeat(lowest_number, 3))
-        # rank: the first among all that a vertex's triangles touch; a collapse is free when it is so all over its ring
+        # rank: first collapse among the triangles at a vertex; a collapse is free if it is first
+        # everywhere on its ring
         ring_rank = np.full(len(vertices), len(removed), dtype=np.intp)
         np.minimum.at(ring_rank, triangles.ravel(), np.repeat(rank[triangles].min(axis=1), 3))
         free = ring_rank[removed] == np.arange(len(removed))
@@ -235,7 +239,7 @@ def collapse_edges(
 def _candidates(
     vertices: Array, triangles: Index, owner: Index, edges: Edges, short: Mask
 ) -> tuple[Index, Index]:
-    """Vertices that may go and the neighbours that they may go to."""
+    """Return vertices that may be removed, and the neighbours into which they collapse."""
     adjacent = owner[edges.faces]
     curve = (edges.count != 2) | (adjacent[:, 0] != adjacent[:, 1])
     on_curve = np.bincount(edges.ends[curve].ravel(), minlength=len(vertices))
@@ -255,8 +259,9 @@ def _candidates(
 def _find_allowed_collapses(
     vertices: Array, triangles: Index, edges: Edges, target: Index, longest: float
 ) -> Mask:
-    """Return which vertices (n,) may move to their target (n,), -1 for none: no triangle turns
-    over and no edge becomes too long.
+    """Return which vertices (n,) may move to their target (n,), -1 for none.
+
+    A move must not reverse a triangle or make an edge too long.
     """
     allowed = target >= 0
     normal = _normals(vertices[triangles])
@@ -277,7 +282,7 @@ def _find_allowed_collapses(
         )
         bad = (dot(new, normal[moved]) < MIN_NORMAL_COSINE) | (new_length > longest)
         allowed[tip[moved][bad]] = False
-    # the two ends may share only the neighbours in their common triangles
+    # the ends may share only neighbours in common triangles
     ends = np.concatenate([edges.ends, edges.ends[:, ::-1]])
     order = np.argsort(ends[:, 0], kind="stable")
     begin = np.searchsorted(ends[order, 0], np.arange(len(vertices) + 1))

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves given as edges of a mesh: order them, split them at corners, compute their
-tangents.
-"""
+"""Curves of mesh edges: order the edges, split the curves at corners, compute tangents."""
 
 from __future__ import annotations
 
@@ -12,26 +10,26 @@ from ...types import Array, Index, Mask
 from ..walls.surface import dot
 from .triangle_mesh import chains
 
-CORNER = np.radians(35.0)  # a curve turns less from edge to edge
+CORNER = np.radians(35.0)  # rad; maximum turn angle between edges of a curve
 
 
 def tangents(vertices: Array, edges: Index) -> Array:
     """Return unit tangents at both ends of edges.
 
-    They belong to smooth curves through the chains that the edges form. A chain ends where it
-    meets others and where it turns by more than CORNER.
+    The tangents are those of smooth curves through the chains of edges. A chain ends where it meets
+    other chains and where it turns by more than CORNER.
 
     Parameters
     ----------
     vertices : (n, 3) array
         Vertices, mm.
     edges : (k, 2) int array
-        Ends of the edges.
+        Vertex indices of the edges.
 
     Returns
     -------
     (k, 2, 3) array
-        Tangents along each edge.
+        Tangents at the start and end of each edge.
     """
     chord = vertices[edges[:, 1]] - vertices[edges[:, 0]]
     chord = chord / np.maximum(np.linalg.norm(chord, axis=1, keepdims=True), 1e-300)
@@ -57,26 +55,26 @@ def tangents(vertices: Array, edges: Index) -> Array:
 def runs(vertices: Array, edges: Index, corner: float = CORNER) -> list[tuple[Index, Mask, bool]]:
     """Return the chains that edges form.
 
-    A chain ends at vertices without exactly two edges, and where it turns by more than a
-    corner.
+    A chain ends at vertices that do not have exactly two edges, and where it turns by more than
+    `corner`.
 
     Parameters
     ----------
     vertices : (n, 3) array
         Vertices, mm.
     edges : (k, 2) int array
-        Ends of the edges.
+        Vertex indices of the edges.
     corner : float, optional
-        Turn at which a chain ends, rad.
+        Turn angle at which a chain ends, rad.
 
     Returns
     -------
     list of tuple
-        For each chain its edges (int array) in order, whether each runs forward (bool
+        For each chain: edge indices in order (int array), whether each edge runs forwards (bool
         array), and whether the chain is closed.
     """
     count = len(edges)
-    # half edge h < count leaves edges[h, 0]; h + count is the same edge backwards
+    # half edge h < count starts at edges[h, 0]; h + count is the reversed edge
     tail = np.r_[edges[:, 0], edges[:, 1]]
     head = np.r_[edges[:, 1], edges[:, 0]]
     direction = vertices[head] - vertices[tail]
@@ -94,7 +92,7 @@ def runs(vertices: Array, edges: Index, corner: float = CORNER) -> list[tuple[In
     ordered, visited = [], np.zeros(count, dtype=bool)
     for members, closed in chains(following):
         if visited[members[0] % count]:
-            continue  # the same chain in the opposite sense
+            continue  # this chain reversed
         visited[members % count] = True
         ordered.append((members % count, members < count, closed))
     return ordered

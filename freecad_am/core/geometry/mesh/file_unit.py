@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The unit of triangle files: STL and OBJ files do not state it."""
+"""The unit of triangle files; STL and OBJ formats do not define a unit."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ...issues import WARNING, InputError, Issue, Text
 
 UNITLESS_ENDINGS = (".stl", ".obj")
 MESHES = (*UNITLESS_ENDINGS, ".3mf")
-HEAD = 4096  # bytes at the start of a file in which programs write a remark
+HEAD = 4096  # bytes at the start of a file to search for a remark
 _STATED = re.compile(r"\bunits?\b[\s:=\"']*(?:(?:is|are)\s+)?(?:in\s+)?([a-zµμ]+)", re.IGNORECASE)
 _LENGTHS = {  # mm
     "mm": 1.0,
@@ -33,7 +33,7 @@ _LENGTHS = {  # mm
 
 
 def stated_unit(data: bytes, suffix: str) -> tuple[str, float] | None:
-    """Return the unit that a file states in a remark.
+    """Return the unit stated in a remark of a file.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def stated_unit(data: bytes, suffix: str) -> tuple[str, float] | None:
     Returns
     -------
     tuple of (str, float) or None
-        Name and length of the unit in mm; None without.
+        Name of the unit and length in mm; None without a remark.
     """
     head = data[:HEAD].decode("latin-1")
     if suffix == ".obj":
@@ -62,7 +62,7 @@ def stated_unit(data: bytes, suffix: str) -> tuple[str, float] | None:
 
 
 def unit_issues(data: bytes, suffix: str, scale: float, where: str) -> tuple[Issue, ...]:
-    """Return a warning where a file states another unit than mm.
+    """Return a warning if a file states a unit other than mm.
 
     Parameters
     ----------
@@ -71,14 +71,14 @@ def unit_issues(data: bytes, suffix: str, scale: float, where: str) -> tuple[Iss
     suffix : str
         '.obj' or '.stl'.
     scale : float
-        Length of one unit of the file as set by the user, mm; 1 for none.
+        User-defined length of one file unit, mm; 1 if not set.
     where : str
         Name of the file, for messages.
 
     Returns
     -------
     tuple of Issue
-        One warning, or none; none with a scale.
+        One warning or none; none if a scale is set.
     """
     stated = stated_unit(data, suffix)
     if stated is None or scale != 1.0:
@@ -97,14 +97,14 @@ def unit_issues(data: bytes, suffix: str, scale: float, where: str) -> tuple[Iss
 
 
 def refuse_scale(scale: float, path: str, key: str) -> None:
-    """Reject a scale that is not a length or that the file does not need.
+    """Reject a scale that is not a length, or a scale for a format with its own unit.
 
     Parameters
     ----------
     scale : float
-        Length of one unit of the file, mm.
+        Length of one file unit, mm.
     path : str
-        Path of the file; its ending shows whether the format states a unit.
+        Path of the file; the ending shows whether the format defines a unit.
     key : str
         Key of the scale, for messages.
 

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Make triangles a manifold: pair those that share an edge, separate vertices, close small
-holes.
+"""Make triangles a manifold: pair triangles at shared edges, separate vertices, close small holes.
 
-Where four or more triangles share an edge, as of two boxes that touch along it, each is
-paired with its neighbour across the solid (Gueziec et al. 2001, cutting and stitching).
-The mesh then bounds solids that touch there.
+Where four or more triangles share an edge, as with two boxes that touch along an edge, each
+triangle is paired with its neighbour across the solid (Gueziec et al. 2001, cutting and stitching).
+The mesh then bounds solids that touch at the edge.
 """
 
 from __future__ import annotations
@@ -20,16 +19,14 @@ from ..walls.surface import dot
 from .refine import Edges
 from .triangle_mesh import chains
 
-MAX_EDGE_TRIANGLES = (
-    64  # triangles at one edge that are paired; an edge with more does not belong to a solid
-)
+MAX_EDGE_TRIANGLES = 64  # maximum number of triangles to pair at an edge; more do not bound a solid
 
 
 class Hole(NamedTuple):
     """A loop of edges with a triangle on one side only.
 
-    loop: vertices (n,), against the sense of the triangles. size: mm, the diagonal of its
-    bounding box. middle: (3,).
+    loop: (n,) vertex indices, against the sense of the triangles. size, middle: diagonal and centre
+    (3,) of the bounding box, mm.
     """
 
     loop: Index
@@ -40,8 +37,8 @@ class Hole(NamedTuple):
 class Manifold(NamedTuple):
     """A mesh in which every edge has at most two triangles.
 
-    vertices (n, 3), triangles (m, 3). open: (k, 2) begins and ends of the sides of triangles
-    that have no neighbour. split: number of edges at which triangles were separated.
+    vertices: (n, 3) mm. triangles: (m, 3). open: (k, 2) starts and ends of triangle sides without a
+    neighbour. split: number of edges at which triangles were separated.
     """
 
     vertices: Array
@@ -51,29 +48,28 @@ class Manifold(NamedTuple):
 
 
 def separate_vertices(vertices: Array, triangles: Index) -> Manifold:
-    """Give triangles their own vertices where their neighbours differ.
+    """Separate vertices at edges of unpaired triangles.
 
-    That is across edges shared by more than two triangles, or followed by two in the same
-    sense.
+    These edges have more than two triangles, or two triangles of opposite orientation.
 
     Parameters
     ----------
     vertices : (n, 3) array
-        mm.
+        Vertices, mm.
     triangles : (m, 3) array of int
-        Numbers of their vertices.
+        Vertex indices of the triangles.
 
     Returns
     -------
     Manifold
-        The same triangles with at most two at each edge.
+        The triangles, with at most two at each edge.
     """
     edges = Edges(triangles)
     mates = _mates(vertices, triangles, edges)
     sides = np.flatnonzero(mates >= 0)
     face, turn = np.divmod(sides, 3)
     mate_face, back = np.divmod(mates[sides], 3)
-    # the end of a side is the begin of its mate
+    # the end of a side is the start of its mate
     side_ends = np.concatenate([sides, 3 * face + (turn + 1) % 3])
     mate_ends = np.concatenate([3 * mate_face + (back + 1) % 3, mates[sides]])
     count = triangles.size
@@ -88,9 +84,7 @@ def separate_vertices(vertices: Array, triangles: Index) -> Manifold:
 
 
 def _mates(vertices: Array, triangles: Index, edges: Edges) -> Index:
-    """Return the side (3 m,), 3 triangle + corner, that each side of a triangle is paired with;
-    -1 for none.
-    """
+    """Return the mate (3 m,) of each triangle side, as 3 triangle + corner; -1 for none."""
     mates = np.full(triangles.size, -1, dtype=np.intp)
     forward = (triangles < np.roll(triangles, -1, axis=1)).ravel()
     edge_numbers = edges.of_triangle.ravel()
@@ -110,7 +104,7 @@ def _mates(vertices: Array, triangles: Index, edges: Edges) -> Index:
 
 
 def _angles(start: Array, end: Array, tips: Array) -> Array:
-    """Return the angles (k,) about an edge of the tips (k, 3), from the first tip."""
+    """Return the angles (k,) of tips (k, 3) about an edge, relative to the first tip."""
     axis = (end - start) / max(float(np.linalg.norm(end - start)), 1e-300)
     offset = tips - start
     offset = offset - dot(offset, axis)[:, None] * axis
@@ -122,13 +116,13 @@ def _angles(start: Array, end: Array, tips: Array) -> Array:
 def _across_solid(angles: Array, forward: Mask) -> list[tuple[int, int]]:
     """Pair the triangles about an edge that bound the same solid.
 
-    The normal of a triangle that runs forward along the edge points towards larger angles, so
-    the solid extends from a triangle that runs backward to the next one that runs forward.
+    The normal of a triangle that runs forwards along the edge points towards larger angles. The
+    solid therefore extends from a backward triangle to the next forward triangle.
     """
     order = np.lexsort((forward, angles)).tolist()
     pairs: list[tuple[int, int]] = []
     open_: list[int] = []
-    for k in order + order:  # a second round for triangles still open at the end of the first
+    for k in order + order:  # a second round pairs triangles still open after the first
         if not forward[k]:
             if all(k not in pair for pair in pairs) and k not in open_:
                 open_.append(k)
@@ -138,12 +132,12 @@ def _across_solid(angles: Array, forward: Mask) -> list[tuple[int, int]]:
 
 
 def find_holes(mesh: Manifold) -> list[Hole]:
-    """Return the holes, largest first."""
+    """Return the holes of a mesh, largest first."""
     start, end = mesh.open.T
     vertices, starts = (
         mesh.vertices,
         np.unique(start),
-    )  # each vertex has one side that begins and one that ends there
+    )  # at each vertex one side starts and one side ends
     following = np.full(len(starts), -1, dtype=np.intp)
     following[np.searchsorted(starts, end)] = np.searchsorted(starts, start)
     loops = []
@@ -156,7 +150,7 @@ def find_holes(mesh: Manifold) -> list[Hole]:
 
 
 def fill_holes(vertices: Array, triangles: Index, openings: list[Hole]) -> tuple[Array, Index]:
-    """Close holes, each by one triangle or by triangles about its middle.
+    """Close holes, each with a single triangle or a fan about its mean point.
 
     Parameters
     ----------

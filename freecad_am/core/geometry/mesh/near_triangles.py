@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Candidate pairs of crossing triangles: descend a tree of bounding boxes for all pairs at
-once.
-"""
+"""Crossing triangles: find candidate pairs with a tree of bounding boxes; remove crossings."""
 
 from __future__ import annotations
 
@@ -17,16 +15,16 @@ from .coarsen import doubled_areas
 from .manifold import Hole, fill_holes, find_holes, separate_vertices
 from .refine import Edges
 
-BITS = 10  # of each coordinate in the order of the leaves
+BITS = 10  # bits per coordinate in the order of the leaves
 MAX_BLOCK_PAIRS = 500_000  # pairs tested together
-PARALLEL = 1e-9  # 1 - cosine of the angle; normals within it count as parallel
+PARALLEL = 1e-9  # 1 - cosine of the maximum angle between parallel normals
 
 
 class _Level(NamedTuple):
     """Nodes (n,) of one level of the tree.
 
-    low, high: (3, n) mm, bounding boxes. normal: (n, 3) mean normals of the triangles.
-    bottom, top: (n,) mm, heights along these between which the triangles are.
+    low, high: (3, n) bounding boxes, mm. normal: (n, 3) mean normals of the triangles. bottom, top:
+    (n,) range of the triangles along the mean normals, mm.
     """
 
     low: Array
@@ -37,20 +35,20 @@ class _Level(NamedTuple):
 
 
 def near_pairs(corners: Array, normals: Array, deep: float) -> Iterator[Index]:
-    """Yield the pairs of triangles whose boxes overlap, each pair once.
+    """Yield each pair of triangles whose bounding boxes overlap, once.
 
-    Coplanar triangles, as on a flat face, share a normal and are left out. The boxes are aligned
-    with the principal axes of the normals, which suit the long triangles of round shapes. Without
-    these two measures there can be very many pairs.
+    Coplanar triangles, as on a flat face, are skipped. The boxes are aligned with the principal
+    axes of the normals, which suits the long triangles of round shapes. Both measures prevent very
+    large numbers of pairs.
 
     Parameters
     ----------
     corners : (m, 3, 3) array
         Triangles, mm.
     normals : (m, 3) array
-        Their unit normals.
+        Unit normals of the triangles.
     deep : float
-        Overlap along each axis that is ignored, mm.
+        Overlap along each axis to ignore, mm.
 
     Yields
     ------
@@ -80,7 +78,7 @@ def near_pairs(corners: Array, normals: Array, deep: float) -> Iterator[Index]:
 
 
 def _spatial_order(middles: Array) -> Index:
-    """The order (n,) of points along Morton's curve: neighbours in it are mostly neighbours in space."""
+    """Return the order (n,) of points along the Morton curve, which keeps neighbours together."""
     size = float(np.ptp(middles, axis=0).max()) or 1.0
     cells = np.minimum(
         ((middles - middles.min(axis=0)) / size * 2**BITS).astype(np.int64), 2**BITS - 1
@@ -94,10 +92,9 @@ def _spatial_order(middles: Array) -> Index:
 
 
 def _levels(corners: Array, normals: Array) -> list[_Level]:
-    """Return the levels of the tree: pairs of neighbouring triangles first, up to one node for
-    all.
+    """Return the levels of the tree, from single triangles up to one node for all.
 
-    Empty triangles fill up the lowest level.
+    Empty triangles pad the lowest level.
     """
     depth = max(int(np.ceil(np.log2(len(corners)))), 1)
     spare = 2**depth - len(corners)
@@ -138,9 +135,9 @@ def _find_overlaps(level: _Level, pairs: Index, deep: float) -> Mask:
 
 
 def _child_pairs(pairs: Index) -> Index:
-    """Return the pairs of the halves of node pairs.
+    """Return the pairs of the child nodes of node pairs.
 
-    A node paired with itself gives each half with itself and both halves with each other.
+    For a node paired with itself: each child with itself, and both children together.
     """
     a, b = (2 * pairs).T
     distinct = a != b
@@ -155,8 +152,10 @@ def _child_pairs(pairs: Index) -> Index:
 
 
 class Crossings(NamedTuple):
-    """Pairs (k, 2) of triangles that cross, the lengths (k,) mm of the crossings and their
-    approximate positions (k, 3) mm.
+    """Crossing triangles.
+
+    pairs: (k, 2) triangle indices. length: (k,) lengths of the crossings, mm. positions: (k, 3)
+    approximate positions, mm.
     """
 
     pairs: Index
@@ -165,11 +164,11 @@ class Crossings(NamedTuple):
 
 
 def find_crossings(vertices: Array, triangles: Index, min_length: float) -> Crossings:
-    """Find where triangles cross.
+    """Find crossing triangles.
 
-    Each triangle of a pair must reach both sides of the other, and overlap it along their line
-    of intersection. Triangles that only touch, such as neighbours along an edge, and coplanar
-    faces do not cross. A shared vertex is in both triangles, whatever rounding says.
+    Two triangles cross if each reaches both sides of the other and they overlap along the
+    intersection line of their planes. Triangles that only touch, such as neighbours along an edge,
+    and coplanar triangles do not cross. A shared vertex is in both planes, regardless of rounding.
 
     Parameters
     ----------
@@ -178,12 +177,12 @@ def find_crossings(vertices: Array, triangles: Index, min_length: float) -> Cros
     triangles : (m, 3) int array
         Triangles.
     min_length : float
-        Smallest length of a crossing, mm.
+        Minimum length of a crossing, mm.
 
     Returns
     -------
     Crossings
-        The pairs with lengths and positions.
+        Pairs with lengths and positions.
     """
     corners = vertices[triangles]
     planes = _planes(corners)
@@ -197,8 +196,10 @@ def find_crossings(vertices: Array, triangles: Index, min_length: float) -> Cros
 
 
 def _planes(corners: Array) -> Array:
-    """Unit normals and distances from the origin (m, 4) of the planes of triangles (m, 3, 3), nothing for those without an
-    area."""
+    """Return the planes (m, 4) of triangles (m, 3, 3): unit normals and distances from the origin.
+
+    Zero for triangles without area.
+    """
     normals = doubled_areas(corners)
     length = np.linalg.norm(normals, axis=1, keepdims=True)
     units = np.where(length > 1e-12, normals / np.maximum(length, 1e-300), 0.0)
@@ -209,7 +210,7 @@ def _planes(corners: Array) -> Array:
 def _cross_pairs(
     corners: Array, triangles: Index, planes: Array, pairs: Index, min_length: float
 ) -> Crossings:
-    """Return which of the pairs (k, 2) cross."""
+    """Return the crossings among pairs (k, 2)."""
     pairs = pairs[_both_sides(_plane_distances(corners, planes, *pairs.T), min_length)]
     pairs = pairs[_both_sides(_plane_distances(corners, planes, *pairs.T[::-1]), min_length)]
     a, b = pairs.T
@@ -231,9 +232,7 @@ def _cross_pairs(
 
 
 def _plane_distances(corners: Array, planes: Array, a: Index, b: Index) -> Array:
-    """Return the heights (k, 3) mm of the corners of triangles `b` above the planes of triangles
-    `a`.
-    """
+    """Return corner heights (k, 3) of triangles `b` above the planes of triangles `a`, mm."""
     height: Array = (corners[b] * planes[a, None, :3]).sum(axis=2) - planes[a, 3, None]
     return height
 
@@ -244,8 +243,9 @@ def _both_sides(height: Array, min_length: float) -> Mask:
 
 
 def _triangle_span(corners: Array, height: Array, along: Array) -> tuple[Array, Array]:
-    """Return the start and end (k, 3) of triangles (k, 3, 3) in a plane that their corners are
-    `height` (k, 3) above.
+    """Return the ends (k, 3) of the sections of triangles (k, 3, 3) by a plane.
+
+    height: (k, 3) heights of the corners above the plane. along: direction of the section line.
     """
     ahead, up = np.roll(corners, -1, axis=1), np.roll(height, -1, axis=1)
     passed = height * up < 0.0
@@ -260,11 +260,11 @@ def _triangle_span(corners: Array, height: Array, along: Array) -> tuple[Array, 
     )
 
 
-ROUNDS = 3  # each cuts out one ring of triangles more
+ROUNDS = 3  # each round cuts out another ring of triangles
 
 
 class Uncrossed(NamedTuple):
-    """The surface without crossings; how many triangles were cut out, and the holes that were closed, the largest first."""
+    """A surface without crossings: number of removed triangles, and closed holes, largest first."""
 
     vertices: Array
     triangles: Index
@@ -286,15 +286,15 @@ def remove_crossings(
     pairs : (k, 2) int array
         Crossing pairs.
     widest : float
-        Largest hole that is closed, mm.
+        Maximum size of a hole to close, mm.
     min_length : float
-        Smallest length of a crossing, mm.
+        Minimum length of a crossing, mm.
 
     Returns
     -------
     Uncrossed or None
-        None if that leaves a wider hole, reaches an end of the surface, or if triangles
-        still cross.
+        None if a wider hole remains, the cut reaches an end of the surface, or triangles still
+        cross.
     """
     edges = Edges(triangles)
     at_end = np.zeros(len(vertices), dtype=bool)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Triangles of a polygon in space that is nearly flat and may be concave."""
+"""Pairs of touching balls, and triangulation of nearly flat polygons in space."""
 
 from __future__ import annotations
 
@@ -10,28 +10,27 @@ from scipy.spatial import cKDTree
 
 from ...types import Array, Index
 
-CLASS_RATIO = 1.5  # largest to smallest ball of a class in which they are looked for together
-BLOCK = 2_000_000  # pairs held at a time
+CLASS_RATIO = 1.5  # ratio of largest to smallest radius in a size class
+BLOCK = 2_000_000  # approximate maximum number of pairs in memory
 
 
 def near_pairs(middle: Array, reach: Array) -> Iterator[Index]:
     """Yield all pairs of balls that may touch, in blocks of about BLOCK.
 
-    Each size class searches among itself and the
-    smaller classes, so that one long needle does not become a neighbour of all the small
-    balls around it.
+    Each size class is compared with itself and the smaller classes. A large ball about a needle
+    therefore does not enlarge the search radius of small balls.
 
     Parameters
     ----------
     middle : (n, 3) array
-        Middles of the balls, mm.
+        Centres of the balls, mm.
     reach : (n,) array
         Radii, mm.
 
     Yields
     ------
     (k, 2) array of int
-        Pairs, the lower number first.
+        Pairs, lower index first.
     """
     sizes = np.floor(np.log(np.maximum(reach, 1e-12)) / np.log(CLASS_RATIO)).astype(np.intp)
     for size in np.unique(sizes)[::-1]:
@@ -47,7 +46,7 @@ def near_pairs(middle: Array, reach: Array) -> Iterator[Index]:
                 continue
             candidates = block_tree.sparse_distance_matrix(tree, radius, output_type="ndarray")
             a, b = block[candidates["i"]], not_larger[candidates["j"]]
-            # pairs within one class occur from both sides
+            # pairs within a class occur twice
             touching = (candidates["v"] <= reach[a] + reach[b]) & ((sizes[b] < size) | (a < b))
             yield np.sort(np.stack([a[touching], b[touching]], axis=1), axis=1)
 
@@ -55,8 +54,8 @@ def near_pairs(middle: Array, reach: Array) -> Iterator[Index]:
 def triangulate(corners: Array) -> Index:
     """Divide a polygon into triangles.
 
-    Ear clipping in the plane of the mean normal, the least elongated ear first. A polygon
-    that crosses itself is divided too.
+    Clip ears in the plane of the mean normal, the least elongated ear first. Self-intersecting
+    polygons are divided too.
 
     Parameters
     ----------
@@ -66,13 +65,13 @@ def triangulate(corners: Array) -> Index:
     Returns
     -------
     (n - 2, 3) array of int
-        Numbers of the corners of the triangles, in the sense of the polygon.
+        Corner indices of the triangles, in the sense of the polygon.
     """
     next_corner = np.roll(corners, -1, axis=0)
-    normal = np.cross(corners, next_corner).sum(axis=0)  # Newell's
+    normal = np.cross(corners, next_corner).sum(axis=0)  # Newell's method
     drop = int(np.argmax(np.abs(normal)))
     flat = np.delete(corners, drop, axis=1)
-    if (normal[drop] < 0.0) != (drop == 1):  # so that it turns left
+    if (normal[drop] < 0.0) != (drop == 1):  # make it counter-clockwise
         flat = flat[:, ::-1]
     remaining, ears = list(range(len(corners))), []
     while len(remaining) > 3:
@@ -83,11 +82,10 @@ def triangulate(corners: Array) -> Index:
 
 
 def _find_ear(ring: Array) -> int:
-    """Return the corner of a polygon (n, 2) that turns left and has no other corner in its
-    triangle.
+    """Return the convex corner of a polygon (n, 2) whose triangle contains no other corner.
 
-    If several qualify, the one whose triangle is least elongated; if none does, the one that
-    turns left most.
+    Among several, choose the least elongated triangle. If there is no such corner, choose the most
+    convex corner.
     """
     previous, next_corner = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
     turn = _cross(ring - previous, next_corner - ring)

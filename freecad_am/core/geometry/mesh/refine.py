@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Mesh refinement: halve the longest edges until all are short enough (Rivara 1984), then
-flip edges.
-"""
+"""Mesh refinement: bisect the longest edges until all are short (Rivara 1984); flip edges."""
 
 from __future__ import annotations
 
@@ -13,34 +11,38 @@ from ...types import Array, Index, Mask
 from ..walls.surface import dot
 
 ROUNDS = 60
-NEEDLE = 0.5  # of the shortest to the longest side
+NEEDLE = 0.5  # maximum ratio of shortest to longest side of a needle
 DIVERGED = (
-    100  # more edges that are too long than twice the least there were: halving them does not end
+    100  # permitted excess of long edges over twice their minimum; beyond it refinement diverges
 )
 STALLED, MIN_PROGRESS = (
     10,
     0.9,
-)  # rounds in which the longest edge becomes no shorter than this share of itself: nor does it
-MIN_FLAT_COSINE = 0.3  # cosine between the normals of two triangles, down to which an edge may be turned in any case
+)  # refinement stalls if so many rounds do not shorten the longest edge to this fraction
+MIN_FLAT_COSINE = 0.3  # minimum cosine between normals at which a flip is always permitted
 FLIPS, FEW_FLIPS, MANY_TRIANGLES = (
     40,
     4,
     6000,
-)  # rounds on small meshes, where slivers are cheaply got rid of, and on large ones
+)  # rounds on small meshes, where slivers are cheap to remove; on large meshes; limit between both
 
-# vertices (k, 3), owners of the two triangles adjacent to each (k, 2) -1 for none, ends of the edge it halves (k, 2)
+# edge midpoints (k, 3), owners of the adjacent triangles (k, 2), -1 for none, edge ends (k, 2)
 Placement = Callable[[Array, Index, Index], Array]
 
 
 class Edges:
-    """The edges of triangles (m, 3): `of_triangle` (m, 3) the number of the edge from each corner to the next, `ends` (k, 2), lower
-    vertex first, `faces` (k, 2) the triangles at it, -1 for none, `count` (k,) how many there are."""
+    """The edges of triangles (m, 3).
+
+    of_triangle: (m, 3) index of the edge from each corner to the next. ends: (k, 2) vertex indices,
+    lower first. faces: (k, 2) first two triangles at each edge, -1 for none. count: (k,) number of
+    triangles at each edge.
+    """
 
     def __init__(self, triangles: Index) -> None:
         half = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
         lower, upper = np.minimum(half[:, 0], half[:, 1]), np.maximum(half[:, 0], half[:, 1])
         key = lower * (int(triangles.max(initial=0)) + 1) + upper
-        # one sort: sides of the same edge become adjacent, in the order of their triangles
+        # a single sort makes the sides of an edge consecutive, in the order of their triangles
         order = np.argsort(key, kind="stable")
         new = np.ones(len(key), dtype=bool)
         new[1:] = np.diff(key[order]) != 0
@@ -66,9 +68,7 @@ def refine_mesh(
     max_triangles: int,
     flip: bool = True,
 ) -> tuple[Array, Index, Index] | None:
-    """Refine a mesh until no edge is longer than a limit.
-
-    Shared edges stay shared.
+    """Refine a mesh until all edges are within a limit; shared edges stay shared.
 
     Parameters
     ----------
@@ -79,29 +79,26 @@ def refine_mesh(
     owner : (m,) int array
         Owner of each triangle.
     longest : float
-        Longest edge, mm.
+        Maximum edge, mm.
     place_points : Placement
-        Moves new edge middles to their positions.
+        Moves new edge midpoints to their positions.
     max_triangles : int
-        Largest number of triangles.
+        Maximum number of triangles.
     flip : bool, optional
         Whether edges are flipped after each round.
 
     Returns
     -------
     tuple of array or None
-        Vertices, triangles and their owners. None if there would be more than
-        `max_triangles` triangles, if flipped edges repeatedly become long again, or if
-        edges are still too long after ROUNDS rounds.
+        Vertices, triangles and their owners. None if `max_triangles` would be exceeded, flipped
+        edges repeatedly become long again, or edges are still too long after ROUNDS rounds.
 
     References
     ----------
     Rivara 1984.
     """
-    highest = fewest_since = (
-        0  # numbers of too long edges: the maximum so far and the minimum since
-    )
-    tops: list[float] = []  # mm, the longest edge in each round
+    highest = fewest_since = 0  # number of long edges: maximum so far, and minimum since then
+    tops: list[float] = []  # longest edge of each round, mm
     for _ in range(ROUNDS):
         edges = Edges(triangles)
         length = np.linalg.norm(vertices[edges.ends[:, 0]] - vertices[edges.ends[:, 1]], axis=1)
@@ -121,10 +118,10 @@ def refine_mesh(
             and min(tops[-STALLED:]) > MIN_PROGRESS * min(tops[:-STALLED])
         ):
             return None
-        # halve the longest edge of each triangle with an edge to halve, which keeps triangles well shaped
+        # bisect the longest edge of each affected triangle, which keeps triangles well shaped
         side_lengths = length[edges.of_triangle] + 1e-9 * length.max() * edges.of_triangle / len(
             length
-        )  # no ties
+        )  # avoid ties
         first_cut = (
             _first_cut(edges, side_lengths, owner, longest, split)
             if flip
@@ -153,7 +150,7 @@ def refine_mesh(
 def quarter_triangles(
     vertices: Array, triangles: Index, owner: Index, place_points: Placement
 ) -> tuple[Array, Index, Index]:
-    """Divide each triangle into four at its edge middles.
+    """Divide each triangle into four at its edge midpoints.
 
     Parameters
     ----------
@@ -164,7 +161,7 @@ def quarter_triangles(
     owner : (m,) int array
         Owner of each triangle.
     place_points : Placement
-        Moves the edge middles to their positions.
+        Moves the edge midpoints to their positions.
 
     Returns
     -------
@@ -173,7 +170,7 @@ def quarter_triangles(
     triangles : (4 m, 3) int array
         The parts.
     owner : (4 m,) int array
-        Their owners.
+        Owners of the triangles.
     """
     edges = Edges(triangles)
     adjacent = np.where(edges.faces >= 0, owner[edges.faces], -1)
@@ -191,11 +188,11 @@ def quarter_triangles(
 def _first_cut(
     edges: Edges, side_lengths: Array, owner: Index, longest: float, split: Mask
 ) -> Index:
-    """Return the corner (m,) of each triangle at which its first cut edge, the longest, begins.
+    """Return the start corner (m,) of the edge of each triangle to cut first, usually the longest.
 
-    `side_lengths` (m, 3) are the lengths of its edges. Two needles along a common longest
-    edge, as in a long strip, are cut at the next edge: their diagonal is flipped afterwards
-    and the strip does not become narrower. Such diagonals are removed from `split`.
+    side_lengths: (m, 3) edge lengths. Two needles along a common longest edge, as in a long strip,
+    are cut at the second longest edge: their diagonal is flipped afterwards and the strip does not
+    become narrower. Such diagonals are removed from `split`.
     """
     order = np.argsort(side_lengths, axis=1)
     row = np.arange(len(side_lengths))
@@ -210,19 +207,19 @@ def _first_cut(
 
 
 def count_halved(corners: Array, longest: float) -> float:
-    """Estimate the number of triangles after halving until no edge is too long.
+    """Estimate the number of triangles after bisecting all long edges.
 
     Parameters
     ----------
     corners : (m, 3, 3) array
         Corners of the triangles, mm.
     longest : float
-        Longest edge allowed, mm.
+        Maximum edge, mm.
 
     Returns
     -------
     float
-        The number.
+        Estimated number.
     """
     square = np.sort(((np.roll(corners, -1, axis=1) - corners) ** 2).sum(axis=2), axis=1)
     weight: Array = np.ones(len(square))
@@ -252,8 +249,9 @@ def count_halved(corners: Array, longest: float) -> float:
 def _halve_triangles(
     triangles: Index, owner: Index, middle: Index, longest: Index
 ) -> tuple[Index, Index]:
-    """Divide triangles at the middles (m, 3) of their edges, -1 for none, first at the longest
-    edge (m,).
+    """Divide triangles at the midpoints (m, 3) of their edges, -1 for none.
+
+    longest: (m,) the edge to divide first.
     """
     row = np.arange(len(triangles))[:, None]
     turn = (longest[:, None] + np.arange(3)) % 3
@@ -261,7 +259,7 @@ def _halve_triangles(
     ab, bc, ca = middle[row, turn].T
     uncut = ab < 0
     blocks, owners = [triangles[uncut]], [owner[uncut]]
-    # halves (a, ab, c) and (ab, b, c), each divided again if its outer edge has a middle
+    # halves (a, ab, c) and (ab, b, c), divided again if the outer edge has a midpoint
     for tip, opposite, cut, forward in ((a, ab, ca, True), (b, ab, bc, False)):
         for once in (True, False):
             selected = ~uncut & ((cut < 0) if once else (cut >= 0))
@@ -274,7 +272,7 @@ def _halve_triangles(
 
 
 def flip_edges(vertices: Array, triangles: Index, owner: Index) -> Index:
-    """Flip edges within one owner's area whose opposite angles sum to more than pi.
+    """Flip edges inside an owner's area whose opposite angles sum to more than pi.
 
     Parameters
     ----------
@@ -288,10 +286,10 @@ def flip_edges(vertices: Array, triangles: Index, owner: Index) -> Index:
     Returns
     -------
     (m, 3) int array
-        Triangles that are nearly Delaunay.
+        Nearly Delaunay triangles.
     """
     triangles = triangles.copy()
-    # triangles that have changed, or that two edges compete for; pairs of others are done
+    # triangles that changed or that two edges compete for; all further pairs are finished
     open_ = np.ones(len(triangles), dtype=bool)
     for _ in range(FLIPS if len(triangles) < MANY_TRIANGLES else FEW_FLIPS):
         edges = Edges(triangles)
@@ -309,7 +307,8 @@ def flip_edges(vertices: Array, triangles: Index, owner: Index) -> Index:
         a, b, c, d, face_a, face_b, excess = (
             column[admissible] for column in (a, b, c, d, face_a, face_b, excess)
         )
-        # never fold: the new triangles face the same way as the old ones and are nearly as flat, so no edge runs across a tube
+        # never fold: new triangles face the same way as the old and are nearly as flat, so that no
+        # edge runs across a tube
         old = _normal(vertices, a, b, c), _normal(vertices, b, a, d)
         new = _normal(vertices, a, d, c), _normal(vertices, d, b, c)
         normal = old[0] + old[1]
@@ -351,7 +350,7 @@ def _cosine(u: Array, v: Array) -> Array:
 
 
 def boundary(triangles: Index) -> tuple[Index, Mask]:
-    """Return the edges with one triangle only.
+    """Return the edges with a single triangle.
 
     Parameters
     ----------
@@ -361,9 +360,9 @@ def boundary(triangles: Index) -> tuple[Index, Mask]:
     Returns
     -------
     edges : (k, 2) int array
-        Ends of these edges, in the sense of their triangle.
+        Vertex indices of the edges, in the sense of their triangle.
     shared : bool array
-        Which of all edges more than two triangles share.
+        Whether more than two triangles share each of all edges.
     """
     edges = Edges(triangles)
     half = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
@@ -373,9 +372,9 @@ def boundary(triangles: Index) -> tuple[Index, Mask]:
 def split_edges(
     vertices: Array, triangles: Index, is_split: Callable[[Index], Mask]
 ) -> tuple[Array, Index, bool]:
-    """Halve selected edges.
+    """Bisect selected edges.
 
-    A closed mesh stays closed: a triangle becomes two, three or four.
+    A closed mesh stays closed: an affected triangle becomes two, three or four triangles.
 
     Parameters
     ----------
@@ -384,7 +383,7 @@ def split_edges(
     triangles : (m, 3) int array
         Triangles.
     is_split : callable
-        Returns which edges to halve, by their ends (2, k).
+        Returns which edges to bisect, given their vertex indices (2, k).
 
     Returns
     -------
@@ -393,7 +392,7 @@ def split_edges(
     triangles : int array
         The triangles.
     changed : bool
-        Whether any edge was halved.
+        Whether any edge was bisected.
     """
     edges = Edges(triangles)
     halved = np.flatnonzero(is_split(edges.ends.T))
@@ -404,11 +403,11 @@ def split_edges(
     vertices = np.vstack(
         [vertices, 0.5 * (vertices[edges.ends[halved, 0]] + vertices[edges.ends[halved, 1]])]
     )
-    middle = number[edges.of_triangle]  # (m, 3) of the edges from each corner to the next
+    middle = number[edges.of_triangle]  # (m, 3) midpoint of the edge from each corner to the next
     cut = middle >= 0
     count = cut.sum(axis=1)
     blocks = [triangles[count == 0]]
-    # turned so that the first edge is cut (with two cuts: the first two edges)
+    # rotate corners so that the cut edges come first
     turn = np.where(count == 2, (np.argmin(cut, axis=1) + 1) % 3, np.argmax(cut, axis=1))
     column = (turn[:, None] + np.arange(3)) % 3
     (a, b, c), (ab, bc, ca) = (

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Convert meshes to solids: repair safe defects and report them, reject the others with
-their position.
+"""Convert meshes to solids: repair and report safe defects, reject other defects with a position.
 
-Safe repairs: points equal but for rounding, triangles without area or present twice, one
-missing triangle, triangles turned against their neighbours, a solid turned inside out. On
-request: small holes, edges of more than two triangles, loose flat components, and
-crossing triangles, which sections unite.
+Safe repairs: points equal except for rounding, degenerate or duplicate triangles, a single missing
+triangle, triangles reversed against their neighbours, an inside-out solid. On request: small holes,
+edges of more than two triangles, loose flat components, and crossing triangles, which sections
+unite.
 """
 
 from __future__ import annotations
@@ -23,17 +22,17 @@ from .near_triangles import find_crossings
 from .refine import Edges
 from .solid import SolidMesh, connected_pieces, orient_across, orient_triangles, split_solids
 
-WELDS_MM = (1e-5, 1e-4, 1e-3, 1e-2)  # mm; the first that closes the mesh
+WELDS_MM = (1e-5, 1e-4, 1e-3, 1e-2)  # mm; merge distances to try until the mesh is closed
 MAX_MESSAGES = 8
 ROUNDS = 4
-MIN_SINGLE_SHARE = 0.5  # of the triangles
+MIN_SINGLE_SHARE = 0.5  # of the distinct triangles; below it the mesh is two-sided
 MAX_HOLE_SHARE = (
-    0.5  # of the largest opening of a surface; a larger opening is also an end of the surface
+    0.5  # of the largest opening of a surface; a larger opening is an end of the surface
 )
 
 
 class Repaired(NamedTuple):
-    """The separate solids of a mesh, each closed and with its triangles counter-clockwise from outside."""
+    """The closed solids of a mesh, with triangles counter-clockwise seen from outside."""
 
     solids: tuple[SolidMesh, ...]
     issues: tuple[Issue, ...]
@@ -47,20 +46,20 @@ def repair_mesh(
     Parameters
     ----------
     points : (n, 3) array
-        Points, mm; equal ones are merged.
+        Points, mm; equal points are merged.
     triangles : (m, 3) int array
         Triangles.
     label : str
         Name of the part, for messages.
     hole : float, optional
-        Size of the largest hole that is closed, mm.
+        Maximum size of a hole to close, mm.
     crossing : bool, optional
-        Whether a solid may cut itself; this is reported.
+        Whether to accept and report self-intersections.
 
     Returns
     -------
     Repaired
-        The solids and the issues of repairs.
+        Solids, and issues about repairs.
 
     Raises
     ------
@@ -104,7 +103,7 @@ def repair_mesh(
 
 
 def mended_issues(label: str, mended: list[str]) -> tuple[Issue, ...]:
-    """Report repairs and their positions as an issue; empty without repairs."""
+    """Return an issue that reports repairs with their positions; empty without repairs."""
     if not mended:
         return ()
     return (
@@ -113,9 +112,7 @@ def mended_issues(label: str, mended: list[str]) -> tuple[Issue, ...]:
 
 
 class Connected(NamedTuple):
-    """A mesh whose triangles have at most one neighbour at each edge and agree with it, and the
-    repairs made.
-    """
+    """A mesh with at most two consistently oriented triangles per edge, and its repairs."""
 
     vertices: Array
     triangles: Index
@@ -129,19 +126,19 @@ def connected_triangles(points: Array, triangles: Index, label: str, hole: float
     Parameters
     ----------
     points : (n, 3) array
-        Points, mm; equal ones are merged.
+        Points, mm; equal points are merged.
     triangles : (m, 3) int array
         Triangles.
     label : str
         Name of the part, for messages.
     hole : float
-        Size of the largest hole that is closed, mm; only if it is smaller than
-        MAX_HOLE_SHARE of the largest opening of its component.
+        Maximum size of a hole to close, mm. Holes larger than MAX_HOLE_SHARE of the largest
+        opening of their component stay open.
 
     Returns
     -------
     Connected
-        The surface and its repairs.
+        Surface and repairs.
 
     Raises
     ------
@@ -194,7 +191,7 @@ def connected_triangles(points: Array, triangles: Index, label: str, hole: float
 
 
 def crossing_messages(solid: SolidMesh, min_length: float) -> list[str]:
-    """Describe where a solid cuts itself by more than `min_length` mm; empty if it does not."""
+    """Describe self-intersections of a solid longer than `min_length` mm; empty without any."""
     pairs = find_crossings(solid.vertices, solid.triangles, min_length)
     if not len(pairs.pairs):
         return []
@@ -268,16 +265,15 @@ def _close_holes(
             break
         again = separate_vertices(
             vertices, corners
-        )  # new triangles may coincide with existing ones, as on the other side of a fin
+        )  # new triangles may coincide with existing triangles, as on the other side of a fin
         vertices, corners = fill_holes(again.vertices, again.triangles, find_holes(again))
     return vertices, corners
 
 
 def _weld_closed(points: Array, triangles: Index, messages: list[str]) -> tuple[Array, Index]:
-    """Return vertices and triangles without duplicates, by the narrowest weld that closes the
-    mesh.
+    """Merge points with the smallest distance that closes the mesh; drop duplicate triangles.
 
-    If none does, by the weld that leaves the fewest open edges.
+    If no distance closes the mesh, use the distance that leaves the fewest open edges.
     """
     best: tuple[int, Array, Index, list[str]] | None = None
     for weld in WELDS_MM:
@@ -309,7 +305,7 @@ def _weld_points(
     if not has_area.all():
         notes.append(Text("{} degenerate triangles were removed", int((~has_area).sum())))
     corners = corners[has_area]
-    # triangles with the same three points: opposite ones cancel
+    # triangles with the same three points: opposite orientations cancel
     ranked = np.sort(corners, axis=1)
     number = np.ravel(np.unique(ranked, axis=0, return_inverse=True)[1])
     turn = np.argmin(corners, axis=1)
@@ -319,7 +315,7 @@ def _weld_points(
     unique_triangles = good[np.unique(number[good], return_index=True)[1]]
     if len(unique_triangles) < MIN_SINGLE_SHARE * (
         number.max(initial=-1) + 1
-    ):  # every triangle is present from both sides, as for display
+    ):  # the mesh has all triangles in both orientations, as for display
         unique_triangles = np.unique(number, return_index=True)[1]
     if len(unique_triangles) < len(corners):
         notes.append(
@@ -334,14 +330,14 @@ def _weld_points(
 
 
 def _fill_single_triangles(corners: Index, notes: list[str]) -> Index:
-    """Close holes of a single missing triangle."""
+    """Close holes that consist of a single missing triangle."""
     edges = Edges(corners)
     border = np.flatnonzero(edges.count == 1)
     if not len(border) or len(border) % 3:
         return corners
     face = edges.faces[border, 0]
     row = np.argmax(edges.of_triangle[face] == border[:, None], axis=1)
-    start, end = corners[face, (row + 1) % 3], corners[face, row]  # against the neighbour
+    start, end = corners[face, (row + 1) % 3], corners[face, row]  # opposite to the neighbour
     successor = dict(zip(start.tolist(), end.tolist()))
     if len(successor) != len(border):
         return corners
@@ -357,6 +353,6 @@ def _fill_single_triangles(corners: Index, notes: list[str]) -> Index:
         tuple(sorted(corner)) for corner in corners[np.isin(corners, start).all(axis=1)].tolist()
     }
     if any(tuple(sorted(corner)) in loose_triangles for corner in missing):
-        return corners  # the border of a loose triangle
+        return corners  # this is the border of a loose triangle
     notes.append(Text("{} missing triangles were added", len(missing)))
     return np.vstack([corners, np.array(missing, dtype=np.intp)])

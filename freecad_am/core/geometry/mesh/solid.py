@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A solid bounded by triangles: its soundness, and distances of points from it, negative
-inside.
-"""
+"""Solids bounded by triangles: validity checks, signed distances, division and orientation."""
 
 from __future__ import annotations
 
@@ -24,22 +22,20 @@ from .refine import Edges
 from .triangle_mesh import closest
 
 NEIGHBOUR_COUNT = 12
-SHARP_EDGE_RAD = np.radians(
-    20.0
-)  # facets that meet at a larger angle do not approximate a round surface
-PARALLEL = 1e-6  # of the cosine between the normals of parallel triangles
+SHARP_EDGE_RAD = np.radians(20.0)  # facets at a larger angle do not approximate a round surface
+PARALLEL = 1e-6  # 1 - cosine of the angle between the normals of parallel triangles
 
 
 @dataclass(frozen=True, eq=False)
 class SolidMesh:
-    """vertices (n, 3) mm, triangles (m, 3) counter-clockwise seen from outside."""
+    """A solid: vertices (n, 3) mm, triangles (m, 3) counter-clockwise seen from outside."""
 
     vertices: Array
     triangles: Index
 
     @property
     def volume(self) -> float:
-        """Volume, mm3; negative when the mesh is turned inside out."""
+        """Volume, mm3; negative if the mesh is inside out."""
         a, b, c = (
             self.vertices[self.triangles[:, k]] - self.vertices[self.triangles[0, 0]]
             for k in range(3)
@@ -54,10 +50,10 @@ class SolidMesh:
         label : str
             Name of the part, for messages.
         of_shape : bool, optional
-            Whether the mesh comes from a solid with exact faces, so there is no mesh to
-            repair.
+            Whether the mesh comes from a solid with exact faces, so that the user cannot repair
+            a mesh.
         touching : bool, optional
-            Whether the solid may touch itself along edges.
+            Whether to accept a solid that touches itself along edges.
 
         Raises
         ------
@@ -128,8 +124,9 @@ class SolidMesh:
             )
 
     def refuse_crossing(self, label: str, min_length: float) -> None:
-        """Raise InputError SELF_CROSSING with a position if the mesh cuts itself by more than
-        `min_length` mm.
+        """Reject a mesh that intersects itself over more than `min_length` mm.
+
+        Raises InputError SELF_CROSSING with a position.
         """
         pairs = find_crossings(self.vertices, self.triangles, min_length)
         if len(pairs.pairs):
@@ -145,13 +142,13 @@ class SolidMesh:
             )
 
     def searched(self, edge: float) -> Search:
-        """Prepared for points about as far apart as `edge` mm."""
+        """Return a search for nearest points, suited to query points about `edge` mm apart."""
         area = 0.5 * np.linalg.norm(self.normals, axis=1).sum()
         return Search(self, max(2.0 * edge, float(np.sqrt(area / 20000.0))))
 
     @cached_property
     def normals(self) -> Array:
-        """Return the outer normals of the triangles, each as long as twice the area.
+        """Return the outer normals of the triangles, with twice the area as length.
 
         Returns
         -------
@@ -164,13 +161,13 @@ class SolidMesh:
 
     @cached_property
     def sagitta(self) -> Array:
-        """Estimate how far each triangle is off the round surface that it approximates.
+        """Estimate the deviation of each triangle from the round surface that it approximates.
 
         Returns
         -------
         (m,) array
-            An eighth of the triangle's width across each edge times the turn there, the
-            largest, mm. Edges that turn by more than SHARP_EDGE_RAD are real edges.
+            Maximum over the edges of an eighth of the triangle's width across the edge times the
+            dihedral angle, mm. Angles above SHARP_EDGE_RAD are real edges and count as 0.
         """
         edges = Edges(self.triangles)
         two = edges.count == 2
@@ -196,7 +193,7 @@ class SolidMesh:
         Returns
         -------
         (m, 3) array
-            Zero for triangles without an area.
+            Unit normals; zero for triangles without area.
         """
         length = np.linalg.norm(self.normals, axis=1, keepdims=True)
         units: Array = np.where(length > 1e-10, self.normals / np.maximum(length, 1e-300), 0.0)
@@ -204,9 +201,9 @@ class SolidMesh:
 
 
 class Search:
-    """Nearest triangles of a solid, from the middles of their parts no longer than `longest` mm.
+    """Search for the nearest triangles of a solid, by midpoints of parts up to `longest` mm long.
 
-    Pseudo-normals decide the side (Baerentzen 2005).
+    Pseudo-normals determine the side (Baerentzen 2005).
     """
 
     def __init__(self, solid: SolidMesh, longest: float) -> None:
@@ -219,7 +216,7 @@ class Search:
 
     @cached_property
     def flat(self) -> bool:
-        """Whether all triangles are parallel: there is no inside then."""
+        """Whether all triangles are parallel, so that there is no inside."""
         return bool((np.abs(self.units @ self.units[0]) > 1.0 - PARALLEL).all())
 
     def distance(self, points: Array) -> Array:
@@ -252,11 +249,11 @@ class Search:
         foot : (k, 3) array
             Nearest points, mm.
         triangle : (k,) int array
-            Nearest triangles of the solid.
+            Indices of the nearest triangles of the solid.
 
         References
         ----------
-        Baerentzen 2005, for the side by pseudo-normals.
+        Baerentzen 2005, for the sign by pseudo-normals.
         """
         distance, triangle, share = self._nearest(points)
         foot = np.einsum("nk,nkc->nc", share, self.vertices[self.triangles[triangle]])
@@ -275,11 +272,11 @@ class Search:
         return side * distance, foot, self.owner[triangle]
 
     def _nearest(self, points: Array) -> tuple[Array, Index, Array]:
-        """Return the distance (k,) of points (k, 3), the nearest sound triangle (k,) and the shares
-        (k, 3) of its corners.
+        """Return distances (k,) of points (k, 3), the nearest sound triangles (k,) and barycentric
+        coordinates (k, 3) of the nearest points.
         """
         count = min(NEIGHBOUR_COUNT, len(self.of))
-        # near the middle of a round solid all triangles are equally near, so far points accept a slightly larger distance
+        # near the centre of a round solid all triangles are equally near: allow a tolerance
         far_points = np.flatnonzero(self.tree.query(points, eps=0.3)[0] > 4.0 * self.longest)
         close = np.setdiff1d(np.arange(len(points)), far_points)
         nearest_triangles = np.zeros((len(points), count), dtype=np.intp)
@@ -292,7 +289,7 @@ class Search:
                 ]
         fresh = np.ones(
             nearest_triangles.shape, dtype=bool
-        )  # most parts near a point belong to the same few triangles
+        )  # most parts near a point belong to a few triangles
         for k in range(1, count):
             fresh[:, k] = (nearest_triangles[:, :k] != nearest_triangles[:, k : k + 1]).all(axis=1)
         corner = self.vertices[self.triangles[nearest_triangles[fresh]]]
@@ -306,8 +303,8 @@ class Search:
 
     @cached_property
     def _pseudo_normals(self) -> tuple[Array, Array, Index]:
-        """Return pseudo-normals at each vertex (n, 3) and edge (e, 3), and the edges (m, 3) of each
-        sound triangle.
+        """Return pseudo-normals of vertices (n, 3) and edges (e, 3), and the edge indices (m, 3) of
+        sound triangles.
         """
         corner = self.vertices[self.triangles]
         at_vertex = np.zeros_like(self.vertices)
@@ -328,24 +325,24 @@ class Search:
 def divide_triangles(
     corners: Array, longest: float, is_kept: Callable[[Array], Mask] | None = None
 ) -> tuple[Array, Index]:
-    """Divide triangles until no side is longer than a limit.
+    """Divide triangles until all sides are within a limit.
 
     Parameters
     ----------
     corners : (m, 3, 3) array
         Triangles, mm.
     longest : float
-        Longest side, mm.
+        Maximum side, mm.
     is_kept : callable, optional
-        Returns which triangles (n, 3, 3), complete or parts, to divide further; the others
-        are dropped. None for all.
+        Returns which triangles or parts (n, 3, 3) to keep; the remaining triangles are dropped.
+        None keeps all.
 
     Returns
     -------
     middles : (k, 3) array
-        Middles of the parts, mm.
+        Centroids of the parts, mm.
     triangle : (k,) int array
-        Triangle of each part.
+        Triangle index of each part.
     """
     return (
         _divide_triangles(corners, longest, is_kept)
@@ -357,7 +354,7 @@ def divide_triangles(
 def _divide_triangles(
     corner: Array, longest: float, is_kept: Callable[[Array], Mask] | None = None
 ) -> tuple[Array, Index]:
-    """Divide triangles (m, 3, 3) as `divide_triangles` does, by halving the longest side."""
+    """Divide triangles (m, 3, 3) for `divide_triangles`, by bisecting the longest side."""
     triangle, blocks = np.arange(len(corner)), []
     while len(corner):
         if is_kept is not None:
@@ -380,7 +377,7 @@ def _divide_triangles(
     )
 
 
-MIN_VOLUME_SHARE = 1e-9  # of the cube of its size; a closed piece of less volume encloses nothing
+MIN_VOLUME_SHARE = 1e-9  # of the cubed box diagonal; minimum volume of a closed piece
 
 
 def connected_pieces(corners: Index) -> Index:
@@ -389,12 +386,12 @@ def connected_pieces(corners: Index) -> Index:
     Parameters
     ----------
     corners : (m, 3) array of int
-        Numbers of the vertices of the triangles.
+        Vertex indices of the triangles.
 
     Returns
     -------
     (m,) array of int
-        Numbers of the components, from 0; edges of two triangles connect.
+        Component indices from 0; edges with exactly two triangles connect.
     """
     edges = Edges(corners)
     a, b = edges.faces[edges.count == 2].T
@@ -406,7 +403,7 @@ def connected_pieces(corners: Index) -> Index:
 def orient_triangles(
     vertices: Array, corners: Index, edges: Edges, label: str, messages: list[str]
 ) -> Index:
-    """Orient triangles so that neighbours agree.
+    """Orient triangles consistently with their neighbours.
 
     Parameters
     ----------
@@ -415,21 +412,21 @@ def orient_triangles(
     corners : (m, 3) int array
         Triangles.
     edges : Edges
-        Their edges.
+        Edges of the triangles.
     label : str
         Name of the part, for errors.
     messages : list of str
-        A message about flipped triangles is appended here.
+        Receives a message about flipped triangles.
 
     Returns
     -------
     (m, 3) int array
-        The oriented triangles.
+        Oriented triangles.
 
     Raises
     ------
     InputError
-        NOT_ORIENTABLE if neighbours cannot agree.
+        NOT_ORIENTABLE if no consistent orientation exists.
     """
     turned = orient_across(corners, edges, np.arange(len(edges.ends)), messages)
     forward = turned < np.roll(turned, -1, axis=1)
@@ -454,23 +451,23 @@ def orient_triangles(
 
 
 def orient_across(corners: Index, edges: Edges, two: Index, messages: list[str]) -> Index:
-    """Orient triangles so that neighbours agree, as far as possible.
+    """Orient triangles consistently with their neighbours as far as possible.
 
     Parameters
     ----------
     corners : (m, 3) int array
         Triangles.
     edges : Edges
-        Their edges.
+        Edges of the triangles.
     two : (k,) int array
-        Edges with two sides across which neighbours should agree.
+        Indices of edges with two triangles, across which orientations should agree.
     messages : list of str
-        A message about flipped triangles is appended here.
+        Receives a message about flipped triangles.
 
     Returns
     -------
     (m, 3) int array
-        The oriented triangles.
+        Oriented triangles.
     """
     forward = corners < np.roll(corners, -1, axis=1)
     face_a, face_b = edges.faces[two].T
@@ -505,7 +502,7 @@ def _flips(count: int, face_a: Index, face_b: Index, against: Mask) -> Mask:
             flip[face] = flip[parent] ^ ((parent, face) in crossed)
     is_minority = np.bincount(component, weights=flip) > 0.5 * np.bincount(
         component
-    )  # the minority is wrong
+    )  # the minority is reversed
     turned: Mask = flip ^ is_minority[component]
     return turned
 
@@ -513,7 +510,7 @@ def _flips(count: int, face_a: Index, face_b: Index, against: Mask) -> Mask:
 def split_solids(vertices: Array, corners: Index, messages: list[str]) -> tuple[SolidMesh, ...]:
     """Return the connected components as solids.
 
-    Outer components are turned outside out; cavities belong to the solid around them.
+    Inside-out outer components are reversed. A cavity belongs to the solid around it.
 
     Parameters
     ----------
@@ -522,7 +519,7 @@ def split_solids(vertices: Array, corners: Index, messages: list[str]) -> tuple[
     corners : (m, 3) int array
         Oriented triangles.
     messages : list of str
-        Messages about removed and reversed components are appended here.
+        Receives messages about removed and reversed components.
 
     Returns
     -------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Triangle meshes of walls: level lines of a function of the vertices, chained."""
+"""Triangle meshes of walls, and chained level lines of vertex functions."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ..walls.surface import dot
 
 
 def closest(a: Array, b: Array, c: Array, points: Array) -> tuple[Array, Array]:
-    """Return the distances of points from triangles.
+    """Return the distances between points and triangles.
 
     Parameters
     ----------
@@ -32,17 +32,17 @@ def closest(a: Array, b: Array, c: Array, points: Array) -> tuple[Array, Array]:
     distance : (...) array
         Distances, mm.
     share : (..., 3) array
-        Shares of the corners in the nearest point.
+        Barycentric coordinates of the nearest point.
     """
     ab, ac, ap = b - a, c - a, points - a
     d00, d01, d11 = dot(ab, ab), dot(ab, ac), dot(ac, ac)
     d20, d21 = dot(ap, ab), dot(ap, ac)
     area = d00 * d11 - d01 * d01
-    flat = area <= 1e-14 * d00 * d11  # corners in a line have no inside
+    flat = area <= 1e-14 * d00 * d11  # collinear corners have no inside
     safe = np.where(flat, 1.0, area)
     v, w = (d11 * d20 - d01 * d21) / safe, (d00 * d21 - d01 * d20) / safe
     inside = (v >= 0.0) & (w >= 0.0) & (v + w <= 1.0) & ~flat
-    # the nearest of the three sides, as (v, w)
+    # nearest points on the three sides, as (v, w)
     on_ab = np.clip(d20 / np.maximum(d00, 1e-300), 0.0, 1.0)
     on_ac = np.clip(d21 / np.maximum(d11, 1e-300), 0.0, 1.0)
     on_bc = np.clip((d21 - d20 + d00 - d01) / np.maximum(d00 - 2.0 * d01 + d11, 1e-300), 0.0, 1.0)
@@ -64,21 +64,21 @@ def closest(a: Array, b: Array, c: Array, points: Array) -> tuple[Array, Array]:
 
 
 def cut_evenly(corners: Array, longest: float) -> tuple[Array, Index]:
-    """Cut triangles evenly so that no edge is longer than a limit.
+    """Divide triangles evenly so that all edges are within a limit.
 
     Parameters
     ----------
     corners : (m, 3, 3) array
         Triangles, mm.
     longest : float
-        Longest edge, mm.
+        Maximum edge, mm.
 
     Returns
     -------
     points : (m, k, 3) array
         Points in each triangle, mm.
     parts : (l, 3) int array
-        Corner numbers of the parts, the same for all triangles.
+        Point indices of the parts, the same for all triangles.
     """
     edge = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max()
     n = step_count(edge, longest)
@@ -106,13 +106,14 @@ def cut_evenly(corners: Array, longest: float) -> tuple[Array, Index]:
     return np.einsum("sk,mkc->msc", share, corners), sub_triangles.astype(np.intp)
 
 
-DECIMALS = 6  # decimals of mm that distinguish vertices of a finer mesh
+DECIMALS = 6  # decimals of mm to which vertices of a finer mesh are merged
 
 
 class LevelLine(NamedTuple):
-    """A chain of points (n, 3), the lower side on its left. A closed one does not repeat its first point.
+    """A chain of points (n, 3) with the lower side on its left.
 
-    rims: unit vectors (2, 3) along the mesh's edges on which an open one begins and ends.
+    A closed line does not repeat its first point. rims: (2, 3) unit vectors along the mesh edges on
+    which an open line starts and ends.
     """
 
     points: Array
@@ -122,34 +123,33 @@ class LevelLine(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Mesh:
-    """vertices (n, 3) mm, faces (m, 3) with one sense of rotation all over the wall."""
+    """A triangle mesh: vertices (n, 3) mm, faces (m, 3) with consistent orientation."""
 
     vertices: Array
     faces: Index
 
     @cached_property
     def edges(self) -> Index:
-        """All edges (k, 2), each once, the lower vertex first."""
+        """All edges (k, 2), each once, lower vertex index first."""
         return np.column_stack(np.divmod(np.unique(self._sides), len(self.vertices)))
 
     @cached_property
     def border_edges(self) -> Index:
-        """The edges (k, 2) with one face only, which is on their left."""
+        """Border edges (k, 2): they have a single face, on their left."""
         _, edge_number, count = np.unique(self._sides, return_inverse=True, return_counts=True)
         edges: Index = self._half_edges[count[edge_number] == 1]
         return edges
 
     @property
     def _half_edges(self) -> Index:
-        """The sides (3 m, 2) of all faces, each face on the left of its side."""
+        """Sides (3 m, 2) of all faces, with the face on the left."""
         return self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
 
     @property
     def _sides(self) -> Index:
-        """The sides (3 m,) as numbers, equal for both faces at an edge and in the order of its
-        vertices.
+        """Sides (3 m,) as integers, equal for both faces at an edge and sorted by its vertices.
 
-        Numbers sort faster than rows of two, and without blocking other threads.
+        Integers sort faster than rows of two, and without blocking other threads.
         """
         low, high = np.sort(self._half_edges, axis=1).astype(np.int64).T
         sides: Index = low * len(self.vertices) + high
@@ -157,7 +157,7 @@ class Mesh:
 
     @cached_property
     def area_vectors(self) -> Array:
-        """Return the normals of the faces, each as long as the area of its face.
+        """Return the normals of the faces, with the area as length.
 
         Returns
         -------
@@ -182,18 +182,18 @@ class Mesh:
 
     @cached_property
     def longest_edge(self) -> float:
-        """Length of the longest edge, mm."""
+        """Maximum edge length, mm."""
         a, b = self.vertices[self.edges].transpose(1, 0, 2)
         return float(np.linalg.norm(a - b, axis=1).max())
 
     @cached_property
     def typical_edge(self) -> float:
-        """Median length of the edges, mm."""
+        """Median edge length, mm."""
         a, b = self.vertices[self.edges].transpose(1, 0, 2)
         return float(np.median(np.linalg.norm(a - b, axis=1)))
 
     def folded(self, angle: float) -> float:
-        """Return the length of the edges, mm, at which two faces meet at more than `angle` rad."""
+        """Return the total length, mm, of edges whose faces meet at more than `angle` rad."""
         order = np.argsort(self._sides, kind="stable")
         sides, face = self._sides[order], order // 3
         paired = np.flatnonzero(sides[1:] == sides[:-1])
@@ -212,7 +212,7 @@ class Mesh:
 
     @cached_property
     def _faces_of(self) -> tuple[Index, Index]:
-        """The faces sorted by vertex, and where the faces of each vertex begin."""
+        """Faces sorted by vertex, and the start of each vertex's faces."""
         order = np.argsort(self.faces.ravel(), kind="stable")
         counts = np.bincount(self.faces.ravel(), minlength=len(self.vertices))
         return (order // 3).astype(np.intp), np.r_[0, np.cumsum(counts)].astype(np.intp)
@@ -223,12 +223,12 @@ class Mesh:
         Parameters
         ----------
         vertices : (v,) array of int
-            Numbers of the vertices.
+            Vertex indices.
 
         Returns
         -------
         (k,) array of int
-            Numbers of the faces, rising.
+            Face indices, rising.
         """
         faces, begin = self._faces_of
         count = begin[vertices + 1] - begin[vertices]
@@ -239,19 +239,19 @@ class Mesh:
         return touched
 
     def connected_members(self, members: Mask, seeds: Mask) -> Mask:
-        """Return the vertices that edges link to a seed through members only.
+        """Return the vertices connected to a seed by edges between members.
 
         Parameters
         ----------
         members : (n,) array of bool
             Vertices to pass through.
         seeds : (n,) array of bool
-            Vertices to begin at; they count as members.
+            Start vertices; they count as members.
 
         Returns
         -------
         (n,) array of bool
-            The linked ones, seeds included.
+            Connected vertices, including the seeds.
         """
         inside = members | seeds
         pairs = self.faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
@@ -264,19 +264,19 @@ class Mesh:
         return reached
 
     def part(self, faces: Index) -> tuple[Mesh, Index]:
-        """Return the mesh of some faces.
+        """Return the mesh of selected faces.
 
         Parameters
         ----------
         faces : (k,) int array
-            Numbers of the faces.
+            Face indices.
 
         Returns
         -------
         mesh : Mesh
-            Their mesh.
+            Mesh of the faces.
         vertices : (m,) int array
-            Numbers of its vertices in this mesh.
+            Indices in this mesh of the new mesh's vertices.
         """
         vertices, corners = np.unique(self.faces[faces], return_inverse=True)
         return Mesh(
@@ -284,7 +284,7 @@ class Mesh:
         ), vertices
 
     def finer(self, longest: float) -> Mesh:
-        """Return the mesh cut evenly so that no edge is longer than `longest` mm."""
+        """Return the mesh divided evenly so that all edges are within `longest` mm."""
         points, sub_triangles = cut_evenly(self.vertices[self.faces], longest)
         corners = (
             np.arange(len(self.faces))[:, None, None] * points.shape[1] + sub_triangles[None]
@@ -296,24 +296,24 @@ class Mesh:
         return Mesh(points[representative], np.ravel(same)[corners].astype(np.intp))
 
     def level_lines(self, values: Array, faces: Index) -> list[LevelLine]:
-        """Return the lines along which values are zero, interpolated along edges.
+        """Return the lines of zero value, interpolated along edges.
 
         Parameters
         ----------
         values : (n,) array
             Values of the vertices.
         faces : (k,) array of int
-            Numbers of the faces to search.
+            Indices of the faces to search.
 
         Returns
         -------
         list of LevelLine
-            Chains, the lower side on their left, mm.
+            Chains with the lower side on their left, mm.
 
         Raises
         ------
         InputError
-            MESH if neighbouring faces have opposite orientations, so that lines have no sides.
+            MESH if adjacent faces have opposite orientations, so that lines have no sides.
         """
         corners = self.faces[faces]
         low = values[corners] < 0.0
@@ -350,12 +350,12 @@ class Mesh:
 
 
 def chains(following: Index) -> list[tuple[Index, bool]]:
-    """Return the chains of successors, in the order of their lowest members.
+    """Return chains of successors, in the order of their lowest members.
 
     Parameters
     ----------
     following : (n,) int array
-        Successor of each member, -1 for none.
+        Index of the successor of each member, -1 for none.
 
     Returns
     -------
@@ -369,7 +369,7 @@ def chains(following: Index) -> list[tuple[Index, bool]]:
     ordered: list[tuple[int, list[int], bool]] = []
     unseen = bytearray(b"\x01") * len(ahead)
     starts = np.flatnonzero(~arrives).tolist()[::-1]
-    # walking along lists is faster than pointer doubling with arrays at any length
+    # at any length, iteration over lists is faster than pointer doubling with arrays
     while (start := starts.pop() if starts else unseen.find(1)) >= 0:
         chain, node = [], start
         while node >= 0 and unseen[node]:
@@ -382,21 +382,21 @@ def chains(following: Index) -> list[tuple[Index, bool]]:
 
 
 def thin_points(points: Array, closed: bool, min_step: float) -> Array:
-    """Drop points of a chain that are too near to the one before.
+    """Drop points of a chain that are too close to the previous point.
 
     Parameters
     ----------
     points : (n, 3) array
         The chain, mm.
     closed : bool
-        Whether it is closed; the ends of an open one stay.
+        Whether the chain is closed; the ends of an open chain stay.
     min_step : float
-        Smallest distance, mm.
+        Minimum distance, mm.
 
     Returns
     -------
     (k, 3) array
-        The remaining points.
+        Remaining points.
     """
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     keep = np.r_[True, np.diff(np.floor(length / min_step)) > 0]

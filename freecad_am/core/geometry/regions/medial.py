@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The middle of thin regions: paths along the medial axis, from the Voronoi diagram of
-points on the border.
+"""Centrelines of thin regions: paths on the medial axis, from a Voronoi diagram of border points.
 
-A Voronoi vertex is equally far from three border points, so the vertices inside follow
-the medial axis. An edge between two of them belongs to two border points. Their distance,
-relative to the circle that touches both, is 1 where the edge runs between two walls and
-small where it runs into a corner.
+A Voronoi vertex is equidistant from three border points, so the vertices inside follow the medial
+axis. A Voronoi edge belongs to two border points. The spread of an edge is the distance between
+these points relative to the diameter of the circle through both: 1 for an edge between two walls,
+and small for an edge into a corner.
 """
 
 from __future__ import annotations
@@ -25,17 +24,17 @@ from ..curves.plane_curve import winding
 from .region import Region, simplified
 from .strip import Strip
 
-MIN_WALL_SPREAD, MIN_SPREAD = 0.75, 0.3  # least spread of an edge of the axis
-# of the region's size, by which points are moved: the diagram of points exactly on parallel lines or a circle takes a time that
-# grows with the square of their number, and Qhull may fail at it
+MIN_WALL_SPREAD, MIN_SPREAD = 0.75, 0.3  # minimum spread of an edge of the axis
+# of the region's size; random displacement of points. For points exactly on parallel lines or on a
+# circle, the time grows with the square of their number, and Qhull may fail
 MOVE_SHARE, LARGER_MOVE_SHARE = 1e-11, 1e-9
-PLACES = 9  # of coordinates in mm; gaps whose corners differ by less have one spine
-SHAPES = 512  # spines kept
-JOIN_SHARE = 1e-8  # of the region's size; vertices this close are one without the move
+PLACES = 9  # decimals of mm; gaps with equal rounded corners share a cached spine
+SHAPES = 512  # number of cached spines
+JOIN_SHARE = 1e-8  # of the region's size; closer vertices differ only by the displacement
 
 
 class _Axis(NamedTuple):
-    """points (n, 2), clearance (n,) mm from the border, links (m, 2) between points and their spread (m,)."""
+    """Medial axis: points (n, 2), clearance (n,) from the border, mm, links (m, 2), spread (m,)."""
 
     points: Array
     clearance: Array
@@ -44,14 +43,14 @@ class _Axis(NamedTuple):
 
 
 def spine(region: Region, min_clearance: float, step: float) -> tuple[Array, bool]:
-    """Return the longest path in the middle of a region where it is wide enough.
+    """Return the longest centreline path of a region where the region is wide enough.
 
     Parameters
     ----------
     region : Region
         The region, mm.
     min_clearance : float
-        Least distance of the path from the border, mm.
+        Minimum distance of the path from the border, mm.
     step : float
         Distance between samples of the border, mm.
 
@@ -60,7 +59,7 @@ def spine(region: Region, min_clearance: float, step: float) -> tuple[Array, boo
     path : (n, 2) array
         Points, mm; (0, 2) if the region is nowhere wide enough.
     closed : bool
-        True in a region with one hole that the path surrounds.
+        True if the path surrounds the only hole of a region.
     """
     borders = region.borders()
     origin = borders[0][0]
@@ -71,7 +70,7 @@ def spine(region: Region, min_clearance: float, step: float) -> tuple[Array, boo
 
 @lru_cache(maxsize=SHAPES)
 def _spine(shape: tuple[bytes, ...], min_clearance: float, step: float) -> tuple[Array, bool]:
-    """`spine` of a region with these borders, (n, 2) mm each: layers and islands have many equal gaps."""
+    """Return `spine` of borders given as bytes, cached: layers and islands have equal gaps."""
     borders = tuple(np.frombuffer(border).reshape(-1, 2) for border in shape)
     axis = _axis(borders, min_clearance, step)
     for spread in (MIN_WALL_SPREAD, MIN_SPREAD):
@@ -93,25 +92,25 @@ def _spine(shape: tuple[bytes, ...], min_clearance: float, step: float) -> tuple
 def spine_round(
     strip: Strip, min_clearance: float, step: float, chord_error: float, aside: float
 ) -> Array | None:
-    """Return the path once around in the middle of an unrolled strip, from half a turn before 0 on.
+    """Return the centreline path once around an unrolled strip, from half a turn before 0 on.
 
     Parameters
     ----------
     strip : Strip
         The strip.
     min_clearance : float
-        Least distance of the path from the borders, mm.
+        Minimum distance of the path from the borders, mm.
     step : float
         Distance between samples of the border, mm.
     chord_error : float
         Chord error, mm, for lines straight in (u, v) that become arcs when unrolled.
     aside : float
-        Length considered beyond a turn, mm, in addition to the width of the strip.
+        Length beyond a turn to consider, mm, in addition to the width of the strip.
 
     Returns
     -------
     (n, 2) array or None
-        Points on the unrolled plane, mm; None if the strip is too thin anywhere.
+        Points on the unrolled plane, mm; None if the strip is too thin somewhere.
     """
     half = 0.5 * strip.period.u_period
     end = half + min(2.0 * (strip.levels[1] - strip.levels[0]) + aside, half)
@@ -132,9 +131,7 @@ def spine_round(
 
 
 def _axis(borders: tuple[Array, ...], min_clearance: float, step: float) -> _Axis:
-    """Return the axis inside borders where it is wider than 2 `min_clearance` mm, without
-    branches into corners.
-    """
+    """Return the medial axis with at least `min_clearance` mm, without branches into corners."""
     border_points, follows = _sample_border(borders, step)
     middle = border_points.mean(axis=0)
     size = max(float(np.hypot(*np.ptp(borders[0], axis=0))), 1e-300)
@@ -160,7 +157,7 @@ def _axis(borders: tuple[Array, ...], min_clearance: float, step: float) -> _Axi
     spread = pair_distance / np.maximum(2.0 * radius.mean(axis=1), 1e-300)
     use = (spread >= MIN_SPREAD) & (radius >= min_clearance).all(
         axis=1
-    )  # before the test for inside points, which takes longest
+    )  # before the test for inside points, which takes the most time
     ends, radius, spread = ends[use], radius[use], spread[use]
     members = np.unique(ends)
     inside = np.zeros(len(corners), dtype=bool)
@@ -173,8 +170,9 @@ def _axis(borders: tuple[Array, ...], min_clearance: float, step: float) -> _Axi
 
 
 def _join_vertices(vertices: Array, ends: Index) -> tuple[Index, Mask]:
-    """Ends (m, 2) of edges by number of vertices (n, 2), with vertices joined that are JOIN_SHARE apart or less; and the mask of
-    the edges that are longer.
+    """Join vertices (n, 2) up to JOIN_SHARE apart; return the new edge ends (m, 2).
+
+    Also return the mask of the longer edges.
     """
     is_long = np.hypot(*(vertices[ends[:, 0]] - vertices[ends[:, 1]]).T) > JOIN_SHARE
     joints = ends[~is_long]
@@ -185,9 +183,7 @@ def _join_vertices(vertices: Array, ends: Index) -> tuple[Index, Mask]:
 
 
 def _sample_border(rings: tuple[Array, ...], step: float) -> tuple[Array, Index]:
-    """Return points on the rings at most `step` mm apart, including corners, and the number of
-    each successor.
-    """
+    """Return ring points at most `step` mm apart, with corners, and the index of each successor."""
     points, follows, start = [], [], 0
     for ring in rings:
         chord = np.roll(ring, -1, axis=0) - ring
@@ -201,9 +197,7 @@ def _sample_border(rings: tuple[Array, ...], step: float) -> tuple[Array, Index]
 
 
 def _find_cycle(points: Array, links: Index) -> Index | None:
-    """Return the ordered members of the only closed path in the graph; None if it has none or
-    several.
-    """
+    """Return the ordered members of the only cycle in the graph; None without a unique cycle."""
     for _ in range(len(links)):
         degree = np.bincount(links.ravel(), minlength=len(points))
         keep = (degree[links] > 1).all(axis=1)
@@ -228,7 +222,7 @@ def _find_cycle(points: Array, links: Index) -> Index | None:
 
 
 def _find_longest_path(points: Array, links: Index) -> Index:
-    """Return the members of the longest of the shortest paths, by two sweeps."""
+    """Return the members of the longest shortest path in the graph, by two sweeps."""
     members, number = np.unique(links, return_inverse=True)
     number = number.reshape(-1, 2)
     size = np.hypot(*(points[links[:, 0]] - points[links[:, 1]]).T)

@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Strokes of deposit and a section on a raster: where deposit is missing, and where it is twice.
+"""Strokes of deposit and a section on a raster: missing deposit and double deposit.
 
-A stroke is drawn with its effective width, volume / length / layer height, so that its area times the layer height is the
-deposited volume:
+A stroke is drawn with its effective width, volume / length / layer height, so that its area times
+the layer height is the deposited volume:
 
-- A segment is a rectangle as wide as the stroke there.
-- An outer corner is mitred up to a turn of MITRED_TURN_RAD. The wedge outside has the area of the overlap inside, so that
-  consecutive segments neither lack nor double material. A sharper corner is round outside, and its overlap counts.
-- The ends of an open stroke are round. Each end moves back first, at a constant width by pi / 8 of it, so that the round end
-  adds no volume.
-  A stroke shorter than both ends together is a disc.
+- A segment is a rectangle of the local stroke width.
+- An outer corner is mitred up to a turn angle of MITRED_TURN_RAD. The wedge outside has the area of
+  the overlap inside, so that consecutive segments neither lack nor double material. A sharper
+  corner is round outside, and its overlap counts.
+- The ends of an open stroke are round. Each end is first shortened, at constant width by pi / 8 of
+  the width, so that the round end adds no volume. A stroke shorter than both ends is a disc.
 
-The raster is turned against the coordinates: no edge of a part or stroke runs along its rows, and errors of pixels average out.
+The raster is rotated against the coordinates, so that no edge of a part or stroke is parallel to
+its rows. Pixel errors then average out.
 """
 
 from __future__ import annotations
@@ -26,32 +27,35 @@ from ...types import Array, Index, Integers, Mask
 
 TURN_RAD = math.atan(
     0.5 * (math.sqrt(5.0) - 1.0)
-)  # of the raster; far from every ratio of small numbers
+)  # raster angle; its tangent is far from all ratios of small integers
 _TURN = np.array(
     [[math.cos(TURN_RAD), math.sin(TURN_RAD)], [-math.sin(TURN_RAD), math.cos(TURN_RAD)]]
 )
-MITRED_TURN_RAD = math.radians(95.0)  # right angles with the rounding of a G-code file included
-STRAIGHT_RAD = 1e-9  # a smaller turn leaves no wedge
+MITRED_TURN_RAD = math.radians(95.0)  # includes right angles with the rounding of a G-code file
+STRAIGHT_RAD = 1e-9  # a smaller turn angle leaves no wedge
 ROUND_END = math.pi / 8.0  # of the width: a rectangle of that length has the area of a round end
-ARC_SEGMENTS = 16  # of a round end
-# a stroke is a loop if its ends are nearer than a share of its width and of its length; slicers leave gaps at seams
+ARC_SEGMENTS = 16  # segments of a round end
+# maximum end gap of a loop, as fractions of stroke width and length; slicers leave gaps at seams
 CLOSING, CLOSING_OF_LENGTH = 0.25, 0.08
 
 
 class Stroke(NamedTuple):
-    """An uninterrupted deposit: points (n, 2) mm, widths (n - 1,) mm of its segments. A loop repeats its first point."""
+    """Uninterrupted deposit: points (n, 2) and segment widths (n - 1,), mm.
+
+    A loop repeats its first point.
+    """
 
     points: Array
     widths: Array
 
     @property
     def area(self) -> float:
-        """Length times width, mm^2."""
+        """Sum of segment length times width, mm^2."""
         return float(lengths(self.points) @ self.widths)
 
     @property
     def closes(self) -> bool:
-        """Whether it comes back to its start, up to the gap of a seam."""
+        """Whether the stroke is a loop, with at most the gap of a seam."""
         width = min(self.widths[0], self.widths[-1])
         gap = np.hypot(*(self.points[-1] - self.points[0]))
         longest_gap = min(CLOSING * width, CLOSING_OF_LENGTH * lengths(self.points).sum())
@@ -59,19 +63,21 @@ class Stroke(NamedTuple):
 
     @property
     def is_dot(self) -> bool:
-        """Whether it is shorter than its round ends together."""
+        """Whether the stroke is shorter than both round ends together."""
         ends = ROUND_END * (self.widths[0] ** 2 + self.widths[-1] ** 2)
         return not self.closes and bool(self.area <= ends)
 
     def drop_repeats(self) -> Stroke:
-        """The stroke without segments of no length."""
+        """Return the stroke without zero-length segments."""
         long = lengths(self.points) > 0.0
         return Stroke(self.points[np.concatenate([[True], long])], self.widths[long])
 
 
 class Outline(NamedTuple):
-    """What strokes cover: convex quadrangles (k, 4, 2) and fans (m, ARC_SEGMENTS + 2, 2), mm, and discs (d, 3), middle and
-    radius in mm. kites: (j, 4, 2) mm, where two consecutive quadrangles overlap inside of a mitred corner.
+    """Area that strokes cover, mm.
+
+    quadrangles: (k, 4, 2) convex. fans: (m, ARC_SEGMENTS + 2, 2). discs: (d, 3) centre and radius.
+    kites: (j, 4, 2) overlaps of consecutive quadrangles inside mitred corners.
     """
 
     quadrangles: Array
@@ -81,7 +87,10 @@ class Outline(NamedTuple):
 
 
 class Raster(NamedTuple):
-    """Rows of square pixels on coordinates turned by TURN_RAD; `low` (2,) mm is the centre of the first pixel."""
+    """Square pixels on coordinates rotated by TURN_RAD.
+
+    low: (2,) centre of the first pixel, mm.
+    """
 
     low: Array
     pixel: float
@@ -90,21 +99,21 @@ class Raster(NamedTuple):
 
     @classmethod
     def around(cls, points: Array, reach: float, pixel: float) -> Raster:
-        """Return a raster that holds the surroundings of points, with an empty pixel around.
+        """Return a raster over the surroundings of points, with an empty pixel at each edge.
 
         Parameters
         ----------
         points : (n, 2) array
             Points of the plane, mm.
         reach : float
-            Distance to hold around them, mm.
+            Distance to include around the points, mm.
         pixel : float
             Size of a pixel, mm.
 
         Returns
         -------
         Raster
-            The raster, turned by TURN_RAD.
+            The raster, rotated by TURN_RAD.
         """
         points, reach = turn_points(points), reach + pixel
         low, high = points.min(axis=0) - reach, points.max(axis=0) + reach
@@ -112,7 +121,7 @@ class Raster(NamedTuple):
         return cls(low, pixel, int(rows), int(columns))
 
     def inside(self, edges: Array) -> Mask:
-        """(rows, columns) mask of the pixels that edges (k, 2, 2), from start to end, wind around."""
+        """Return the mask (rows, columns) of pixels inside closed loops of edges (k, 2, 2)."""
         edges = (turn_points(edges) - self.low) / self.pixel
         start, end = edges[:, 0], edges[:, 1]
         first = np.ceil(np.minimum(start[:, 1], end[:, 1])).astype(int)
@@ -137,7 +146,7 @@ class Raster(NamedTuple):
         Returns
         -------
         shapes, deposits : (rows, columns) array
-            How many shapes of strokes cover each pixel, and how many times deposit is there.
+            Number of stroke shapes and number of deposits over each pixel.
         """
         quadrangles, fans, discs, kites = outline(strokes)
         covering = np.hstack(
@@ -156,7 +165,7 @@ class Raster(NamedTuple):
         Parameters
         ----------
         rows, columns : (n,) array
-            Numbers of the pixels, fractions allowed.
+            Pixel indices, which may be fractional.
 
         Returns
         -------
@@ -172,22 +181,25 @@ class Raster(NamedTuple):
         Returns
         -------
         (4, 2) array
-            mm: at the first pixel, the end of its row, the last pixel and the start of the last
-            row.
+            Corners, mm: at the first pixel, the end of its row, the last pixel and the start of
+            the last row.
         """
         columns = np.array([-0.5, self.columns - 0.5, self.columns - 0.5, -0.5])
         rows = np.array([-0.5, -0.5, self.rows - 0.5, self.rows - 0.5])
         return self.to_plane(rows, columns)
 
     def _covered(self, spans: Array) -> Integers:
-        """(rows, columns) number of spans (3, n), rows, left and right ends, over each pixel."""
+        """Count the spans (3, n), given by row, left and right end, over each pixel."""
         row, left, right = spans
         first, past = np.ceil(left), np.floor(right) + 1.0
         used = past > first
         return self._sums(row[used], first[used], row[used], past[used])
 
     def _sums(self, row: Array, column: Array, less_row: Array, less_column: Array) -> Integers:
-        """(rows, columns) numbers of places (n,) at or left of each pixel, within its row, less those of other places (m,)."""
+        """Count positions (n,) at or left of each pixel in its row, minus those of `less` (m,).
+
+        Returns (rows, columns).
+        """
         more, less = (
             np.bincount(
                 rows.astype(int) * (self.columns + 1) + columns.astype(int),
@@ -199,7 +211,7 @@ class Raster(NamedTuple):
         return np.asarray(np.cumsum(change, axis=1)[:, :-1])
 
     def _polygon_spans(self, polygons: Array) -> tuple[Array, Array, Array]:
-        """Rows, and left and right ends there, of convex polygons (k, c, 2) mm of either sense."""
+        """Return rows, left and right ends of spans of convex polygons (k, c, 2), mm."""
         corners = (turn_points(polygons) - self.low) / self.pixel
         heights = corners[:, :, 1]
         polygon, row = _pairs(
@@ -219,7 +231,7 @@ class Raster(NamedTuple):
         )
 
     def _disc_spans(self, discs: Array) -> tuple[Array, Array, Array]:
-        """Rows, and left and right ends there, of discs (k, 3): middle and radius, mm."""
+        """Return rows, left and right ends of spans of discs (k, 3): centre and radius, mm."""
         middle = (turn_points(discs[:, :2]) - self.low) / self.pixel
         radius = discs[:, 2] / self.pixel
         disc, row = _pairs(
@@ -235,7 +247,7 @@ _EMPTY = Outline(_NO_QUADRANGLES, _NO_FANS, np.zeros((0, 3)), _NO_QUADRANGLES)
 
 
 def outline(strokes: Sequence[Stroke]) -> Outline:
-    """Return shapes whose union is the area that strokes cover, of each stroke without the inside of its mitred corners."""
+    """Return the shapes that strokes cover, and the overlaps inside their mitred corners."""
     discs = [_disc_of(stroke) for stroke in strokes if stroke.is_dot]
     lines = [
         stroke if stroke.closes else _shortened(stroke) for stroke in strokes if not stroke.is_dot
@@ -277,8 +289,10 @@ def outline(strokes: Sequence[Stroke]) -> Outline:
 def _corners(
     joint: Array, along: Array, widths: Array, before: Index, after: Index
 ) -> tuple[Mask, Array, Array]:
-    """Which joints (n, 2) between the segments `before` and `after` (n,) are mitred, the mitres (k, 4, 2) outside of them, and
-    fans (m, ARC_SEGMENTS + 2, 2) outside of sharper corners."""
+    """Return which joints (n, 2) of segments `before` and `after` (n,) are mitred.
+
+    Also return the mitres (k, 4, 2), and the fans (m, ARC_SEGMENTS + 2, 2) of sharper corners.
+    """
     u, v = along[before], along[after]
     turn = np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], np.sum(u * v, axis=1))
     bent = np.abs(turn) > STRAIGHT_RAD
@@ -305,7 +319,10 @@ def _corners(
 
 
 def _fans(middle: Array, radius: Array, first: Array, sweep: Array) -> Array:
-    """Sectors (n, ARC_SEGMENTS + 2, 2) about middles (n, 2) that begin in unit directions (n, 2) and turn by (n,) rad."""
+    """Return sectors (n, ARC_SEGMENTS + 2, 2) about centres (n, 2).
+
+    first: (n, 2) unit start directions. sweep: (n,) angles, rad.
+    """
     start = np.arctan2(first[:, 1], first[:, 0])
     angle = start[:, None] + sweep[:, None] * np.linspace(0.0, 1.0, ARC_SEGMENTS + 1)
     arc = middle[:, None] + radius[:, None, None] * np.stack([np.cos(angle), np.sin(angle)], axis=2)
@@ -313,20 +330,20 @@ def _fans(middle: Array, radius: Array, first: Array, sweep: Array) -> Array:
 
 
 def _disc_of(stroke: Stroke) -> Array:
-    """The disc (1, 3) with the middle and the volume of a short stroke."""
+    """Return the disc (1, 3) with the centroid and the area of a short stroke."""
     long, area = lengths(stroke.points), stroke.area
     middle = (long * stroke.widths) @ (0.5 * (stroke.points[1:] + stroke.points[:-1])) / area
     return np.array([[*middle, math.sqrt(area / math.pi)]])
 
 
 def _shortened(stroke: Stroke) -> Stroke:
-    """The stroke without the lengths of its round ends, each of which has the area of what it replaces."""
+    """Return the stroke shortened by its round ends, each with the area that it replaces."""
     points, widths = stroke
     for _ in range(2):
         long = lengths(points)
-        area = np.cumsum(long * widths) - long * widths  # before each segment
+        area = np.cumsum(long * widths) - long * widths  # area before each segment
         replaced = np.clip((ROUND_END * widths**2 - area) / (long * widths), 0.0, None)
-        # a segment that goes up to rounding goes as a whole: it would be left without a direction
+        # drop a segment that is removed up to rounding, or its direction is undefined
         segment = int(np.argmax(np.r_[replaced[:-1] < 1.0 - 1e-9, True]))
         share = min(float(replaced[segment]), 1.0 - 1e-9)
         start = points[segment] + share * (points[segment + 1] - points[segment])
@@ -336,7 +353,7 @@ def _shortened(stroke: Stroke) -> Stroke:
 
 
 def _pairs(first: Index, past: Index) -> tuple[Index, Index]:
-    """Numbers of shapes and of the rows from `first` (k,) to before `past` (k,), a pair for each."""
+    """Return pairs of shape and row index, for rows from `first` (k,) to before `past` (k,)."""
     count = np.maximum(past - first, 0)
     shape = np.repeat(np.arange(len(count)), count)
     return shape, np.arange(len(shape)) - np.repeat(np.cumsum(count) - count - first, count)
@@ -359,7 +376,7 @@ def lengths(points: Array) -> Array:
 
 
 def turn_points(points: Array) -> Array:
-    """Turn points into the coordinates of the raster.
+    """Rotate points into raster coordinates.
 
     Parameters
     ----------
@@ -369,6 +386,6 @@ def turn_points(points: Array) -> Array:
     Returns
     -------
     (..., 2) array
-        Along the columns and rows of the raster, mm.
+        Coordinates along the columns and rows of the raster, mm.
     """
     return np.asarray(points @ _TURN)

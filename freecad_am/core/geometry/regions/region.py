@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plane regions with holes: read from loops, mended where those cross, grown and shrunk by parallel curves.
+"""Plane regions with holes: built from loops, repaired at crossings, offset by parallel curves.
 
-The only file that knows shapely (decision 0010), in its versions 1.8 and 2 alike. The library is imported when first needed;
-what goes in and comes out are arrays.
+This is the only file that uses shapely (decision 0010), versions 1.8 and 2. The library is imported
+on first use. Inputs and outputs are arrays.
 """
 
 from __future__ import annotations
@@ -20,39 +20,39 @@ from ...types import Array, Index, Mask
 from ..curves.plane_curve import doubled_area, nearest_on_rings, running_sums, winding
 from ..step_count import turn_segments
 
-MERGED = 1e-12  # of the extent; closer points count as one
-# of the extent; a border this straight is a line, and a thinner region is empty
+MERGED = 1e-12  # of the extent; closer points are merged
+# of the extent; deviation of a straight border, and minimum width of a region
 STRAIGHTNESS_TOLERANCE = 1e-9
-SLIVER = 1e-12  # of the squared extent; smaller pieces are dropped where no other area is stated
-AT_ONCE, BEND = 200, 1.5  # points of a line, and rad that it turns, grown at once
-_POLYGON, _MULTI_POLYGON = 3, 6  # in the well-known binary form
-# the library's number for corners that stay corners, and up to how many times the distance these may stand out
+SLIVER = 1e-12  # of the squared extent; default minimum area of a piece
+AT_ONCE, BEND = 200, 1.5  # maximum points and total turn (rad) of a line piece to buffer
+_POLYGON, _MULTI_POLYGON = 3, 6  # codes in well-known binary (WKB)
+# shapely join style for mitred corners, and their mitre limit
 _MITRE, SHARPEST = 2, 1000.0
-DIGITS = 9  # of coordinates in mm where points are left out: last bits decide nothing
-LEAST_ARC = 8  # segments of a full turn
-EIGHT = 2.8  # times the squared radius, a hair less than the area of a regular octagon in a circle
-ON_EDGE = 1e-6  # mm; a point closer to the line between its neighbours is on that line
-SAME_TURN = 1e-6  # rad; corners whose turns differ by less turn as much
-ROUND_AREA = 0.02  # moments of area that differ by less, relatively, are the same
+DIGITS = 9  # decimals of mm for simplification, so that last bits have no effect
+LEAST_ARC = 8  # minimum number of segments of a full turn
+EIGHT = 2.8  # of the squared radius; slightly less than the area of an inscribed octagon
+ON_EDGE = 1e-6  # mm; maximum distance of a collinear point from the line of its neighbours
+SAME_TURN = 1e-6  # rad; turn angles that differ by less are equal
+ROUND_AREA = 0.02  # relative; second moments of area that differ by less are equal
 WIDTH = 0.005  # relative tolerance of a region's width
 FINE_SLIT, LONG_SLIT = (
     0.1,
     20.0,
-)  # of a slit's width: chord error of what closes it; how much border it takes away
+)  # of a slit's width: chord error for closing; minimum border length removed
 
 
 class Shapely(NamedTuple):
-    """The functions of the library that are used."""
+    """Modules of shapely, and the name of one argument."""
 
     geometry: Any
     ops: Any
     wkb: Any
-    arcs: str  # name of the argument with the segments of a quarter turn
+    arcs: str  # name of the argument for segments per quarter turn
 
 
 @lru_cache(maxsize=1)
 def shapely() -> Shapely:
-    """The library. Raises InputError MISSING_LIBRARY where it is not installed."""
+    """Import shapely. Raises InputError MISSING_LIBRARY if it is not installed."""
     try:
         import shapely as package
         from shapely import geometry, ops, wkb
@@ -71,10 +71,11 @@ def shapely() -> Shapely:
 
 @dataclass(frozen=True, eq=False)
 class Region:
-    """One connected piece of the plane, with its holes; mm."""
+    """A connected plane region with holes, mm."""
 
-    shape: Any  # a valid shapely Polygon; for this file alone
-    sheet: float = 0.0  # u (`strip.Period`), mm, of its middle, where it goes round more than half a turn of the plane
+    shape: Any  # a valid shapely Polygon; private to this file
+    # mm; u (`strip.Period`) at the centre, for a region over more than half a turn of the plane
+    sheet: float = 0.0
 
     @cached_property
     def _borders(self) -> tuple[Array, ...]:
@@ -83,23 +84,24 @@ class Region:
         return (_ring(outer, 1.0), *sorted(holes, key=lambda ring: (ring[0, 0], ring[0, 1])))
 
     def borders(self) -> tuple[Array, ...]:
-        """Return the borders, the outer one first, then holes in the order of their first points.
+        """Return the borders: the outer border, then the holes in the order of their first points.
 
         Returns
         -------
         tuple of (n, 2) array
-            mm, material to the left; each begins at its leftmost point, not repeated at its end.
+            Points, mm, material to the left. A border begins at its leftmost point, which is
+            not repeated at the end.
         """
         return self._borders
 
     @property
     def area(self) -> float:
-        """mm^2."""
+        """Area, mm^2."""
         return float(self.shape.area)
 
     @cached_property
     def middle(self) -> Array:
-        """Return the centre of its area, which may be in a hole or outside.
+        """Return the centroid, which may be in a hole or outside.
 
         Returns
         -------
@@ -110,12 +112,12 @@ class Region:
         return np.array([point.x, point.y])
 
     def axis(self) -> Array:
-        """Return the direction in which its area extends most.
+        """Return the principal direction of the largest extent.
 
         Returns
         -------
         (2,) array
-            Unit vector; x if it extends equally in all directions, as a circle or a square.
+            Unit vector; x if the extents are equal, as for a circle or a square.
         """
         tensor = np.zeros((2, 2))
         for border in self._borders:
@@ -134,11 +136,11 @@ class Region:
 
     @cached_property
     def extent(self) -> float:
-        """Diagonal of the box about it, mm."""
+        """Diagonal of the bounding box, mm."""
         return float(np.hypot(*np.ptp(self._borders[0], axis=0)))
 
     def contains(self, points: Array) -> Mask:
-        """Return whether points are inside.
+        """Return whether points are inside the region.
 
         Parameters
         ----------
@@ -148,7 +150,7 @@ class Region:
         Returns
         -------
         (...) array of bool
-            Either value on the border.
+            True inside; undefined on the border.
         """
         return np.reshape(
             winding(self._borders, np.reshape(points, (-1, 2))) > 0, np.shape(points)[:-1]
@@ -162,7 +164,7 @@ class Region:
         )
 
     def nearest(self, points: Array) -> tuple[Array, Array]:
-        """Find the places on the border nearest to points.
+        """Find the border points nearest to points.
 
         Parameters
         ----------
@@ -172,15 +174,15 @@ class Region:
         Returns
         -------
         places : (n, 2) array
-            mm.
+            Nearest border points, mm.
         distances : (n,) array
-            mm.
+            Distances, mm.
         """
         return nearest_on_rings(self._borders, self._boxes, points)
 
     @cached_property
     def width(self) -> float:
-        """Diameter of the largest circle inside, mm, at most WIDTH (relative) too small."""
+        """Diameter of the largest inscribed circle, mm; at most WIDTH (relative) too small."""
         low, high = self.area / float(self.shape.length), math.sqrt(self.area / math.pi)
         while high - low > WIDTH * high:
             middle = 0.5 * (low + high)
@@ -191,21 +193,21 @@ class Region:
         return 2.0 * low
 
     def grown(self, distance: float, chord_error: float) -> tuple[Region, ...]:
-        """What lies within `distance` mm of it, with round corners; a negative distance shrinks it.
+        """Offset the border outwards by `distance` mm, with round corners; negative inwards.
 
-        The border is the parallel curve: straight along edges, and arcs within the chord error (mm) on its material's side.
+        Arcs of the parallel curve are polylines within the chord error (mm) on the material side.
         """
         if distance == 0.0:
             return (self,)
         return _parts(self._grown(distance, chord_error), self._sliver, self.sheet)
 
     def has_room(self, width: float, chord_error: float) -> bool:
-        """Whether a circle of a diameter (mm) fits inside: `grown` by minus half of it leaves something."""
+        """Return whether a circle of diameter `width` (mm) fits inside the region."""
         return any(part.area > self._sliver for part in self._grown(-0.5 * width, chord_error))
 
     @property
     def _sliver(self) -> float:
-        """mm^2; smaller pieces are dropped."""
+        """Minimum area of a piece, mm^2."""
         return SLIVER * self.extent**2
 
     def _grown(self, distance: float, chord_error: float) -> list[Any]:
@@ -219,17 +221,17 @@ class Region:
         Parameters
         ----------
         others : sequence of Region
-            What to take away.
+            Regions to subtract.
         wide : float, optional
-            mm; pieces too small for a circle of that diameter, maybe very many, are dropped if
-            `grown` by minus half of it would leave nothing.
+            Diameter, mm; pieces whose area is too small for a circle of this diameter are
+            dropped.
         least_area : float, optional
-            mm^2; smaller pieces are dropped.
+            Minimum area of a piece, mm^2.
 
         Returns
         -------
         tuple of Region
-            What remains, in the order of leftmost points.
+            Remaining regions, in the order of their leftmost points.
         """
         least = max(self._sliver, EIGHT * (0.5 * wide) ** 2, least_area)
         left = _polygons(self.shape.difference(_union(others)))
@@ -239,7 +241,7 @@ class Region:
         return _parts(left, least, self.sheet)
 
     def common(self, others: Sequence[Region], every_point: bool = False) -> tuple[Region, ...]:
-        """What it shares with others. every_point: as `regions`."""
+        """Intersect the region with the union of `others`. every_point: as in `regions`."""
         return _parts(
             _polygons(self.shape.intersection(_union(others))),
             self._sliver,
@@ -252,7 +254,7 @@ class Region:
         Parameters
         ----------
         line : (n, 2) array
-            An open line that does not meet itself, mm.
+            An open line without self-intersections, mm.
 
         Returns
         -------
@@ -277,11 +279,11 @@ class Region:
         return [piece for _, piece in sorted(found, key=lambda item: item[0])]
 
     def distance(self, other: Region) -> float:
-        """Shortest way (mm) to another region, 0 where they touch."""
+        """Return the distance to another region, mm; 0 if they touch."""
         return float(self.shape.distance(other.shape))
 
     def simple(self, tolerance: float) -> Region:
-        """The same with no more points than `tolerance` mm asks for, wherever its rings begin."""
+        """Simplify the region within `tolerance` mm, independently of where its rings begin."""
         geometry = shapely().geometry
         rings = [_at_corner(ring[:-1]) for ring in _closed_rings(self.shape)]
         simple = geometry.Polygon(rings[0], rings[1:]).simplify(tolerance)
@@ -290,12 +292,12 @@ class Region:
             return self
         if all(len(ring) != 4 for ring in found[0].borders()):
             return found[0]
-        # the library keeps four points of a ring at least
+        # shapely keeps at least four points of a ring
         rings = [_drop_fourth(ring, tolerance) for ring in found[0].borders()]
         return Region(geometry.Polygon(rings[0], rings[1:]), self.sheet)
 
     def inside(self) -> Array:
-        """Return a place inside, away from the border.
+        """Return a point inside the region, away from the border.
 
         Returns
         -------
@@ -307,14 +309,14 @@ class Region:
 
 
 class Mended(NamedTuple):
-    """Regions read from loops; area (mm^2) that mending loops gave or took, and that of slivers dropped."""
+    """Regions of loops; area changed by repairs and area of dropped slivers, mm^2."""
 
     regions: tuple[Region, ...]
     changed: float
     dropped: float
 
     def issues(self, layer: int | None = None) -> tuple[Issue, ...]:
-        """Return the notes for the user."""
+        """Return notes about repairs and slivers for the user."""
         found = []
         if self.changed > 0.0:
             text = Text(
@@ -343,14 +345,14 @@ def regions(
     loops : sequence of (n, 2) array
         Closed loops, mm, material to their left.
     least_area : float, optional
-        mm^2; smaller pieces are dropped; by default SLIVER of the squared extent.
+        Minimum area of a piece, mm^2; by default SLIVER of the squared extent.
     every_point : bool, optional
-        Keep points on straight lines, as of lines in (u, v) that bend when unrolled.
+        Keep collinear points, such as points of lines in (u, v) that bend when unrolled.
 
     Returns
     -------
     tuple of Region
-        In the order of their leftmost points.
+        Regions in the order of their leftmost points.
     """
     return mended(loops, least_area, every_point).regions
 
@@ -358,16 +360,16 @@ def regions(
 def mended(
     loops: Sequence[Array], least_area: float | None = None, every_point: bool = False
 ) -> Mended:
-    """Return regions as `regions`; where loops cross, inside is where they wind at least once.
+    """Return regions as `regions`; crossing loops enclose points with a positive winding number.
 
     Parameters
     ----------
     loops : sequence of (n, 2) array
         Closed loops, mm, material to their left.
     least_area : float, optional
-        mm^2; smaller pieces are dropped; by default SLIVER of the squared extent.
+        Minimum area of a piece, mm^2; by default SLIVER of the squared extent.
     every_point : bool, optional
-        Keep points on straight lines.
+        Keep collinear points.
 
     Returns
     -------
@@ -398,14 +400,14 @@ def along(
     curves : sequence of tuple of (n, 2) array and bool
         Points of each of k curves, mm, and whether it is closed.
     half : float or (k,) array
-        The distance, or one for each curve, mm.
+        Distance, common or per curve, mm.
     chord_error : float
-        Chord error of arcs, mm; holes below its square are filled.
+        Chord error of arcs, mm; holes smaller than the squared chord error are filled.
 
     Returns
     -------
     tuple of Region
-        In the order of their leftmost points.
+        Regions in the order of their leftmost points.
     """
     return _parts(_fill_pinholes(_bands(curves, half, chord_error), chord_error**2), 0.0)
 
@@ -417,21 +419,21 @@ def measure_bands(
     chord_error: float,
     pane: Sequence[Region] = (),
 ) -> tuple[float, float]:
-    """Measure what lies within `half` mm of curves, as `along` finds it.
+    """Measure the bands within `half` mm of curves, as `along` returns them.
 
     Parameters
     ----------
     regions : sequence of Region
-        Regions that the curves run in.
+        Regions that contain the curves.
     curves, half, chord_error
-        As of `along`.
+        As for `along`.
     pane : sequence of Region
-        Where there are any, only the part of the bands in them counts.
+        If not empty, only the bands inside these regions count.
 
     Returns
     -------
     inside, area : float
-        Area of the bands in the regions and their whole area, mm^2.
+        Area of the bands inside the regions, and total area of the bands, mm^2.
     """
     bands = _bands(curves, half, chord_error)
     if pane:
@@ -451,7 +453,10 @@ def _bands(curves: Sequence[tuple[Array, bool]], half: float | Array, chord_erro
 
 @lru_cache(maxsize=4)
 def _bands_of(contents: tuple[bytes, ...], widths: tuple[float, ...], chord_error: float) -> Any:
-    """`_bands` of lines, by what is in them: gaps, cover and closing of one filling ask for the same bands in turn."""
+    """Return `_bands` of lines given as bytes.
+
+    The cache serves gaps, cover and closing of a filling, which request the same bands in turn.
+    """
     lines = [np.frombuffer(content).reshape(-1, 2) for content in contents]
     straight = [number for number, line in enumerate(lines) if len(line) == 2]
     bands = [
@@ -472,10 +477,10 @@ def _bands_of(contents: tuple[bytes, ...], widths: tuple[float, ...], chord_erro
 
 
 def _capsules(edges: Array, radii: Array, segments: int) -> Any:
-    """Return the points within radii (n,) mm of edges (n, 2, 2), as one shape of n polygons that may overlap. segments: of a
-    quarter circle.
+    """Return capsules of radii (n,) mm about edges (n, 2, 2) as one shape of n polygons.
 
-    The library buffers edges one by one, which takes eight times as long; the corners are the same.
+    The polygons may overlap. segments: segments per quarter circle. Shapely buffers edges one by
+    one, which takes eight times as long; the corners are the same.
     """
     start, end = edges[:, 0], edges[:, 1]
     size = np.hypot(*(end - start).T)[:, None]
@@ -489,13 +494,16 @@ def _capsules(edges: Array, radii: Array, segments: int) -> Any:
     ring = np.dtype([("order", "u1"), ("counts", "<u4", 3), ("corners", "<f8", corners.shape[1:])])
     rings = np.zeros(len(edges), dtype=ring)
     rings["order"], rings["corners"] = 1, corners
-    rings["counts"] = _POLYGON, 1, corners.shape[1]  # of one ring
+    rings["counts"] = _POLYGON, 1, corners.shape[1]  # polygons of one ring
     head = np.array([(1, (_MULTI_POLYGON, len(edges)))], dtype=[("order", "u1"), ("is", "<u4", 2)])
     return shapely().wkb.loads(head.tobytes() + rings.tobytes())
 
 
 def _fill_pinholes(shape: Any, area: float) -> list[Any]:
-    """Return the polygons of a shape without the holes below an area (mm^2), thousands of which the chords of arcs leave between bands."""
+    """Return the polygons of a shape without holes below an area (mm^2).
+
+    Chords of arcs leave thousands of such holes between bands.
+    """
     polygons = []
     for polygon in _polygons(shape):
         outer, *holes = _closed_rings(polygon)
@@ -511,15 +519,17 @@ def _union(regions: Sequence[Region]) -> Any:
 
 
 def join(parts: Sequence[Region], width: float) -> tuple[Region, ...]:
-    """Regions of one plane without the slits in and between them that are thinner than `width` mm; the same regions where
-    there are none, or only short ones."""
+    """Close slits thinner than `width` mm in and between regions of a plane.
+
+    Returns the given regions if there are no slits, or only short slits.
+    """
     error = FINE_SLIT * width
     grown = [_buffered(part.shape, 0.5 * width, error) for part in parts]
     shape = shapely().ops.unary_union(grown)
     if len(_polygons(shape)) == len(parts) and not any(
         _has_slit(part.shape, wider, width) for part, wider in zip(parts, grown)
     ):
-        return tuple(parts)  # rounding of the corners of many parts is no slit
+        return tuple(parts)  # rounded corners of many parts are not slits
     shape = _buffered(shape, -0.5 * width, error)
     if sum(part.shape.length for part in parts) - shape.length < LONG_SLIT * width:
         return tuple(parts)
@@ -527,14 +537,19 @@ def join(parts: Sequence[Region], width: float) -> tuple[Region, ...]:
 
 
 def _has_slit(shape: Any, wider: Any, width: float) -> bool:
-    """Whether a polygon has a long slit thinner than `width` mm. wider: the polygon grown by half of that."""
+    """Return whether a polygon has a long slit thinner than `width` mm.
+
+    wider: the polygon grown by half of `width`.
+    """
     closed = _buffered(wider, -0.5 * width, FINE_SLIT * width)
     return bool(shape.length - closed.length >= LONG_SLIT * width)
 
 
 def _bends(line: Array) -> list[Array]:
-    """A line (n, 2) in pieces that do not come beside themselves: where one does, the library may fill what it goes round,
-    or find a shape that crosses itself."""
+    """Split a line (n, 2) into pieces that do not run alongside themselves.
+
+    Otherwise shapely may fill enclosed areas or return a self-intersecting shape.
+    """
     if len(line) < 3:
         return [line]
     way = line[1:] - line[:-1]
@@ -548,21 +563,21 @@ def _bends(line: Array) -> list[Array]:
 
 
 def simplified(points: Array, tolerance: float, closed: bool = False) -> Array:
-    """Return a curve with no more points than a tolerance needs.
+    """Simplify a curve within a tolerance.
 
     Parameters
     ----------
     points : (n, 2) array
         The curve, mm.
     tolerance : float
-        Greatest distance of dropped points from the result, mm.
+        Maximum distance of dropped points from the result, mm.
     closed : bool, optional
         Whether the curve is closed, without its first point repeated.
 
     Returns
     -------
     (m, 2) array
-        Points of the curve: the first, and the last of an open curve, are kept.
+        Remaining points; the first, and the last of an open curve, are kept.
     """
     whole = np.vstack([points, points[:1]]) if closed else points
     found: Array = whole[select_simplified(whole, tolerance)]
@@ -570,19 +585,19 @@ def simplified(points: Array, tolerance: float, closed: bool = False) -> Array:
 
 
 def select_simplified(points: Array, tolerance: float) -> Index:
-    """Select the points that `simplified` keeps of an open curve.
+    """Select the points of an open curve that `simplified` keeps.
 
     Parameters
     ----------
     points : (n, 2) array
         The curve, mm.
     tolerance : float
-        Greatest distance of dropped points from the result, mm.
+        Maximum distance of dropped points from the result, mm.
 
     Returns
     -------
     (m,) array of int
-        Numbers of the points, rising.
+        Indices of the points, rising.
     """
     numbered = np.column_stack([np.round(points, DIGITS), np.arange(len(points))])
     line = shapely().geometry.LineString(numbered).simplify(tolerance, preserve_topology=False)
@@ -598,7 +613,7 @@ def _quarter_segments(distance: float, chord_error: float) -> int:
 
 
 def _distinct(loop: Array) -> Array:
-    """The loop without points that repeat the one before."""
+    """Drop points of a loop that repeat the previous point."""
     if len(loop) == 0:
         return loop
     away = np.abs(loop - np.roll(loop, 1, axis=0)).max(axis=1)
@@ -607,7 +622,7 @@ def _distinct(loop: Array) -> Array:
 
 
 def _nested(loops: list[Array]) -> Any:
-    """The shape of loops that bound regions as they are; None where they do not."""
+    """Build the shape of loops that bound regions without repair; None if they do not."""
     geometry = shapely().geometry
     turned = [doubled_area(loop) for loop in loops]
     outers = [loop for loop, area in zip(loops, turned) if area > 0.0]
@@ -624,7 +639,7 @@ def _nested(loops: list[Array]) -> Any:
 
 
 def _wound(loops: list[Array]) -> tuple[Any, float]:
-    """The shape of what loops go round at least once, and the area (mm^2) that they go round otherwise."""
+    """Return the shape of positive winding numbers, and the area changed, mm^2."""
     library = shapely()
     lines = library.ops.unary_union(
         [library.geometry.LineString(np.vstack([loop, loop[:1]])) for loop in loops]
@@ -641,7 +656,7 @@ def _wound(loops: list[Array]) -> tuple[Any, float]:
 
 
 def _drop_fourth(ring: Array, tolerance: float) -> Array:
-    """A ring (n, 2) of four points without one that is within a tolerance (mm) of the line between its neighbours."""
+    """Drop a collinear point, within a tolerance (mm), from a ring (n, 2) of four points."""
     if len(ring) != 4:
         return ring
     along = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
@@ -652,8 +667,11 @@ def _drop_fourth(ring: Array, tolerance: float) -> Array:
 
 
 def _at_corner(ring: Array) -> Array:
-    """A ring (n, 2) that begins on a straight edge, where a mesh has a point that its section does not need, begun at the
-    corner that turns most instead: simplification keeps the point that a ring begins at. Any other ring as it is."""
+    """Start a ring (n, 2) at its sharpest corner if its first point is collinear.
+
+    Mesh sections may begin at a redundant point on a straight edge, and simplification keeps the
+    first point of a ring.
+    """
     edge = ring[1] - ring[-1]
     gap = ring[0] - ring[-1]
     if abs(edge[0] * gap[1] - edge[1] * gap[0]) > ON_EDGE * max(float(np.hypot(*edge)), 1e-300):
@@ -669,10 +687,10 @@ def _at_corner(ring: Array) -> Array:
 
 
 def _closed_rings(polygon: Any) -> list[Array]:
-    """Return the rings (n, 2) of a polygon, each closed by its first point, the outer one first.
+    """Return the rings (n, 2) of a polygon, outer ring first; each repeats its first point.
 
-    They are read from its well-known binary form: versions below 2 of the library make an object of each ring, which took a
-    third of the time that a solid is filled in.
+    The rings are read from well-known binary (WKB). Shapely below version 2 creates an object per
+    ring, which took a third of the time for filling a solid.
     """
     data = polygon.wkb
     numbers = "<u4" if data[0] == 1 else ">u4"
@@ -701,7 +719,7 @@ def _ring(points: Array, sense: float) -> Array:
 def _parts(
     polygons: Sequence[Any], least_area: float, sheet: float = 0.0, every_point: bool = False
 ) -> tuple[Region, ...]:
-    """The polygons larger than an area (mm^2), in the order of their leftmost points."""
+    """Return polygons larger than an area (mm^2), in the order of their leftmost points."""
     found = [
         Region(part if every_point else _plain(part), sheet)
         for part in polygons
@@ -715,7 +733,7 @@ def _parts(
 
 
 def _cut_hairs(polygons: Sequence[Any], hair: float) -> list[Any]:
-    """Polygons cut where they hang together by no more than a hair (mm), as rounding errors make them."""
+    """Cut polygons at connections up to `hair` mm wide, which come from rounding errors."""
     corners = {"join_style": _MITRE, "mitre_limit": SHARPEST}
     pieces = []
     for polygon in polygons:
@@ -725,8 +743,10 @@ def _cut_hairs(polygons: Sequence[Any], hair: float) -> list[Any]:
 
 
 def _plain(polygon: Any) -> Any:
-    """A polygon without the points and spikes that are there by rounding errors alone. Versions of the library leave others,
-    and what is found in the middle of a region would be different with each."""
+    """Drop points and spikes of a polygon that come from rounding errors.
+
+    They differ between versions of shapely and would change results inside regions.
+    """
     rings = [ring[:-1] for ring in _closed_rings(polygon)]
     tolerance = STRAIGHTNESS_TOLERANCE * _extent(rings[0])
     plain = [_drop_straight(ring, tolerance) for ring in rings]
@@ -739,7 +759,7 @@ def _plain(polygon: Any) -> Any:
 
 
 def _drop_straight(ring: Array, tolerance: float) -> Array:
-    """A ring (n, 2) without points that lie on the straight line between their neighbours, or at the end of a spike."""
+    """Drop collinear points and tips of spikes from a ring (n, 2)."""
     while len(ring) > 2:
         into = ring - np.concatenate([ring[-1:], ring[:-1]])
         out = np.concatenate([into[1:], into[:1]])
@@ -753,7 +773,7 @@ def _drop_straight(ring: Array, tolerance: float) -> Array:
 
 
 def _every_other(marked: Mask) -> Mask:
-    """The first, the third and so on of each run of marks (n,) round a ring: no two that follow each other."""
+    """Keep every other mark of each run of marks (n,) around a ring, beginning with the first."""
     first = int(np.argmin(marked))
     marked = np.roll(marked, -first)
     number = np.arange(len(marked))
@@ -771,25 +791,25 @@ def _polygons(shape: Any) -> list[Any]:
     return [part for item in getattr(shape, "geoms", ()) for part in _polygons(item)]
 
 
-ASPECT = 1e-3  # slope of a curve of values, so that they count and their places do not
+ASPECT = 1e-3  # slope of the curve of values, so that only values affect simplification
 
 
 def select_significant(positions: Array, values: Array, tolerance: float) -> Mask:
-    """Select the values that linear interpolation within a tolerance needs.
+    """Select the values required for linear interpolation within a tolerance.
 
     Parameters
     ----------
     positions : (n,) array
         Positions in ascending order.
     values : (n,) array
-        Values at them.
+        Values at the positions.
     tolerance : float
-        Error of interpolated values, in their unit.
+        Error of interpolated values, in the unit of the values.
 
     Returns
     -------
     (n,) array of bool
-        True for values to keep; the first and the last always are.
+        True for values to keep, including the first and the last.
     """
     positions, values = np.round(positions, DIGITS), np.round(values, DIGITS)
     stretch = float(np.ptp(values)) / (ASPECT * max(float(np.ptp(positions)), 1e-300))

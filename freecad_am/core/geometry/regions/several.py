@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Operations on several regions: grow, subtract, intersect, drop those that are too narrow."""
+"""Operations on several regions: grow, subtract, intersect, select by size."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from ..curves.plane_curve import length
 from .region import Region
 from .strip import Strip, Window
 
-HAIR_SHARE = 0.01  # of the chord error
+HAIR_SHARE = 0.01  # of the chord error; half the width of a neck that comes from rounding
 
 
 @overload
@@ -35,14 +35,14 @@ def grow_regions(
     regions : sequence of Strip or Region
         The regions.
     distance : float
-        mm; negative to shrink.
+        Distance, mm; negative to shrink.
     chord_error : float
         Chord error of arcs, mm.
 
     Returns
     -------
     tuple of Strip or Region
-        The parts of each in turn; parts of neighbours may overlap.
+        Parts of each region in turn; parts of different regions may overlap.
     """
     return tuple(part for region in regions for part in region.grown(distance, chord_error))
 
@@ -57,14 +57,14 @@ def subtract_regions(
     regions : sequence of Region
         The regions.
     subtracted : sequence of Region
-        What to take away; if empty, the regions stay the same.
+        Regions to subtract; if empty, `regions` are returned.
     wide : float, optional
-        mm; pieces too small for a circle of that diameter may be dropped.
+        Diameter, mm; pieces too small for a circle of this diameter may be dropped.
 
     Returns
     -------
     tuple of Region
-        What remains of each in turn.
+        Remaining parts of each region in turn.
     """
     return (
         tuple(result for region in regions for result in region.without(subtracted, wide))
@@ -81,7 +81,7 @@ def intersect_regions(
 
 
 def halves(strip: Strip) -> list[Region]:
-    """Cut a strip in two, half a turn each way from the generatrix about which it is unrolled."""
+    """Cut a strip into two half turns, on both sides of the generatrix where u = 0."""
     half = 0.5 * strip.period.u_period
     return [
         half_region
@@ -91,7 +91,7 @@ def halves(strip: Strip) -> list[Region]:
 
 
 def select_wider(regions: Sequence[Region], width: float, chord_error: float) -> list[Region]:
-    """Return the regions that hold a circle.
+    """Return the regions that can contain a circle.
 
     Parameters
     ----------
@@ -105,7 +105,7 @@ def select_wider(regions: Sequence[Region], width: float, chord_error: float) ->
     Returns
     -------
     list of Region
-        In their order.
+        Selected regions in the given order.
     """
     return [region for region in regions if region.has_room(width, chord_error)]
 
@@ -116,18 +116,18 @@ def select_longer(regions: Sequence[Region], min_length: float) -> tuple[Region,
 
 
 def shrink_region(region: Region, distance: float, chord_error: float) -> tuple[Region, ...]:
-    """Return `region.grown(-distance)` without necks that exist only by rounding.
+    """Return `region.grown(-distance)` without necks that come from rounding errors.
 
-    Where a region is exactly twice `distance` wide, rounding decides whether a neck of no
-    width connects the result, and decides differently once the region is turned. Necks
-    narrower than two HAIR_SHARE of the chord error are removed.
+    Where a region is exactly twice `distance` wide, rounding decides whether a neck of zero width
+    connects the result. The decision may differ for a rotated region. Necks narrower than two
+    HAIR_SHARE of the chord error are removed.
 
     Parameters
     ----------
     region : Region
         The region.
     distance : float
-        mm.
+        Distance, mm.
     chord_error : float
         Chord error of arcs, mm.
 
@@ -144,5 +144,5 @@ def shrink_region(region: Region, distance: float, chord_error: float) -> tuple[
 
 
 def _loops(regions: Sequence[Region]) -> list[int]:
-    """How many borders each of regions has, sorted."""
+    """Return the number of borders of each region, sorted."""
     return sorted(len(region.borders()) for region in regions)

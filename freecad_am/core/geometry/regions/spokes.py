@@ -2,8 +2,8 @@
 """Spokes of a region: straight lines from its border, perpendicular to it, to the medial axis.
 
 The end of a spoke is the centre of the largest circle inside the region that touches the border at
-its foot. In their order along the border, spokes visit every branch of the medial axis once on each
-side, so a function on the axis is a function of the spoke.
+the spoke's foot. In order along the border, spokes visit each branch of the medial axis once on
+each side, so a function on the axis is a function of the spoke.
 
 The circles come from shrinking balls: J. Ma, S. W. Bae, S. Choi, "3D medial axis point
 approximation using nearest neighbors and the normal field", The Visual Computer 28 (2012).
@@ -21,13 +21,13 @@ from scipy.spatial import cKDTree
 from ...types import Array, Index, Mask
 from .region import Region
 
-NEAREST_PIECES = 16  # whose middles are nearest; among them is the nearest piece of the border
-SMOOTH_TURN = 0.3  # rad; a corner that turns less is part of a curve, without an axis of its own
-SAME_START = 1e-6  # of the extent; corners as far from the middle may be the start of a border
-SAME_PLACE = 1e-9  # of the longest edge
+NEAREST_PIECES = 16  # border pieces with the nearest midpoints to search for the nearest piece
+SMOOTH_TURN = 0.3  # rad; a smaller corner is part of a curve, without a branch of the axis
+SAME_START = 1e-6  # of the extent; distances from the centroid that differ by less are equal
+SAME_PLACE = 1e-9  # of the longest edge; closer points coincide
 MAX_SHRINKS = 40
 SHRINK_TOLERANCE = 1e-6  # of the radius
-MAX_HALVINGS = 8  # of an interval between spokes
+MAX_HALVINGS = 8  # maximum bisections of an interval between spokes
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,19 +37,19 @@ class Spokes:
     Parameters
     ----------
     feet : ndarray, shape (n, 2)
-        On the border, mm.
+        Points on the border, mm.
     directions : ndarray, shape (n, 2)
         Unit vectors into the region.
     radii : ndarray, shape (n,)
         Lengths of the spokes, mm; 0 at convex corners.
     following : ndarray, shape (n,)
-        The next spoke along the same border, material to the left.
+        Index of the next spoke along the same border, material to the left.
     positions : ndarray, shape (n,)
-        Of the feet along all borders: the number of the edge and the share of it.
+        Positions of the feet along all borders: edge index plus fraction of the edge.
     opposite : ndarray, shape (n,)
-        Position of the other place that the circle touches; nan where it touches none.
+        Position of the second contact of the circle with the border; nan without a contact.
     touching : ndarray, shape (n, 2)
-        That place, mm.
+        Point of the second contact, mm.
     """
 
     feet: Array
@@ -62,7 +62,7 @@ class Spokes:
 
     @property
     def middles(self) -> Array:
-        """Return the middles of the circles: points of the medial axis.
+        """Return the centres of the circles: points of the medial axis.
 
         Returns
         -------
@@ -73,8 +73,10 @@ class Spokes:
 
 
 class _Border(NamedTuple):
-    """Edges of all borders. starts, chords (n, 2) mm; left (n, 2): unit normals into the region;
-    previous, following (n,): adjacent edges; turns (n,): rad at the start of each.
+    """Edges of all borders.
+
+    starts, chords: (n, 2) mm. left: (n, 2) unit normals into the region. previous, following: (n,)
+    indices of adjacent edges. turns: (n,) turn angle at the start of each edge, rad.
     """
 
     starts: Array
@@ -86,8 +88,10 @@ class _Border(NamedTuple):
 
 
 class _Pieces(NamedTuple):
-    """Short pieces of the border, with a search tree of their middles. edges: (m,); shares: (m, 2),
-    both ends of a piece as shares of its edge."""
+    """Short pieces of the border, with a search tree of their midpoints.
+
+    edges: (m,) edge indices. shares: (m, 2) ends of each piece as fractions of its edge.
+    """
 
     tree: cKDTree
     edges: Index
@@ -95,8 +99,11 @@ class _Pieces(NamedTuple):
 
 
 class _Places(NamedTuple):
-    """Places on the border: edges (n,) and shares (n,) along them. fans (n,): at a reflex corner,
-    the direction between the normals of the previous edge (0) and of its own (1)."""
+    """Positions on the border.
+
+    edges, shares: (n,) edge indices and fractions along the edges. fans: (n,) at a reflex corner,
+    direction between the normals of the previous edge (0) and of the edge itself (1).
+    """
 
     edges: Index
     shares: Array
@@ -114,13 +121,13 @@ def find_spokes(region: Region, step: float, tolerance: float, turn: float, cap:
     region : Region
         Plane region with its holes, mm.
     step : float
-        Greatest distance between feet on an edge, mm.
+        Maximum distance between feet on an edge, mm.
     tolerance : float
-        Error of the radius between spokes, mm, where it is interpolated linearly.
+        Permitted error of linear interpolation of the radius between spokes, mm.
     turn : float
-        Greatest angle between two spokes at a reflex corner, rad.
+        Maximum angle between adjacent spokes at a reflex corner, rad.
     cap : float
-        Greatest length of a spoke, mm; circles larger than that touch the border only once.
+        Maximum length of a spoke, mm; a circle of this radius may touch the border only once.
     """
     border = _border_of(region)
     pieces = _cut_pieces(border, step)
@@ -140,7 +147,7 @@ def find_spokes(region: Region, step: float, tolerance: float, turn: float, cap:
 
 
 def _points_at(border: _Border, positions: Array) -> Array:
-    """Points (n, 2) of the border at positions (n,); nan where the position is nan."""
+    """Return border points (n, 2) at positions (n,); nan where the position is nan."""
     edges = np.minimum(np.nan_to_num(positions).astype(np.intp), len(border.starts) - 1)
     return np.asarray(border.starts[edges] + (positions - edges)[:, None] * border.chords[edges])
 
@@ -166,8 +173,10 @@ def _border_of(region: Region) -> _Border:
 
 
 def _ordered_rings(region: Region) -> list[Array]:
-    """Borders (n, 2), mm, of a region, in an order and with starts that move with it: holes by the distance of their middles
-    from that of the region, each from its corner that is farthest from there and has the longest edge ahead.
+    """Return the borders (n, 2), mm, with an order and starts that rotate with the region.
+
+    Holes are sorted by the distance of their mean points from the region's centroid. A border
+    starts at the corner farthest from the centroid; among several, with the longest next edge.
     """
     middle = region.middle
     rings = []
@@ -192,7 +201,7 @@ def _cut_pieces(border: _Border, step: float) -> _Pieces:
 
 
 def _first_places(border: _Border, step: float, turn: float) -> _Places:
-    """Corners, fans at reflex corners, and places between corners at most `step` mm apart."""
+    """Return corners, fans at reflex corners, and edge positions at most `step` mm apart."""
     number = np.arange(len(border.starts))
     lengths = np.hypot(*border.chords.T)
     counts = np.maximum(np.ceil(lengths / step - 1e-9), 1.0).astype(np.intp)
@@ -219,9 +228,9 @@ def _ordered(places: _Places) -> _Places:
 
 
 def _locate(border: _Border, places: _Places) -> tuple[Array, Array]:
-    """Feet (n, 2) and directions (n, 2) of spokes.
+    """Return the feet (n, 2) and directions (n, 2) of spokes.
 
-    Near a corner of a curve they turn evenly, over half of the shorter edge on either side.
+    Near a corner of a curve, directions rotate evenly over half the shorter edge on either side.
     """
     edges, shares = places.edges, places.shares
     feet = border.starts[edges] + shares[:, None] * border.chords[edges]
@@ -251,7 +260,7 @@ def _rotated(vectors: Array, angles: Array) -> Array:
 
 
 def _measure(border: _Border, pieces: _Pieces, places: _Places, cap: float) -> tuple[Array, Array]:
-    """Radii (n,) mm of the circles, and positions (n,) where they touch the border again."""
+    """Return circle radii (n,), mm, and positions (n,) of the second contacts with the border."""
     feet, directions = _locate(border, places)
     radii = np.full(len(feet), float(cap))
     same_place = SAME_PLACE * float(np.abs(border.chords).max())
@@ -283,8 +292,10 @@ def _measure(border: _Border, pieces: _Pieces, places: _Places, cap: float) -> t
 
 
 def _nearest_border(border: _Border, pieces: _Pieces, points: Array) -> tuple[Array, Array, Index]:
-    """Points (n, k, 2) on the pieces of the border nearest to points (n, 2), with their positions
-    (n, k) and edges (n, k)."""
+    """Return the nearest points (n, k, 2) on the border pieces near points (n, 2).
+
+    Also return their positions (n, k) and edges (n, k).
+    """
     count = min(NEAREST_PIECES, len(pieces.edges))
     _, numbers = pieces.tree.query(points, k=[*range(1, count + 1)])
     edges, limits = pieces.edges[numbers], pieces.shares[numbers]
@@ -336,7 +347,7 @@ def _refine(
 
 
 def _near_summit(border: _Border, places: _Places, radii: Array) -> Mask:
-    """Whether the interval after each spoke ends at a spoke longer than its neighbours."""
+    """Return whether the interval after each spoke has a local radius maximum at either end."""
     following = _following(border, places)
     previous = np.empty_like(following)
     previous[following] = np.arange(len(following))
@@ -345,7 +356,7 @@ def _near_summit(border: _Border, places: _Places, radii: Array) -> Mask:
 
 
 def _following(border: _Border, places: _Places) -> Index:
-    """Number of the next spoke along the border."""
+    """Return the index of the next spoke along the border."""
     counts = np.bincount(places.edges, minlength=len(border.starts))
     firsts = np.cumsum(counts) - counts
     number = np.arange(len(places.edges))
@@ -354,7 +365,7 @@ def _following(border: _Border, places: _Places) -> Index:
 
 
 def _between(places: _Places, first: Index, second: Index) -> _Places:
-    """Places halfway between consecutive places; edge -1 where no place is between."""
+    """Return positions midway between consecutive positions; edge -1 where none is between."""
     a, b = places.select(first), places.select(second)
     same_corner = (a.edges == b.edges) & (a.shares == 0.0) & (b.shares == 0.0)
     ends = np.where(a.edges == b.edges, b.shares, 1.0)

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Regions that go all the way around a hub: unrolled they have no ends and repeat under an
-isometry of the plane.
+"""Regions that surround a hub: unrolled, they repeat without end under an isometry of the plane.
 
-For a cylinder the isometry is a shift along x, for a cone a turn about its apex. A strip
-is stored in (u, v): u runs around the hub (mm at a reference distance from the apex), v
-up along it, both over any number of turns. Parallel curves are computed on the plane, in
-windows narrower than half a turn, each with enough margin that its ends do not matter.
-The results are cut at the windows' ends, where neighbours agree, and chained again.
+The isometry is a translation along x for a cylinder, and a rotation about the apex for a cone. A
+strip is stored in (u, v): u runs around the hub (mm at a reference distance from the apex) over any
+number of turns, v up along the surface. Parallel curves are computed on the plane, in windows
+narrower than half a turn, with enough margin that the window ends have no effect. The results are
+cut at the window ends, where adjacent windows agree, and chained again.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ from ..curves.plane_curve import doubled_area, winding
 from ..step_count import step_count
 from .region import Region, regions
 
-TOLERANCE_SHARE = 1e-7  # of the period; cuts meet there
+TOLERANCE_SHARE = 1e-7  # of the period; tolerance of points on a cut
 
 
 def chain_windows(
@@ -36,14 +35,14 @@ def chain_windows(
     Parameters
     ----------
     window_rings : sequence of sequence of (n, 2) array
-        Closed rings in (u, v) of each window, mm, cut at its ends.
+        Closed rings in (u, v) of each window, mm, cut at the window ends.
     cuts : (k + 1,) array
-        The u of the ends of k windows, ascending over one turn, mm.
+        u at the ends of k windows, ascending over one turn, mm.
 
     Returns
     -------
     rounds : list of tuple of (n, 2) array and int
-        Rings that go around the hub, in (u, v), and how many turns each makes, with its sense.
+        Rings around the hub, in (u, v), mm, with their signed number of turns.
     closed : list of (n, 2) array
         Closed rings in (u, v), mm.
     """
@@ -102,15 +101,15 @@ def chain_windows(
     return rounds, closed
 
 
-HALF_TURN = 2.6  # rad; a window is no wider, room included
+HALF_TURN = 2.6  # rad; maximum width of a window with its margins
 
 
 @dataclass(frozen=True)
 class Period:
     """The repetition of an unrolled hub.
 
-    turn: one turn around the hub when unrolled, mm along x or, with an apex, rad about the
-    point (0, apex).
+    turn: one unrolled turn around the hub, mm along x or, with an apex, rad about the point
+    (0, apex).
     """
 
     turn: float
@@ -118,7 +117,7 @@ class Period:
 
     @property
     def u_period(self) -> float:
-        """The period of u, mm."""
+        """Period of u, mm."""
         return self.turn if math.isinf(self.apex) else self.turn * abs(self.apex)
 
     def to_uv(self, flat: Array) -> Array:
@@ -144,7 +143,7 @@ class Period:
 
     @property
     def full_turn(self) -> float:
-        """The period of u on the plane, mm; more than a turn around the hub."""
+        """Period of u on the plane, mm; more than a turn around the hub."""
         return math.inf if math.isinf(self.apex) else 2.0 * math.pi * abs(self.apex)
 
     def unwrap_curve(self, flat: Array, sheet: float = 0.0, turns: int = 0) -> Array:
@@ -155,15 +154,15 @@ class Period:
         flat : (n, 2) array
             The curve on the unrolled plane, mm.
         sheet : float, optional
-            u about which the mean of u is, within half a turn of the plane, mm.
+            Approximate mean of u, within half a turn of the plane, mm.
         turns : int, optional
-            How often the curve goes around the hub; its start is then repeated at the end, turned
-            on.
+            Number of turns of the curve around the hub; if not 0, its start is repeated at the
+            end, moved by these turns.
 
         Returns
         -------
         (n, 2) or (n + 1, 2) array
-            (u, v), mm; one more if the curve goes around.
+            (u, v), mm; one more point if the curve goes around the hub.
         """
         uv = self.to_uv(flat)
         if not math.isinf(self.apex):
@@ -179,7 +178,7 @@ class Period:
         uv : (n, 2) array
             (u, v), mm.
         about : float, optional
-            The u that is unrolled to x = 0, mm.
+            u that is unrolled to x = 0, mm.
 
         Returns
         -------
@@ -206,7 +205,7 @@ class Period:
         Returns
         -------
         (n, 2) array
-            The moved points, mm.
+            Moved points, mm.
         """
         if math.isinf(self.apex):
             return np.asarray(flat + np.array([turns * self.turn, 0.0]))
@@ -220,16 +219,16 @@ class Period:
         return np.asarray(turned + apex)
 
     def points_round(self, v: float, chord_error: float, least_radius: float) -> int:
-        """Return how many points a line once around the hub needs on the plane.
+        """Return the number of points that a line once around the hub needs on the plane.
 
         Parameters
         ----------
         v : float
-            Where the line is, mm.
+            v of the line, mm.
         chord_error : float
             Chord error of the line, mm.
         least_radius : float
-            Least radius to assume near the apex, mm.
+            Minimum radius to assume near the apex, mm.
 
         Returns
         -------
@@ -240,14 +239,14 @@ class Period:
         return step_count(self.u_period, math.sqrt(8.0 * chord_error * radius), 24)
 
     def distance_past(self, flat: Array, u: float) -> Array:
-        """Return how far points are past a generatrix.
+        """Return the distances of points past a generatrix.
 
         Parameters
         ----------
         flat : (n, 2) array
             Points of the unrolled plane, mm.
         u : float
-            The generatrix, mm; less than a quarter turn from 0.
+            u of the generatrix, mm; less than a quarter turn from 0.
 
         Returns
         -------
@@ -261,8 +260,9 @@ class Period:
 
 
 class Window(NamedTuple):
-    """Part of a turn, mm of u: the range from low to high and the margin considered on both
-    sides. about: its middle.
+    """Part of a turn, in mm of u.
+
+    about: centre. low, high: range. margin: additional range on both sides.
     """
 
     about: float
@@ -273,10 +273,11 @@ class Window(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Strip:
-    """A region round the hub between two borders, with holes; all in (u, v).
+    """A region around the hub between two borders, with holes; all in (u, v).
 
-    lower (n, 2): runs on by one period, `upper` (m, 2) back by one, so that the material is to the left; neither repeats its
-    first point a period on. holes: closed, clockwise, in any turn.
+    lower: (n, 2) runs forwards by one period. upper: (m, 2) runs backwards by one period, so the
+    material is to the left of both. Neither repeats its first point a period later. holes: closed,
+    clockwise, in any turn.
     """
 
     period: Period
@@ -285,7 +286,7 @@ class Strip:
     holes: tuple[Array, ...] = ()
 
     def borders(self) -> tuple[tuple[Array, int], ...]:
-        """Return the unrolled borders and how often each goes around.
+        """Return the unrolled borders and their numbers of turns.
 
         Returns
         -------
@@ -301,17 +302,13 @@ class Strip:
         return float(self.lower[:, 1].min()), float(self.upper[:, 1].max())
 
     def grown(self, distance: float, chord_error: float) -> tuple[Strip | Region, ...]:
-        """Grow the strip, as `Region.grown`, on the plane without ends; a result that does not go
-        around is a region.
-        """
+        """Grow the strip, as `Region.grown`; a part that does not surround the hub is a region."""
         return self.apply(lambda region: region.grown(distance, chord_error), abs(distance))
 
     def apply(
         self, operation: Callable[[Region], Sequence[Region]], reach: float
     ) -> tuple[Strip | Region, ...]:
-        """Apply an operation that considers no more than `reach` mm around; returns the resulting
-        strips and regions.
-        """
+        """Apply an operation with a range of at most `reach` mm; return strips and regions."""
         windows = self.windows(reach)
         window_rings: list[list[Array]] = []
         for window in windows:
@@ -352,9 +349,7 @@ class Strip:
         )
 
     def flat(self, window: Window, with_margin: bool = False) -> list[Region]:
-        """Return the strip in a window, with or without its margin, as regions unrolled about its
-        middle.
-        """
+        """Return the strip in a window as regions unrolled about the centre of the window."""
         margin = window.margin if with_margin else 0.0
         return [
             unrolled_region
@@ -365,21 +360,21 @@ class Strip:
         ]
 
     def moved_back(self, window: Window, flat: Array) -> tuple[Array, float]:
-        """Move points unrolled about the middle of a window to where they are unrolled about 0.
+        """Convert points unrolled about the centre of a window to points unrolled about 0.
 
         Parameters
         ----------
         window : Window
             The window.
         flat : (n, 2) array
-            Points unrolled about its middle, mm.
+            Points unrolled about the window centre, mm.
 
         Returns
         -------
         points : (n, 2) array
             Points unrolled about 0, mm.
         sheet : float
-            Their mean u, mm.
+            Mean u of the points, mm.
         """
         uv = self.period.to_uv(flat) + np.array([window.about, 0.0])
         return self.period.from_uv(uv), float(uv[:, 0].mean())
@@ -396,8 +391,9 @@ class Strip:
         return self._insert_cuts(exact, (low, high), closed=False)
 
     def _insert_cuts(self, uv: Array, cuts: Sequence[float], closed: bool) -> Array:
-        """Insert points into a line in (u, v) where its edges, straight when unrolled, cross
-        generatrices.
+        """Insert the crossings of a line in (u, v) with generatrices.
+
+        Edges of the line are straight when unrolled.
         """
         for u in cuts:
             following = np.roll(uv, -1, axis=0)
@@ -411,9 +407,7 @@ class Strip:
         return uv
 
     def _cut(self, flat: Array, window: Window) -> Array:
-        """Return a ring, unrolled about the middle of a window, in (u, v), with points where the
-        ends of the window cross it.
-        """
+        """Convert a ring unrolled about a window centre to (u, v); add points at window ends."""
         ends = window.low - window.about, window.high - window.about
         return np.asarray(
             self._insert_cuts(self.period.to_uv(flat), ends, closed=True)
@@ -421,7 +415,7 @@ class Strip:
         )
 
     def windows(self, reach: float) -> tuple[Window, ...]:
-        """The strip once round, for what looks `reach` mm around."""
+        """Return windows over one turn, with margins for operations with a range of `reach` mm."""
         margin, count = self._windows(reach)
         cuts = np.linspace(
             -0.5 * self.period.u_period, 0.5 * self.period.u_period, count + 1
@@ -431,8 +425,9 @@ class Strip:
         )
 
     def pane(self, window: Window) -> tuple[Region, ...]:
-        """Return the window without its margin, over somewhat more than the height of the strip,
-        unrolled about its middle.
+        """Return a window without its margin as regions unrolled about its centre.
+
+        The regions extend slightly beyond the strip in v.
         """
         u = np.linspace(window.low, window.high, 17)
         bottom, top = self.levels
@@ -444,7 +439,7 @@ class Strip:
         return regions([self.period.from_uv(np.vstack([below, above[::-1]]), window.about)])
 
     def near(self, window: Window, uv: Array, closed: bool) -> list[tuple[Array, bool]]:
-        """Return the stretches of a curve in a window or its margin, from all turns.
+        """Return the pieces of a curve inside a window and its margin, from all turns.
 
         Parameters
         ----------
@@ -458,7 +453,7 @@ class Strip:
         Returns
         -------
         list of tuple of (m, 2) array and bool
-            Points unrolled about the middle of the window, mm, and whether they are closed.
+            Points unrolled about the window centre, mm, and whether they are closed.
         """
         turn = self.period.u_period
         low, high = window.low - window.margin, window.high + window.margin
@@ -489,7 +484,7 @@ class Strip:
         if math.isinf(self.period.apex):
             return 1.1 * reach, 1
         apex_distance = abs(self.period.apex - self.levels[1])
-        # a point `reach` inside is as far above the border next to the apex, and that border hides everything beyond
+        # widest angle: a circle of radius `reach` that touches the border nearest to the apex
         margin = 1.1 * math.asin(reach / (apex_distance + reach))
         count = max(1, math.ceil(self.period.turn / max(HALF_TURN - 2.0 * margin, 0.2)))
         return margin * abs(self.period.apex), count
@@ -503,16 +498,16 @@ def assemble_regions(
     Parameters
     ----------
     rounds : sequence of tuple of (n, 2) array and int
-        Borders that go around, in (u, v), mm, and their sense: 1 or -1.
+        Borders around the hub, in (u, v), mm, and their sense: 1 or -1.
     closed : sequence of (n, 2) array
-        Closed borders in (u, v), mm; clockwise ones are holes.
+        Closed borders in (u, v), mm; clockwise borders are holes.
     period : Period
-        Turn and apex of the hub.
+        Period of the unrolled hub.
 
     Returns
     -------
     tuple of Strip or Region
-        Strips in (u, v) from low to high v, then regions on the unrolled plane.
+        Strips in (u, v), by rising v, then regions on the unrolled plane.
     """
     borders = [_start_at_cut(ring, sense, period.u_period) for ring, sense in rounds]
     order = sorted(borders, key=lambda item: float(item[0][:, 1].mean()))
@@ -538,19 +533,19 @@ def assemble_regions(
 
 
 def strips(loops: Sequence[tuple[Array, int]], period: Period) -> tuple[Strip | Region, ...]:
-    """Return strips and regions of the loops of a layer.
+    """Build strips and regions from the loops of a layer.
 
     Parameters
     ----------
     loops : sequence of tuple of (n, 2) array and int
-        Points unrolled within one turn, mm, and how often each loop goes around.
+        Points unrolled within one turn, mm, and number of turns of each loop.
     period : Period
-        Turn and apex of the hub.
+        Period of the unrolled hub.
 
     Returns
     -------
     tuple of Strip or Region
-        As `assemble_regions`.
+        Strips and regions, as from `assemble_regions`.
     """
     rounds, closed, turn = [], [], period.u_period
     for flat, turns in loops:
@@ -565,9 +560,7 @@ def strips(loops: Sequence[tuple[Array, int]], period: Period) -> tuple[Strip | 
 
 
 def _start_at_cut(ring: Array, sense: int, turn: float) -> tuple[Array, int]:
-    """Return a border that goes around, started where it leaves the generatrix half a turn from
-    0.
-    """
+    """Start a border around the hub where it leaves the generatrix half a turn from 0."""
     past = np.remainder(sense * ring[:, 0] + 0.5 * turn + TOLERANCE_SHARE * turn, turn)
     start = int(np.argmin(past))
     ring = np.vstack([ring[start:], ring[:start] + np.array([sense * turn, 0.0])])
@@ -590,7 +583,7 @@ def _box(low: float, high: float, bottom: float, top: float) -> Array:
 
 
 def _cut_rings(region: Region, low: float, high: float) -> list[Array]:
-    """Return the rings of the part of a region between two generatrices."""
+    """Cut a region at two generatrices and return the rings between them."""
     v = region.borders()[0][:, 1]
     box = regions([_box(low, high, float(v.min()), float(v.max()))])
     return [

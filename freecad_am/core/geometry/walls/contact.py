@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves where a wall leaves its ground: level lines of the distance, moved onto both
-exactly, with their corners.
+"""Intersection curves of a wall and its ground, where the wall starts, with exact corners.
+
+Level lines of the distance are moved onto both surfaces.
 """
 
 from __future__ import annotations
@@ -21,12 +22,12 @@ from .surface import dot
 
 
 class Ground(Protocol):
-    """A solid."""
+    """A solid that carries a wall."""
 
-    facets: bool  # whether its pieces are flat facets of something round
+    facets: bool  # whether the pieces are flat facets that may approximate a round surface
 
     def signed(self, points: Array) -> Array:
-        """Return the signed distances of points.
+        """Return the signed distances of points from the solid.
 
         Parameters
         ----------
@@ -36,7 +37,7 @@ class Ground(Protocol):
         Returns
         -------
         (k,) array
-            mm, negative inside.
+            Distances, mm, negative inside.
         """
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
@@ -54,16 +55,16 @@ class Ground(Protocol):
         normals : (k, 3) array
             Outer unit normals.
         piece : (k,) int array
-            The smooth piece of each.
+            Index of the smooth piece of each point.
         """
 
     def on(self, piece_numbers: Index, points: Array) -> tuple[Array, Array]:
-        """Return the nearest points on given pieces, wherever these end.
+        """Return the nearest points on given pieces, extended beyond their edges.
 
         Parameters
         ----------
         piece_numbers : (k,) int array
-            The pieces.
+            Indices of the pieces.
         points : (k, 3) array
             Points, mm.
 
@@ -76,25 +77,25 @@ class Ground(Protocol):
         """
 
     def sagitta(self, piece_numbers: Index) -> Array:
-        """Return how far pieces are at most from the surface that they approximate.
+        """Return the maximum deviation of pieces from the surface that they approximate.
 
         Parameters
         ----------
         piece_numbers : (k,) int array
-            The pieces.
+            Indices of the pieces.
 
         Returns
         -------
         (k,) array
-            mm.
+            Deviations, mm.
         """
 
 
 class ExactGround:
-    """A solid of exact faces.
+    """A solid with exact faces.
 
-    Its triangles (within `chord` mm), the face (m,) of each, and the faces as patches with
-    outward normals.
+    solid: triangles within `chord` mm. face: (m,) face index of each triangle. patches: the faces,
+    with outward normals. edge: approximate spacing of query points, mm.
     """
 
     facets = False
@@ -106,7 +107,7 @@ class ExactGround:
         self.search = solid.searched(edge)
 
     def signed(self, points: Array) -> Array:
-        """Distances; exact ones near the boundary."""
+        """Return signed distances, exact near the boundary."""
         distance, _, triangle = self.search.signed(points)
         near_points = np.flatnonzero(np.abs(distance) < self.near)
         if len(near_points):
@@ -114,17 +115,17 @@ class ExactGround:
             exact = dot(points[near_points] - foot, normal)
             plain = (
                 np.abs(exact - distance[near_points]) < self.near
-            )  # not past an edge of the solid
+            )  # not beyond an edge of the solid
             distance[near_points[plain]] = exact[plain]
         return distance
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
-        """On the exact faces."""
+        """Return the nearest points on the exact faces."""
         piece_numbers = self.face[self.search.signed(points)[2]]
         return *self.on(piece_numbers, points), piece_numbers
 
     def on(self, piece_numbers: Index, points: Array) -> tuple[Array, Array]:
-        """On the faces' surfaces."""
+        """Return the nearest points on the surfaces of given faces."""
         feet, normals = np.empty_like(points), np.empty_like(points)
         for k in np.unique(piece_numbers):
             patch, on_patch = self.patches[k], piece_numbers == k
@@ -132,7 +133,7 @@ class ExactGround:
         return feet, normals
 
     def sagitta(self, piece_numbers: Index) -> Array:
-        """Zero."""
+        """Return zeros: the ground is exact."""
         return np.zeros(len(piece_numbers))
 
 
@@ -145,16 +146,16 @@ class FacetGround:
         self.solid, self.search = solid, solid.searched(edge)
 
     def signed(self, points: Array) -> Array:
-        """Distances to the triangles."""
+        """Return signed distances from the triangles."""
         return self.search.signed(points)[0]
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
-        """On the planes of the nearest triangles."""
+        """Return projections onto the planes of the nearest triangles."""
         piece_numbers = self.search.signed(points)[2]
         return *self.on(piece_numbers, points), piece_numbers
 
     def on(self, piece_numbers: Index, points: Array) -> tuple[Array, Array]:
-        """On the planes of triangles."""
+        """Return projections onto the planes of given triangles."""
         normal = self.solid.units[piece_numbers]
         corner = self.solid.vertices[self.solid.triangles[piece_numbers, 0]]
         return points - dot(points - corner, normal)[:, None] * normal, normal
@@ -173,31 +174,31 @@ class PlaneGround:
         self.height = height
 
     def signed(self, points: Array) -> Array:
-        """Heights above it."""
+        """Return heights above the plane."""
         above: Array = points[:, 2] - self.height
         return above
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
-        """Vertically under or over the points."""
+        """Return vertical projections onto the plane."""
         piece_numbers = np.zeros(len(points), dtype=np.intp)
         return *self.on(piece_numbers, points), piece_numbers
 
     def on(self, piece_numbers: Index, points: Array) -> tuple[Array, Array]:
-        """Vertically under or over the points."""
+        """Return vertical projections onto the plane."""
         foot = points.copy()
         foot[:, 2] = self.height
         return foot, np.broadcast_to(np.array([0.0, 0.0, 1.0]), points.shape)
 
     def sagitta(self, piece_numbers: Index) -> Array:
-        """Zero."""
+        """Return zeros: the ground is exact."""
         return np.zeros(len(piece_numbers))
 
 
 def distances(points: Array, ground: Ground, near_distance: float) -> Array:
     """Return the distances of points from the ground.
 
-    A distance changes by no more than the distance travelled, so one point is enough in a cube
-    that is wholly farther than its size.
+    The distance changes by no more than the distance between points. A single point is therefore
+    enough for a cube that is farther away than its size.
 
     Parameters
     ----------
@@ -211,8 +212,8 @@ def distances(points: Array, ground: Ground, near_distance: float) -> Array:
     Returns
     -------
     (n,) array
-        mm, negative inside. Values of farther points have the right sign and at most the
-        true size.
+        Distances, mm, negative inside. Values of farther points have the correct sign and at
+        most the true magnitude.
     """
     value, open_ = np.empty(len(points)), np.arange(len(points))
     size = float(np.ptp(points, axis=0).max(initial=0.0)) / 4.0
@@ -242,14 +243,14 @@ def nearest_point(points: Array, ground: Ground, value: Array) -> tuple[int, flo
     ground : Ground
         The ground.
     value : (n,) array
-        Their `distances`.
+        `distances` of the points.
 
     Returns
     -------
     point : int
-        Number of the point.
+        Index of the point.
     distance : float
-        Its distance, mm.
+        Distance of the point, mm.
     """
     order = np.argsort(np.abs(value), kind="stable")
     best, min_distance = int(order[0]), np.inf
@@ -262,39 +263,39 @@ def nearest_point(points: Array, ground: Ground, value: Array) -> tuple[int, flo
     return best, min_distance
 
 
-TOUCH_MM = 0.05  # mm; a wall that ends this close to its substrate starts on it
+TOUCH_MM = 0.05  # mm; a wall that ends within this distance of its substrate starts on it
 STEPS = 40
-CORNER = np.radians(0.1)  # rad; smaller turns of the substrate are smooth joints
-MIN_STEP_SHARE = 0.3  # of the wall's typical edge; nearer points of a chain are dropped
+CORNER = np.radians(0.1)  # rad; smaller angles between ground pieces are smooth joints
+MIN_STEP_SHARE = 0.3  # of the wall's typical edge; minimum distance of points in a chain
 ROUNDS, SAGITTAS = (
     8,
     1.2,
-)  # of points added between others; what a smooth curve may be off a facet, in its sagittas
+)  # rounds of added points; maximum offset of a smooth curve from a facet, in sagittas
 TOLERANCE_MM, ON_GROUND = (
     1e-5,
     1e-6,
-)  # mm between the points of a chain and both surfaces, and at them
-# of each arc; where a curvature jumps within it, its middle may be right by chance
+)  # mm; maximum distance from both surfaces between the points of a chain, and at the points
+# fractions of each arc to check; a midpoint may match by chance where the curvature jumps
 THIRDS = np.array([1.0 / 3.0, 2.0 / 3.0])
 
 
 def ground_distances(wall: PatchWall, ground: Ground) -> Array:
     """Return the distances of the wall's vertices from the ground.
 
-    A boundary that ends just short of the ground counts as inside. Distances larger than an
-    edge of the wall's mesh may be underestimated, see `distances`.
+    A boundary that ends just short of the ground counts as inside. Large distances may be
+    underestimated, see `distances`.
 
     Parameters
     ----------
     wall : PatchWall
-        The wall with n vertices.
+        Wall with n vertices.
     ground : Ground
         The ground.
 
     Returns
     -------
     (n,) array
-        mm, negative inside, never 0.
+        Distances, mm, negative inside, never 0.
     """
     value = distances(wall.vertices, ground, 2.0 * wall.mesh.longest_edge)
     edge = np.zeros(len(value), dtype=bool)
@@ -307,16 +308,16 @@ def ground_distances(wall: PatchWall, ground: Ground) -> Array:
 def first_curves(
     wall: PatchWall, ground: Ground, value: Array, rims: tuple[Rim, ...]
 ) -> tuple[list[FirstCurve], float]:
-    """Return the curves where the wall leaves the ground.
+    """Return the curves in which the wall leaves the ground.
 
-    Points are on wall and ground to rounding. Corners are where pieces of the ground meet at an
-    angle; facets that approximate a round surface (turns under SHARP_EDGE_RAD) are smoothed,
+    Points are on wall and ground except for rounding. Corners are where pieces of the ground meet
+    at an angle. Facets that approximate a round surface (angles below SHARP_EDGE_RAD) are smoothed,
     see `_round_curve`.
 
     Parameters
     ----------
     wall : PatchWall
-        The wall with n vertices.
+        Wall with n vertices.
     ground : Ground
         The ground.
     value : (n,) array
@@ -329,8 +330,8 @@ def first_curves(
     curves : list of FirstCurve
         The curves.
     error : float
-        Largest error between their points, mm: about TOLERANCE_MM, on a ground of triangles
-        measured to the surface that they approximate.
+        Maximum error between the points of the curves, mm: about TOLERANCE_MM; on a ground of
+        triangles, measured to the surface that they approximate.
     """
     curves, max_error = [], 0.0
     for line in wall.mesh.level_lines(value, np.arange(len(wall.triangles))):
@@ -352,7 +353,7 @@ def _curve(
         for end in (0, -1):
             points[end] = wall.project(_intersect_rim(points[end], rims, ground)[None])[0][0]
         ground_piece = ground.located(points)[2]
-        # a smooth surface through a mesh deviates slightly from the edge of the mesh
+        # a smooth surface through a mesh deviates slightly at the edge of the mesh
         for end in (0, -1):
             if abs(_above(ground, points[[end]], ground_piece[[end]])[0]) >= ON_GROUND:
                 points[[end]], ground_piece[[end]] = _move_onto_ground(wall, ground, points[[end]])
@@ -380,10 +381,9 @@ def _curve(
 def _refine_curve(
     wall: PatchWall, ground: Ground, start_curve: FirstCurve
 ) -> tuple[FirstCurve, float]:
-    """Add points where the curve leaves wall or ground between its points, as where their
-    curvature jumps.
+    """Add points where the curve deviates from wall or ground, as at a jump of curvature.
 
-    Returns the curve and its remaining distance from either, mm.
+    Returns the curve and its remaining maximum distance from wall and ground, mm.
     """
     for _ in range(ROUNDS + 4):
         curve = start_curve.curve()
@@ -417,21 +417,21 @@ def _refine_curve(
 
 
 def _above(ground: Ground, points: Array, ground_piece: Index) -> Array:
-    """Return the heights (n,) of points above their pieces of the ground, mm."""
+    """Return the heights (n,) of points above their ground pieces, mm."""
     return dot(points - (foot := ground.on(ground_piece, points))[0], foot[1])
 
 
 def _distance_from_ground(ground: Ground, points: Array) -> Array:
-    """Return the distances (n,) mm from the exact pieces of the ground."""
+    """Return the distances (n,) of points from the ground pieces, mm."""
     return np.asarray(np.linalg.norm(points - ground.located(points)[0], axis=1))
 
 
 def _move_onto_ground(
     wall: PatchWall, ground: Ground, points: Array, level: Array | float = 0.0
 ) -> tuple[Array, Index]:
-    """Move points within the wall onto the ground, or `level` (k,) mm above it.
+    """Move points along the wall onto the ground, or `level` (k,) mm above the ground.
 
-    Also returns the ground piece of each.
+    Also returns the ground piece of each point.
     """
     points, normal = wall.project(points)
     ground_piece = ground.located(points)[2]
@@ -449,7 +449,7 @@ def _move_onto_ground(
 
 
 def _intersect_rim(point: Array, rims: tuple[Rim, ...], ground: Ground) -> Array:
-    """Return where the nearest rim meets the ground; the point itself if it does not."""
+    """Intersect the nearest rim with the ground; return `point` if they do not meet."""
     best = min(
         rims, key=lambda rim: float(np.linalg.norm(rim.points - point, axis=1).min()), default=None
     )
@@ -512,9 +512,7 @@ def _insert_corners(
             break
     span = np.linalg.norm(points[index] - points[following[index]], axis=1)
     accepted = ~flat & (np.linalg.norm(p - middle, axis=1) < 2.0 * span + 1e-9)
-    if (
-        ground.facets and accepted.any()
-    ):  # planes of facets that are not adjacent meet above the solid
+    if ground.facets and accepted.any():  # the planes of non-adjacent facets meet above the solid
         accepted[accepted] = np.abs(ground.signed(p[accepted])) < 1e-5
     key = np.r_[np.arange(count), index[accepted] + 0.5]
     order = np.argsort(key, kind="stable")
@@ -532,7 +530,7 @@ def _insert_corners(
 def _drop_misordered(
     points: Array, into: Array, out: Array, edge: Mask, closed: bool
 ) -> tuple[Array, Array, Array]:
-    """Drop the points that are at or past the corner that they should precede."""
+    """Drop points at a corner or on its wrong side."""
     keep = np.ones(len(points), dtype=bool)
     scale = float(np.median(np.linalg.norm(np.diff(points, axis=0), axis=1)))
     for corner in np.flatnonzero(edge):
@@ -559,13 +557,12 @@ def _round_curve(
     edge: Mask,
     closed: bool,
 ) -> tuple[FirstCurve, float]:
-    """Return a smooth curve across edges between facets with small turns, with exact corners
-    elsewhere.
+    """Return a curve that is smooth across edges of facets at small angles, with exact corners.
 
-    The points where the wall crosses the facets' edges are kept. Between two of them less
-    than four mesh edges apart, the curve does not follow the facet but runs smoothly on the
-    wall, about its sagitta off the facet. Where it would be farther off, points no more than
-    the sagitta above the facet are kept too.
+    Points where the wall crosses facet edges are kept. Between two such points less than four mesh
+    edges apart, the curve does not follow the facet. It runs smoothly on the wall, about the
+    sagitta above the facet. Where it would be farther away, points at most the sagitta above the
+    facet are added.
     """
     points, into, out, edge = _drop_coincident(points, into, out, edge, closed)
     turn = np.arccos(np.clip(dot(into, out), -1.0, 1.0))
@@ -598,7 +595,7 @@ def _round_curve(
         bad = np.flatnonzero((np.linalg.norm(on_wall - middle, axis=1) > TOLERANCE_MM) | too_far)
         if not len(bad):
             break
-        # no farther than needed: the round surface is between the facet and its sagitta above it
+        # the round surface is between the facet and the sagitta above it
         on_wall[too_far] = _move_onto_ground(
             wall, ground, on_wall[too_far], np.clip(above, 0.0, sagitta)[too_far]
         )[0]
@@ -614,7 +611,7 @@ def _round_curve(
 def _drop_coincident(
     points: Array, into: Array, out: Array, edge: Mask, closed: bool
 ) -> tuple[Array, Array, Array, Mask]:
-    """Drop points that nearly coincide with the one before from all columns."""
+    """Drop points that nearly coincide with the previous point, in all arrays."""
     scale = float(np.median(np.linalg.norm(np.diff(points, axis=0), axis=1)))
     keep = np.ones(len(points), dtype=bool)
     previous = points[0]
@@ -629,21 +626,21 @@ def _drop_coincident(
 
 
 def fit_splines(points: Array, sharp: Mask, closed: bool) -> tuple[Array, Array, Array]:
-    """Return a chain with unit tangents from splines between sharp corners.
+    """Fit splines between the sharp corners of a chain and return unit tangents.
 
     Parameters
     ----------
     points : (n, 3) array
         The chain, mm.
     sharp : (n,) bool array
-        Its sharp corners.
+        Sharp corners of the chain.
     closed : bool
-        Whether it is closed.
+        Whether the chain is closed.
 
     Returns
     -------
     points : (n, 3) array
-        The chain; if closed it starts at a sharp corner, if it has any.
+        The chain; a closed chain starts at a sharp corner if it has any.
     into, out : (n, 3) array
         Unit tangents before and after each point.
     """

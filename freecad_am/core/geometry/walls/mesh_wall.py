@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A wall that comes as triangles, open or closed: mended, meshed evenly, with a smooth surface through its facets."""
+"""Walls from triangle meshes, open or closed: repair, even meshing, smooth surface."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from ..mesh.triangle_mesh import Mesh
 from .patch_wall import CladFaces, FirstCurve, PatchWall, Rim
 from .surface import dot
 
-REACHED = 0.75  # share of an end's length along which the wall comes up to it
+REACHED = 0.75  # fraction of a rim along which layers must approach for the rim to be an end
 
 
 def find_rims(wall: PatchWall) -> tuple[Rim, ...]:
-    """Return all rims, none marked as an end yet."""
+    """Return all rims of a wall, none of them marked as an end."""
     ends, _ = boundary(wall.triangles)
     if not len(ends):
         return ()
@@ -47,26 +47,26 @@ def mark_ends(
 ) -> tuple[Rim, ...]:
     """Mark the rims at which layers finish.
 
-    A rim is an end unless it is behind, has an end of a start curve on it (a side), has a start
-    curve along it, or bounds an opening. At an opening the distance from the start curves,
-    measured along the wall, grows away from the rim on more than a quarter of its length,
-    because layers close again beyond it.
+    A rim is an end unless it is behind the start curves, contains an end of a start curve (a side),
+    runs along a start curve, or bounds an opening. Layers close again beyond an opening: on more
+    than a quarter of its rim, the distance from the start curves, measured along the wall,
+    increases away from the rim.
 
     Parameters
     ----------
     wall : PatchWall
-        The wall with n vertices.
+        Wall with n vertices.
     rims : tuple of Rim
-        Its rims.
+        Rims of the wall.
     start_curves : tuple of FirstCurve
-        The curves at which layers start.
+        Curves in which layers start.
     behind : (n,) bool array
-        Vertices on the substrate's side of these.
+        Vertices on the substrate side of the start curves.
 
     Returns
     -------
     tuple of Rim
-        The rims.
+        Rims with their `end` flags.
     """
     distance = _distance(wall, start_curves, behind)
     beyond = distance.max(initial=0.0, where=np.isfinite(distance))
@@ -104,14 +104,12 @@ def mark_ends(
 
 
 def _leads_away(rim: Rim, point: Array, near_distance: float) -> bool:
-    """Return whether a rim leads away from a point on it, rather than being a short stretch near
-    it.
-    """
+    """Return whether a rim extends away from a point, rather than being a short piece near it."""
     return bool(np.linalg.norm(rim.points - point, axis=1).max() > 2.0 * near_distance)
 
 
 def _distance(wall: PatchWall, start_curves: tuple[FirstCurve, ...], behind: Mask) -> Array:
-    """Return the shortest length (n,) along the mesh from the start curves, inf behind them."""
+    """Return the shortest distances (n,) along the mesh from the start curves; inf behind them."""
     edges = Edges(wall.triangles).ends
     edges = edges[~behind[edges].any(axis=1)]
     length = np.linalg.norm(wall.vertices[edges[:, 0]] - wall.vertices[edges[:, 1]], axis=1)
@@ -127,7 +125,7 @@ def _distance(wall: PatchWall, start_curves: tuple[FirstCurve, ...], behind: Mas
 
 
 def _inner_mean(wall: PatchWall, distance: Array) -> Array:
-    """Mean distance (n,) of each vertex's neighbours that are not on the boundary."""
+    """Return the mean `distance` (n,) of each vertex's neighbours that are not on a boundary."""
     rim = np.zeros(len(distance), dtype=bool)
     rim[boundary(wall.triangles)[0]] = True
     ends = Edges(wall.triangles).ends
@@ -139,12 +137,12 @@ def _inner_mean(wall: PatchWall, distance: Array) -> Array:
 
 
 def connected_parts(wall: PatchWall, members: Mask) -> tuple[int, Index]:
-    """Return the connected parts that some vertices form along edges of the mesh.
+    """Return the connected parts of a set of vertices along mesh edges.
 
     Parameters
     ----------
     wall : PatchWall
-        The wall with n vertices.
+        Wall with n vertices.
     members : (n,) bool array
         The vertices.
 
@@ -153,7 +151,7 @@ def connected_parts(wall: PatchWall, members: Mask) -> tuple[int, Index]:
     count : int
         Number of parts.
     part : (n,) int array
-        Part of each vertex, -1 for the others.
+        Part index of each vertex; -1 for vertices that are not members.
     """
     edges = Edges(wall.triangles).ends
     edges = edges[members[edges].all(axis=1)]
@@ -166,10 +164,9 @@ def connected_parts(wall: PatchWall, members: Mask) -> tuple[int, Index]:
 
 
 def outward_volume(wall: PatchWall) -> float:
-    """Return the volume (mm3) that the wall encloses when a fan about its middle closes each
-    boundary.
+    """Return the enclosed volume (mm3) after closing each boundary with a fan about its centroid.
 
-    It is negative if the wall's outer side faces inwards, and zero for a wall that encloses
+    The volume is negative if the wall's outer side faces inwards, and zero if the wall encloses
     nothing.
     """
     corners = wall.vertices[wall.triangles]
@@ -191,24 +188,27 @@ def _cones(corners: Array) -> float:
     return float(dot(corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6.0)
 
 
-MAX_TRIANGLES = 1_500_000  # triangles
-COLLAPSE = 0.55  # of the longest edge; shorter edges are collapsed
+MAX_TRIANGLES = 1_500_000  # maximum number of triangles of a wall
+COLLAPSE = 0.55  # of the maximum edge; shorter edges are collapsed
 CREASE = np.cos(
     np.radians(20.0)
-)  # facets that meet at more are areas of their own, whose edges stay where they are
+)  # facets at a larger angle belong to separate areas, whose edges do not move
 PLANE = np.cos(
     np.radians(3.0)
-)  # and for facets larger than the mesh's edges where it would run across such meetings
-MAX_BETWEEN_SHARE = 0.05  # of the length of an edge: distance from the facets beyond which areas are divided further
-FOLD = 0.25  # rad between facets: a bend whose radius is less than four edges, which they cannot follow
-BLOCK_SIZE = 1000  # places done together; bounds the memory
-REPORTED_FROM_MM = 0.02  # mm between mesh and smooth surface beyond which this is reported
+)  # stricter limit for facets larger than mesh edges, used if edges cut across creases
+MAX_BETWEEN_SHARE = 0.05  # of the edge length; larger deviations from the facets need finer areas
+FOLD = 0.25  # rad between facets; a bend radius below four edges, too sharp for the mesh
+BLOCK_SIZE = 1000  # points per batch; bounds the memory
+REPORTED_FROM_MM = 0.02  # mm; larger deviations between mesh and smooth surface are reported
 
 
 @dataclass(frozen=True, eq=False)
 class MeshWall(PatchWall):
-    """A wall whose one piece is the smooth surface through a mesh. samples (n, 3): where the vertices were on its facets.
-    between: mm that the surface is off these, at most, in the middles of triangles."""
+    """A wall whose only piece is the smooth surface through a mesh.
+
+    samples: (n, 3) original positions of the vertices on the facets, mm. between: maximum deviation
+    of the surface from the facets at triangle centroids, mm.
+    """
 
     kind: ClassVar[str] = "mesh"
 
@@ -217,13 +217,13 @@ class MeshWall(PatchWall):
 
     @cached_property
     def smooth(self) -> SmoothMesh:
-        """The surface."""
+        """The smooth surface."""
         samples = self.vertices if self.samples is None else self.samples
         return SmoothMesh(samples, self.triangles, self.mesh.typical_edge)
 
     @property
     def smoothing(self) -> float:
-        """Return the largest deviation of the smooth surface from the mesh, mm."""
+        """Return the maximum deviation of the smooth surface from the mesh, mm."""
         at_vertices = (
             0.0
             if self.samples is None
@@ -238,12 +238,12 @@ class MeshWall(PatchWall):
 
     @property
     def folds(self) -> float:
-        """Length of the sharp edges in the deposited part."""
+        """Total length of sharp edges in the deposited part of the wall, mm."""
         ahead = self.triangles[~self.behind[self.triangles].any(axis=1)]
         return Mesh(self.vertices, ahead).folded(FOLD)
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
-        """Locate points on the smooth surface, which extends a little beyond the wall."""
+        """Project points onto the smooth surface, which extends slightly beyond the wall."""
         points, normals = self.smooth.project(points)
         return points, normals, np.zeros(len(points), dtype=np.intp)
 
@@ -255,7 +255,7 @@ class _Read(NamedTuple):
 
 
 def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: float) -> MeshWall:
-    """Return the smooth wall through a mesh, without a start yet.
+    """Build the smooth wall through a mesh, without start curves.
 
     Parameters
     ----------
@@ -264,11 +264,11 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
     triangles : (m, 3) int array
         Triangles.
     edge : float
-        Length of the edges of the new mesh, mm.
+        Edge length of the new mesh, mm.
     label : str
         Name of the wall, for messages.
     mend : float
-        Size of the largest hole that is closed, mm; see `repair.connected_triangles`.
+        Maximum size of a hole to close, mm; see `repair.connected_triangles`.
 
     Returns
     -------
@@ -285,7 +285,7 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
     wall = _mesh_wall(source, _areas(source.vertices, source.triangles), facets, edge, label)
     if (
         wall.between > MAX_BETWEEN_SHARE * edge
-    ):  # edges of the mesh cut across a valley or a ridge of large facets
+    ):  # mesh edges cut across a valley or a ridge of large facets
         finer_areas = _mesh_wall(
             source, _areas(source.vertices, source.triangles, edge), facets, edge, label
         )
@@ -313,7 +313,7 @@ def mesh_wall(points: Array, triangles: Index, edge: float, label: str, mend: fl
 
 
 def _mesh_wall(source: _Read, owner: Index, facets: Search, edge: float, label: str) -> MeshWall:
-    """Build the smooth wall through facets that belong to the areas `owner` (m,).
+    """Build the smooth wall through facets with the area indices `owner` (m,).
 
     Raises InputError TOO_FINE.
     """
@@ -432,9 +432,9 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
 
 
 def _areas(vertices: Array, triangles: Index, edge: float = np.inf) -> Index:
-    """Return the smooth area (m,) of each triangle.
+    """Return the index (m,) of the smooth area of each triangle.
 
-    edge: mm; triangles larger than that share an area only if they are nearly coplanar.
+    edge: mm; triangles larger than this share an area only if they are nearly coplanar.
     """
     corner = vertices[triangles]
     normal = doubled_areas(corner)
@@ -442,7 +442,7 @@ def _areas(vertices: Array, triangles: Index, edge: float = np.inf) -> Index:
     normal /= np.maximum(size, 1e-300)[:, None]
     large = size > edge * np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(
         axis=1
-    )  # its smallest height
+    )  # the smallest height of a triangle
     edges = Edges(triangles)
     a, b = edges.faces[edges.count == 2].T
     smooth: Mask = dot(normal[a], normal[b]) > np.where(large[a] & large[b], PLANE, CREASE)
@@ -452,14 +452,14 @@ def _areas(vertices: Array, triangles: Index, edge: float = np.inf) -> Index:
     return areas
 
 
-EDGE_SPACING_SHARE = 0.5  # edges, of the bead spacing
+EDGE_SPACING_SHARE = 0.5  # of the bead spacing; edge length of the mesh
 
 
 def clad_mesh(points: Array, triangles: Index, spacing: float, back: bool, label: str) -> CladFaces:
-    """Return a mesh as one sheet to be clad.
+    """Build a sheet to be clad from a mesh.
 
-    The sheet is the smooth surface through the facets. Layers grow on the side from which the
-    triangles are counter-clockwise.
+    The sheet is the smooth surface through the facets. Layers grow on the side from which triangles
+    are counter-clockwise.
 
     Parameters
     ----------
@@ -470,14 +470,14 @@ def clad_mesh(points: Array, triangles: Index, spacing: float, back: bool, label
     spacing : float
         Distance between beads, mm.
     back : bool
-        Whether layers grow on the other side.
+        Whether layers grow on the opposite side.
     label : str
         Name of the part, for messages.
 
     Returns
     -------
     CladFaces
-        The faces to be clad.
+        Faces to be clad.
 
     Raises
     ------

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a part's volume is distributed about the surface that its beads follow.
+"""Distribution of a part's volume about the surface that its beads follow.
 
-It says how much of the part beads of some width deposit, and how much they miss. A bead
-is as wide as its width and is on the side of the surface where the part is; on a surface
-within the part, as in the middle of two walls, it is half on each side. The figures are
-estimates from evenly spread samples, good to about a hundredth of the part.
+The distribution gives the volume that beads of a given width deposit and the volume that they miss.
+A bead is on the part's side of the surface. On a surface inside the part, such as midway between
+two walls, half of the bead is on each side. The values are estimates from evenly spread samples,
+accurate to about 1 % of the part.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ...types import Array
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Places (n, 3) spread over a surface, unit normals (n, 3) there to either side, and the area (n,) mm2 of each."""
+    """Samples of a surface: points (n, 3) mm, unit normals (n, 3), either side, areas (n,) mm2."""
 
     points: Array
     normals: Array
@@ -27,14 +27,14 @@ class Surface:
 
 @dataclass(frozen=True, eq=False)
 class PartDepths:
-    """Depths of a part under the surface that its beads follow.
+    """Depths of a part below the surface that its beads follow.
 
-    label: name of the part in messages. volume: mm3 of its solids, 0 without solids. area:
-    mm2 that beads cover. depths: (k,) mm, sorted: bead width needed for each equal share of
-    the part, inf for a share under no bead. thickness: (m,) mm, sorted: how far the part
-    reaches under each equal share of the surface. faces: names of the faces that no bead
-    follows, with face_depths (f,), as `depths` for the middle of each, and face_areas (f,)
-    mm2. aside: names and mm3 of solids of which no face carries beads.
+    label: name of the part in messages. volume: volume of the solids, mm3, 0 without solids. area:
+    area that beads cover, mm2. depths: (k,) required bead width at quantiles of the volume, mm,
+    sorted; inf under no bead. thickness: (m,) part thickness at quantiles of the surface, mm,
+    sorted. faces: names of the faces that no bead follows. face_depths: (f,) median depth of each
+    such face, mm. face_areas: (f,) mm2. aside: names and volumes (mm3) of solids without a face
+    that carries beads.
     """
 
     label: str
@@ -48,11 +48,11 @@ class PartDepths:
     aside: tuple[tuple[str, float], ...] = ()
 
     def volume_within(self, width: float) -> float:
-        """Return the volume of the part, mm3, that beads of a width, mm, deposit."""
+        """Return the part volume, mm3, that beads of a width, mm, deposit."""
         return self.volume * float(np.mean(self.depths <= width)) if len(self.depths) else 0.0
 
     def outside(self, width: float) -> float:
-        """Volume of beads of a width, mm, that the part does not reach to, mm3."""
+        """Return the volume, mm3, by which beads of a width, mm, extend beyond the part."""
         return (
             self.area * float(np.maximum(width - self.thickness, 0.0).mean())
             if len(self.thickness)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One smooth piece of a wall: an exact surface with nearest points and normals for many
-points at once.
-"""
+"""Smooth pieces of a wall: exact surfaces, with nearest points and normals for many points."""
 
 from __future__ import annotations
 
@@ -16,19 +14,19 @@ from ..columns import columns
 from .surface import dot
 
 # ---- Rational and non-rational tensor product B-spline surfaces, evaluated at many parameters at
-# once (Piegl and Tiller, The NURBS Book, algorithms A2.2 and A3.6). Beyond their knots they are
-# extrapolated linearly, so points may lie past the edge of the surface
+# once (Piegl and Tiller, The NURBS Book, algorithms A2.2 and A3.6). Surfaces are extrapolated
+# linearly beyond their knots, so points may be past the edge of the surface
 
 
 def derivatives(
     knots: tuple[Array, Array], poles: Array, u: Array, v: Array
 ) -> tuple[Array, Array, Array]:
-    """Evaluate a rational B-spline surface; outside its range it continues straight.
+    """Evaluate a rational B-spline surface, extrapolated linearly outside its range.
 
     Parameters
     ----------
     knots : tuple of array
-        Knots in both directions, with the ends repeated.
+        Knots in both directions, with repeated end knots.
     poles : (k, l, 4) array
         Poles as w x, w y, w z, w.
     u, v : (n,) array
@@ -54,14 +52,14 @@ def derivatives(
 
 
 def bounds(knots: Array, count: int) -> tuple[float, float]:
-    """Return the range of a parameter of a B-spline.
+    """Return the parameter range of a B-spline direction.
 
     Parameters
     ----------
     knots : (m,) array
         Knots of the direction.
     count : int
-        Number of its poles.
+        Number of poles in the direction.
 
     Returns
     -------
@@ -96,10 +94,9 @@ def _rational(
 
 
 def _basis(knots: Array, count: int, parameter: Array) -> tuple[Index, Array]:
-    """Return the first of the degree + 1 relevant poles for each parameter (n,), and their
-    shares.
+    """Return the first of the degree + 1 active poles for each parameter (n,), and basis values.
 
-    Shares are (2, n, degree + 1): for the point, for the derivative.
+    Basis values are (2, n, degree + 1): for the point and for the derivative.
     """
     degree = len(knots) - count - 1
     span = np.clip(np.searchsorted(knots, parameter, side="right") - 1, degree, count - 1)
@@ -133,22 +130,22 @@ PLANE, CYLINDER, CONE, SPHERE, TORUS, SPLINE = (
     "spline",
 )
 STEPS = 40
-MIN_MOVE_MM = 1e-10  # mm; a step that is shorter ends the search of a nearest point
-SAMPLES = 6  # per span of knots, for the start of the search
+MIN_MOVE_MM = 1e-10  # mm; a shorter step ends the search for a nearest point
+SAMPLES = 6  # samples per knot span, as starts of the search
 
 
 @dataclass(frozen=True, eq=False)
 class Patch:
     """A surface in part coordinates, mm and rad.
 
-    The meaning of u and v in the patch's own frame (4, 4) follows OpenCASCADE, by kind and
-    sizes: PLANE (): u, v are X and Y. CYLINDER (radius): azimuth u, height v. CONE (radius at
+    u and v in the patch frame (4, 4) have the meaning of OpenCASCADE, by kind and sizes: PLANE ():
+    u, v are X and Y. CYLINDER (radius): azimuth u, height v. CONE (radius at
     v = 0, half angle, growing with v): azimuth, length along the side. SPHERE (radius):
     azimuth, latitude. TORUS (bend, tube): azimuth, angle around the tube from its outside.
     SPLINE (): the B-spline of the knots and the poles (k, l, 4) as w x, w y, w z, w.
 
-    sign: +1 where the cross product of the derivatives along u and v points to the wall's
-    outer side, else -1. periods: of u and of v where the surface closes, else 0.
+    sign: +1 if the cross product of the derivatives along u and v points to the wall's outer side,
+    else -1. periods: periods of u and v, 0 where the surface does not close.
     """
 
     kind: str
@@ -168,8 +165,7 @@ class Patch:
         points : (n, 3) array
             Points in part coordinates, mm.
         start : (n, 2) array or None, optional
-            Where the search is iterative, parameters from which it goes downhill; None
-            for the nearest sample.
+            Start parameters of an iterative search; None for the nearest sample.
 
         Returns
         -------
@@ -235,7 +231,7 @@ class Patch:
         return self._to_part(self.sizes[0] * out + self.sizes[1] * normal, normal)
 
     def area(self, uv: Array) -> Array:
-        """Return the area of a spline surface per step of u and v.
+        """Return the area of a spline surface per unit of u and v.
 
         Parameters
         ----------
@@ -245,14 +241,14 @@ class Patch:
         Returns
         -------
         (n,) array
-            Relative to its typical value.
+            Area relative to its typical value.
         """
         _, along, around = self._derivatives(uv)
         share: Array = np.linalg.norm(np.cross(along, around), axis=1) / self._typical_area
         return share
 
     def unwrap(self, uv: Array) -> Array:
-        """Shift the parameters of triangles by periods next to each first corner.
+        """Shift the parameters of triangles by periods, next to those of the first corner.
 
         Parameters
         ----------
@@ -262,7 +258,7 @@ class Patch:
         Returns
         -------
         (m, 3, 2) array
-            The shifted parameters.
+            Shifted parameters.
         """
         uv = uv.copy()
         for axis, period in enumerate(self.periods):
@@ -289,7 +285,7 @@ class Patch:
 
     @cached_property
     def bounds(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Ranges of u and v of a spline."""
+        """Parameter ranges of a spline in u and v."""
         (u, v), poles = self._spline
         return bounds(u, poles.shape[0]), bounds(v, poles.shape[1])
 
@@ -319,7 +315,7 @@ class Patch:
         return nearest
 
     def _search(self, points: Array, start: Array) -> Array:
-        """Search by Gauss-Newton; points that have converged are left out of further steps."""
+        """Search by Gauss-Newton; converged points skip further steps."""
         uv, busy = start.copy(), np.arange(len(points))
         reach = np.array([high - low for low, high in self.bounds])
         for _ in range(STEPS):
@@ -338,7 +334,7 @@ class Patch:
         return uv
 
     def _spline_normal(self, uv: Array, cross: Array) -> Array:
-        """Unit normals; where the surface is pinched to a point, those a little way inside."""
+        """Return unit normals; at degenerate points, the normals slightly inside the surface."""
         length = np.linalg.norm(cross, axis=1)
         thin = np.flatnonzero(
             length < 1e-9 * max(float(length.max(initial=0.0)), self._typical_area)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A wall of connected smooth pieces on a substrate: exact pieces, a mesh over all, start and
-end curves.
-"""
+"""Walls of connected smooth pieces on a substrate: exact pieces, a mesh, start and end curves."""
 
 from __future__ import annotations
 
@@ -22,7 +20,7 @@ from .part_depths import PartDepths
 from .patch import TORUS, Patch
 from .surface import dot
 
-NEIGHBOUR_COUNT = 8  # triangles, by their middles, among which the nearest one of a point is sought
+NEIGHBOUR_COUNT = 8  # triangles with the nearest centroids to search for the nearest triangle
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,26 +37,26 @@ class FirstCurve:
     closed: bool
 
     def curve(self) -> SpaceCurve:
-        """The curve through the points."""
+        """Return the curve through the points."""
         points, into, out = self.points, self.into, self.out
         if self.closed:
             points, into, out = (np.vstack([column, column[:1]]) for column in (points, into, out))
         chord = np.linalg.norm(np.diff(points, axis=0), axis=1)
         bow = np.arccos(
             np.clip(dot(out[:-1], into[1:]), -1.0, 1.0)
-        )  # the arcs are about circular: as long as they are
+        )  # parameter: arc length of approximately circular arcs
         w = np.r_[0.0, np.cumsum(chord / np.sinc(0.5 * np.minimum(bow, 1.0) / np.pi))]
         return SpaceCurve(w, points, into, out, self.closed)
 
 
 @dataclass(frozen=True, eq=False)
 class Rim:
-    """A stretch of the wall's boundary without corners.
+    """A part of the wall's boundary without corners.
 
-    points: (k, 3) mm, at every vertex of the mesh; a closed rim repeats its first point. end:
-    True where layers finish, at an upper edge. It is False for a side (an end of a first
-    curve is on it), for the edge of an opening around which layers continue, and for a rim on
-    or in the substrate.
+    points: (k, 3) mesh vertices, mm; a closed rim repeats its first point. end: whether layers
+    finish at the rim, an upper edge. `end` is False for a side (which contains an end of a first
+    curve), for the edge of an opening around which layers continue, and for a rim on or in the
+    substrate.
     """
 
     points: Array
@@ -66,7 +64,7 @@ class Rim:
 
     @property
     def closed(self) -> bool:
-        """Whether it is a loop."""
+        """Whether the rim is a loop."""
         return bool((self.points[0] == self.points[-1]).all())
 
 
@@ -74,14 +72,14 @@ class Rim:
 class PatchWall:
     """A wall in part coordinates, mm.
 
-    vertices (n, 3) and triangles (m, 3) of the whole wall, counter-clockwise seen from its
-    outer side. patch: (m,) the number in `patches` for each triangle; uv: (m, 3, 2) the
-    parameters of its corners there. first: where layers start. behind: (n,) True for vertices
-    on the substrate's side of the start curves, which are not deposited. surroundings: bodies
-    to keep the nozzle clear of, the substrate first. depths: how the part is distributed
-    about the wall. ground: mm along Z of the plane through the lowest point of the wall,
-    where only the platform carries it. closes_around: a parameter of one surface closes around
-    the wall. own: None, a wall has no hub.
+    vertices (n, 3) and triangles (m, 3) of the whole wall, counter-clockwise seen from its outer
+    side. patch: (m,) index into `patches` for each triangle. uv: (m, 3, 2) patch parameters of the
+    triangle corners. first: curves in which layers start. behind: (n,) True for vertices on the
+    substrate side of the start curves, which are not deposited. surroundings: obstacles for the
+    nozzle, the substrate first. depths: distribution of the part about the wall. ground: z of the
+    plane through the lowest point of the wall, mm, if only the platform carries the wall.
+    closes_around: whether a surface parameter closes around the wall. own: None, because a wall has
+    no hub.
     """
 
     kind: ClassVar[str] = "patches"
@@ -139,18 +137,18 @@ class PatchWall:
 
     @property
     def folds(self) -> float:
-        """Length of places, mm, at which it bends more sharply than its mesh can follow; exact pieces have none."""
+        """Total length of bends too sharp for the mesh, mm; 0 for exact pieces."""
         return 0.0
 
     @cached_property
     def mesh(self) -> Mesh:
-        """The mesh, for level lines."""
+        """Mesh of the wall, for level lines."""
         return Mesh(self.vertices, self.triangles)
 
     def project(self, points: Array) -> tuple[Array, Array]:
         """Project points onto the wall.
 
-        Beyond an edge of the wall the result belongs to the surface that ends there.
+        Beyond an edge of the wall, points are projected onto the extended surface.
 
         Parameters
         ----------
@@ -168,7 +166,7 @@ class PatchWall:
         return points, normals
 
     def located(self, points: Array) -> tuple[Array, Array, Index]:
-        """Project points onto the wall, as `project`, with their patches.
+        """Project points onto the wall, as `project`, and return their patches.
 
         Parameters
         ----------
@@ -182,7 +180,7 @@ class PatchWall:
         normals : (k, 3) array
             Unit normals to the outer side.
         patch : (k,) int array
-            Patch number of each point.
+            Patch index of each point.
         """
         triangle, share = self._nearest(points)
         patch = self._across_joints(points, triangle)
@@ -210,9 +208,7 @@ class PatchWall:
         return cKDTree(self._corners.mean(axis=1))
 
     def _nearest(self, points: Array) -> tuple[Index, Array]:
-        """Return the nearest triangle (k,) of each point and the shares (k, 3) of its corners in the
-        foot.
-        """
+        """Return nearest triangles (k,) of points, and barycentric coordinates (k, 3) of feet."""
         count = min(NEIGHBOUR_COUNT, len(self.triangles))
         candidates = np.asarray(self._middles.query(points, k=count)[1]).reshape(len(points), count)
         corner = self._corners[candidates]
@@ -223,12 +219,12 @@ class PatchWall:
         row = np.arange(len(points))
         return candidates[row, best].astype(np.intp), share[row, best]
 
-    # ---- the side of the joints between patches, which the mesh gives only to its chord error
+    # ---- side of the joints between patches, which the mesh gives only within its chord error
 
     def _across_joints(self, points: Array, triangle: Index) -> Index:
-        """Return the patch (k,) of each point, given its nearest triangle.
+        """Return the patch (k,) of each point, given the nearest triangle.
 
-        Next to a joint it is the patch on the point's side.
+        Near a joint, return the patch on the point's side.
         """
         patch = self.patch[triangle]
         joints = self._joints
@@ -260,7 +256,7 @@ class PatchWall:
         foot, slope, _ = joints.evaluate(arc, t)
         normal = (1.0 - t)[:, None] * joints.start_normal[arc] + t[:, None] * joints.end_normal[arc]
         on_left = dot(p - foot, np.cross(normal, slope)) > 0.0
-        # only between the two patches that meet there: beyond a corner of the joints the triangle decides
+        # only between the two patches of the joint: beyond a corner, the triangle decides
         pair = joints.pair[arc]
         joined = (pair == patch[near_joint][:, None]).any(axis=1)
         patch = patch.copy()
@@ -309,8 +305,11 @@ class PatchWall:
 
 
 class _Joints(NamedTuple):
-    """Edges (k,) between triangles of two patches as cubic arcs: ends, slopes there, outer normals there; the patch on the
-    left and on the right, seen from outside; the triangles (m,) that touch one."""
+    """Edges (k,) between triangles of two patches, as cubic arcs.
+
+    start, end, slopes and outer normals: (k, 3). pair: (k, 2) patches on the left and on the right,
+    seen from outside. tree: midpoints. touched: (m,) whether a triangle touches a joint.
+    """
 
     start: Array
     end: Array
@@ -323,7 +322,7 @@ class _Joints(NamedTuple):
     touched: Mask
 
     def evaluate(self, arc: Index, t: Array) -> tuple[Array, Array, Array]:
-        """Return points, first and second derivatives (n, 3) of arcs at t in [0, 1]."""
+        """Return points and first and second derivatives (n, 3) of arcs at t in [0, 1]."""
         t = t[:, None]
         start = self.start[arc]
         end = self.end[arc]
@@ -335,17 +334,17 @@ class _Joints(NamedTuple):
         return start + t * (a + t * (square + t * cube)), slope, 2.0 * square + 6.0 * t * cube
 
 
-# ---- Faces that are to be covered with layers of beads, as smooth sheets whose outer side the
-# layers grow to
+# ---- Faces to be covered with layers of beads, as smooth sheets; layers grow on the outer side
 
 
 @dataclass(frozen=True, eq=False)
 class CladFaces:
     """Faces of a part to be clad.
 
-    label: of the part. faces: their names. sheets: smoothly connected faces, each group as
-    one sheet; none of them starts or ends anywhere. surroundings: the part itself if it is a
-    solid, substrate and fixtures. depths: None, a face has no volume. own: None, they have no hub.
+    label: name of the part. faces: names of the faces. sheets: a sheet without start and end curves
+    for each group of smoothly connected faces. surroundings: the part itself if it is a solid,
+    substrate and fixtures. depths: None, because a face has no volume. own: None, because faces
+    have no hub.
     """
 
     own: ClassVar[None] = None
@@ -359,10 +358,10 @@ class CladFaces:
 
     @property
     def area(self) -> float:
-        """mm2 of the faces, by their triangles."""
+        """Area of the faces, mm2, from their triangles."""
         return float(sum(sheet.mesh.areas.sum() for sheet in self.sheets))
 
     @property
     def smoothing(self) -> float:
-        """Maximum distance, mm, of the sheets from the faces to be covered: 0 for exact faces."""
+        """Maximum distance between sheets and faces, mm; 0 for exact faces."""
         return max((getattr(sheet, "smoothing", 0.0) for sheet in self.sheets), default=0.0)

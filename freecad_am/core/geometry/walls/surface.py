@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The interface of a wall to slicing, and the analytic walls.
+"""Interface between walls and slicing, and the analytic walls.
 
-A wall is a map (u, v) -> point: layers rise with u, v runs around. Parameters are arrays
-of one shape (...), points and derivatives (..., 3), mm. `period` is the period of v, or
-None if the wall is open in v.
+A wall is a map (u, v) -> point: layers rise with u, and v runs around the wall. Parameters are
+arrays of a common shape (...); points and derivatives are (..., 3), mm. `period` is the period of
+v, or None if the wall is open in v.
 """
 
 from __future__ import annotations
@@ -23,14 +23,17 @@ class Surface(Protocol):
 
     @property
     def period(self) -> float | None:
-        """Period of v, None when the wall is open."""
+        """Period of v; None if the wall is open."""
 
     @property
     def rise_period(self) -> float | None:
-        """Period of u where the wall comes back to itself in that direction too, else None; `inverse` knows u up to it."""
+        """Period of u if the wall also closes in u, else None.
+
+        `inverse` returns u modulo this period.
+        """
 
     def point(self, u: Array, v: Array) -> Array:
-        """Return points of the wall.
+        """Evaluate points of the wall.
 
         Parameters
         ----------
@@ -44,7 +47,7 @@ class Surface(Protocol):
         """
 
     def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
-        """Return points and first derivatives.
+        """Evaluate points and first derivatives.
 
         Parameters
         ----------
@@ -60,7 +63,7 @@ class Surface(Protocol):
         """
 
     def inverse(self, points: Array) -> tuple[Array, Array]:
-        """Return the parameters of the points of the wall nearest to points.
+        """Return the parameters of the wall points nearest to given points.
 
         Parameters
         ----------
@@ -70,7 +73,7 @@ class Surface(Protocol):
         Returns
         -------
         u, v : (n,) array
-            Parameters; v within one period from -period / 2 on.
+            Parameters; v is within one period from -period / 2 on.
         """
 
 
@@ -78,8 +81,9 @@ class Surface(Protocol):
 class Torus:
     """Chalvin 2019, equation 1: bend radius R, tube radius r, mm.
 
-    The tube's centre line starts at the origin along Z and turns about the line parallel to Y through (-R, 0, 0)
-    (errata); u is the angle along the bend, v the angle around the tube, v = 0 on the outside of the bend.
+    The tube's centreline starts at the origin along Z and bends about the line parallel to Y
+    through (-R, 0, 0) (errata). u is the angle along the bend, v the angle around the tube, with v
+    = 0 on the outside of the bend.
     """
 
     bend: float
@@ -87,21 +91,21 @@ class Torus:
 
     @property
     def period(self) -> float:
-        """A full turn."""
+        """Period of v: a full turn."""
         return TURN
 
     @property
     def rise_period(self) -> float:
-        """A full turn too."""
+        """Period of u: a full turn."""
         return TURN
 
     def point(self, u: Array, v: Array) -> Array:
-        """Points (..., 3)."""
+        """Return points (..., 3)."""
         reach = self.bend + self.tube * np.cos(v)
         return _stacked(reach * np.cos(u) - self.bend, self.tube * np.sin(v), reach * np.sin(u))
 
     def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
-        """Points and first derivatives."""
+        """Return points and first derivatives."""
         u, v = np.asarray(u, order="C"), np.asarray(v, order="C")
         cu, su, cv, sv = np.cos(u), np.sin(u), self.tube * np.cos(v), self.tube * np.sin(v)
         reach = self.bend + cv
@@ -112,7 +116,7 @@ class Torus:
         )
 
     def inverse(self, points: Array) -> tuple[Array, Array]:
-        """(u, v) of the nearest points, both from -pi on."""
+        """Return (u, v) of the nearest points, both from -pi to pi."""
         x, y, z = columns(points)
         x = x + self.bend
         return np.arctan2(z, x), np.arctan2(y, np.hypot(x, z) - self.bend)
@@ -120,10 +124,11 @@ class Torus:
 
 @dataclass(frozen=True)
 class Cone:
-    """A cone about Z with the radius `radius` (mm) at u = 0; u is the length along the side (mm), v the azimuth.
+    """A cone about Z; u is the length along the side (mm), v the azimuth.
 
-    slope: angle (rad) of the side to Z, positive when it flares; 0 is the cylinder, +-pi/2 the plane Z = 0 run
-    outwards or inwards. Only where the radius is positive.
+    radius: mm, at u = 0. slope: angle between side and Z, rad, positive for a flaring cone. 0 is
+    the cylinder, +-pi/2 the plane Z = 0 outwards or inwards. Valid only where the radius is
+    positive.
     """
 
     radius: float
@@ -131,21 +136,21 @@ class Cone:
 
     @property
     def period(self) -> float:
-        """A full turn."""
+        """Period of v: a full turn."""
         return TURN
 
     @property
     def rise_period(self) -> None:
-        """None: u is a length."""
+        """None, because u is a length."""
         return None
 
     def point(self, u: Array, v: Array) -> Array:
-        """Points (..., 3)."""
+        """Return points (..., 3)."""
         radius = self.radius + u * np.sin(self.slope)
         return _stacked(radius * np.cos(v), radius * np.sin(v), u * np.cos(self.slope))
 
     def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
-        """Points and first derivatives."""
+        """Return points and first derivatives."""
         out, up, v = np.sin(self.slope), np.cos(self.slope), np.asarray(v, order="C")
         cv, sv, radius = np.cos(v), np.sin(v), self.radius + u * out
         return (
@@ -155,14 +160,14 @@ class Cone:
         )
 
     def inverse(self, points: Array) -> tuple[Array, Array]:
-        """(u, v) of the nearest points."""
+        """Return (u, v) of the nearest points."""
         x, y, z = columns(points)
         out = np.hypot(x, y) - self.radius
         return out * np.sin(self.slope) + z * np.cos(self.slope), np.arctan2(y, x)
 
 
 def cylinder(radius: float) -> Cone:
-    """The cylinder about Z; u is the height."""
+    """Return the cylinder about Z; u is the height."""
     return Cone(radius)
 
 
@@ -179,7 +184,7 @@ def normals(surface: Surface, u: Array, v: Array) -> Array:
     Returns
     -------
     (..., 3) array
-        Along the cross product of the derivatives along u and v.
+        Unit normals along the cross product of the derivatives along u and v.
     """
     _, along, around = surface.derivatives(u, v)
     normal = np.cross(along, around)

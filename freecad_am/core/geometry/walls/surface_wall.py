@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A wall around a closed direction on a substrate: its surface, its start and its end."""
+"""Walls on a substrate whose surface closes around the wall: surface, start and end."""
 
 from __future__ import annotations
 
@@ -16,16 +16,18 @@ from ..obstacles import Body
 from .part_depths import PartDepths
 from .surface import Cone, Surface, Torus, dot
 
-WRAPPED = 6  # columns repeated on either side of a periodic table; the influence of a spline's end falls by 3.7 per knot
+# columns repeated on both sides of a periodic table: the influence of a spline's end decreases by a
+# factor of 3.7 per knot
+WRAPPED = 6
 ITERATIONS = 30
 
 
 class Tabulated:
-    """The surface through points (n, m, 3), mm, at the rising parameters u (n,) and v (m,), n, m >= 4.
+    """The surface through points (n, m, 3), mm, at rising parameters u (n,) and v (m,), n, m >= 4.
 
-    A periodic table leaves out the column at v[0] + period. Below and above the table in u the wall
-    is extrapolated linearly, so that a layer may pass the end of the wall before it is trimmed. On
-    an open wall, v is kept inside the table.
+    A periodic table omits the column at v[0] + period. In u the wall is extrapolated linearly, so
+    that a layer may pass the end of the wall before it is trimmed. On an open wall, v is clipped to
+    the table.
     """
 
     def __init__(self, u: Array, v: Array, points: Array, period: float | None = None) -> None:
@@ -42,22 +44,22 @@ class Tabulated:
 
     @property
     def period(self) -> float | None:
-        """Period of v, None when the wall is open."""
+        """Period of v; None if the wall is open."""
         return self._period
 
     @property
     def rise_period(self) -> None:
-        """None: the table ends."""
+        """None, because the table ends in u."""
         return None
 
     def point(self, u: Array, v: Array) -> Array:
-        """Points (..., 3)."""
+        """Return points (..., 3)."""
         u, v, beyond = self._inside(u, v)
         point = self._evaluated(u, v, 0, 0)
         return point + beyond * self._evaluated(u, v, 1, 0) if beyond.any() else point
 
     def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
-        """Points and first derivatives."""
+        """Return points and first derivatives."""
         u, v, beyond = self._inside(u, v)
         point, along, around = (self._evaluated(u, v, *order) for order in ((0, 0), (1, 0), (0, 1)))
         if beyond.any():
@@ -65,7 +67,7 @@ class Tabulated:
         return point, along, around
 
     def inverse(self, points: Array) -> tuple[Array, Array]:
-        """Return (u, v) of the nearest points: Gauss-Newton from the nearest sample."""
+        """Return (u, v) of the nearest points, by Gauss-Newton from the nearest sample."""
         if self._tree is None:
             self._tree = cKDTree(self.points.reshape(-1, 3))
         row, column = np.divmod(self._tree.query(points)[1], len(self.v))
@@ -85,7 +87,7 @@ class Tabulated:
         return u, v
 
     def _inside(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
-        """Return u and v inside the table and how far u is beyond it, (..., 1)."""
+        """Return u and v inside the table, and the excess (..., 1) of u beyond the table."""
         u, v = np.broadcast_arrays(np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64))
         inside = np.clip(u, self.u[0], self.u[-1])
         if self._period is None:
@@ -108,13 +110,13 @@ TORUS, CONE, TABLE = "torus", "cone", "table"
 class SurfaceWall:
     """A wall in part coordinates, mm and rad.
 
-    kind: TORUS with sizes (bend, tube), CONE with sizes (radius, slope), or TABLE with the
-    parameters u (n,) and v (m,) and the points table (n, m, 3). frame: (4, 4) pose of the
-    surface's own frame in the part. end: u of the upper edge; layers rise from the substrate
-    to it. first: (m, 3) closed chain of points in part coordinates in which the wall leaves
-    the substrate, the first not repeated. faces: names of the wall's faces. surroundings: the
-    substrate, then fixtures. depths: how the part is distributed about the wall. closes_around: a
-    parameter of one surface closes around the wall. own: None, a wall has no hub.
+    kind: TORUS with sizes (bend, tube), CONE with sizes (radius, slope), or TABLE with parameters u
+    (n,) and v (m,) and the points table (n, m, 3). frame: (4, 4) pose of the surface frame in the
+    part. end: u of the upper edge, up to which layers rise from the substrate. first: (m, 3) closed
+    chain of points in part coordinates in which the wall leaves the substrate, first point not
+    repeated. faces: names of the wall's faces. surroundings: the substrate, then fixtures. depths:
+    distribution of the part about the wall. closes_around: whether a surface parameter closes
+    around the wall. own: None, because a wall has no hub.
     """
 
     closes_around: ClassVar[Literal[True]] = True
@@ -136,14 +138,14 @@ class SurfaceWall:
     depths: PartDepths | None = None
 
     def surface(self) -> Placed:
-        """The wall as slicing wants it, in part coordinates."""
+        """Return the surface of the wall in part coordinates, for slicing."""
         return Placed(
             own_surface(self.kind, self.sizes, self.u, self.v, self.table, self.period), self.frame
         )
 
     @property
     def symmetry_normal(self) -> Array | None:
-        """Unit normal (3,) of the plane of the bend of a torus; other walls are not known to have such a plane."""
+        """Unit normal (3,) of the bend plane of a torus; None for other walls."""
         return np.array(self.frame[:3, 1]) if self.kind == TORUS else None
 
 
@@ -155,22 +157,22 @@ def own_surface(
     table: Array | None = None,
     period: float = 2.0 * np.pi,
 ) -> Surface:
-    """Return the surface of a wall in its own frame.
+    """Return the surface of a wall in the surface frame.
 
     Parameters
     ----------
     kind : str
         TORUS, CONE or TABLE, see `SurfaceWall`.
     sizes : tuple of float
-        Sizes of the kind, mm and rad.
+        Sizes for the kind, mm and rad.
     u : (n,) array or None, optional
-        Parameters of a table.
+        Parameters of the table.
     v : (m,) array or None, optional
-        Parameters of a table.
+        Parameters of the table.
     table : (n, m, 3) array or None, optional
-        Points of a table, mm.
+        Points of the table, mm.
     period : float, optional
-        Period of v of a table.
+        Period of v of the table.
 
     Returns
     -------
@@ -193,7 +195,7 @@ def own_surface(
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """A surface moved by a rigid pose (4, 4)."""
+    """A surface transformed by a rigid pose (4, 4)."""
 
     own: Surface
     frame: Array
@@ -205,20 +207,20 @@ class Placed:
 
     @property
     def rise_period(self) -> float | None:
-        """Period of u, where it has one."""
+        """Period of u, if any."""
         return self.own.rise_period
 
     def point(self, u: Array, v: Array) -> Array:
-        """Points (..., 3)."""
+        """Return points (..., 3)."""
         points: Array = self.own.point(u, v) @ self.frame[:3, :3].T + self.frame[:3, 3]
         return points
 
     def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
-        """Points and first derivatives."""
+        """Return points and first derivatives."""
         point, along, around = self.own.derivatives(u, v)
         turn = self.frame[:3, :3].T
         return point @ turn + self.frame[:3, 3], along @ turn, around @ turn
 
     def inverse(self, points: Array) -> tuple[Array, Array]:
-        """(u, v) of the nearest points of the wall."""
+        """Return (u, v) of the nearest points of the wall."""
         return self.own.inverse((points - self.frame[:3, 3]) @ self.frame[:3, :3])
