@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The kind of a machine in a cell: one record for each set-up holds the consequences, so no
-code asks for the kind.
-"""
+"""Cell set-ups: one record per set-up states its consequences, so code never tests for a set-up."""
 
 from __future__ import annotations
 
@@ -12,15 +10,15 @@ from ..issues import InputError
 
 @dataclass(frozen=True)
 class Arrangement:
-    """What the flange carries, and the resulting freedom.
+    """What the flange carries, and its consequences.
 
-    setup: the value of `cell.setup`. carries_part: the flange carries the part, under a fixed
-    nozzle; otherwise it carries the nozzle. free: number of coordinates that point and tool
-    axis leave free without external axes: on a robot the rotation about the tool. holds_part:
-    the part turns in the hand of a robot, so a straight motion in the world is not a line on
-    the part. links_known: files describe the links, so collisions can be computed; otherwise
-    they are only drawn. named_axes: the controller writes axes by name (X, A), not by number.
-    planned: jobs with it can be planned.
+    setup: value of `cell.setup`. carries_part: the flange carries the part under a fixed nozzle;
+    otherwise it carries the nozzle. free: number of coordinates that point and tool axis leave free
+    without external axes; on a robot it is the rotation about the tool axis. holds_part: a robot
+    holds and rotates the part, so linear motion in the world is not a line on the part.
+    links_known: files describe the links, so collisions can be checked; otherwise links are only
+    drawn. named_axes: the controller names axes (X, A) instead of numbering them. planned: jobs can
+    use this set-up.
     """
 
     setup: str
@@ -57,7 +55,7 @@ _WITH_POSITIONER = Arrangement(
     named_axes=False,
     planned=False,
 )
-# its chain begins at the torch, so the part is on its flange wherever its axes are
+# the chain begins at the torch, so its flange always carries the part
 _FIVE_AXIS = Arrangement(
     "rotary-table",
     carries_part=True,
@@ -66,19 +64,20 @@ _FIVE_AXIS = Arrangement(
     links_known=False,
     named_axes=True,
 )
-OF_ROBOTS = (_HOLDING_PART, _HOLDING_TOOL, _WITH_POSITIONER)  # the most usual set-up first
+OF_ROBOTS = (_HOLDING_PART, _HOLDING_TOOL, _WITH_POSITIONER)  # the most common set-up first
 OF_FIVE_AXES = (_FIVE_AXIS,)
 _ALL = {one.setup: one for one in (*OF_ROBOTS, *OF_FIVE_AXES)}
 
 
 def arrangement_of(setup: str) -> Arrangement:
-    """The record of a value of `cell.setup`; KeyError for any other."""
+    """Return the record of a set-up. Raises KeyError for an unknown set-up."""
     return _ALL[setup]
 
 
 def planned_of(setup: str) -> Arrangement:
-    """The record of a value of `cell.setup`; raises InputError NOT_YET for set-ups that jobs cannot
-    use yet.
+    """Return the record of a set-up.
+
+    Raises InputError NOT_YET for a set-up that jobs cannot use yet.
     """
     arrangement = _ALL.get(setup)
     if arrangement is None or not arrangement.planned:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The cell: a machine, its load, and the deposition point.
+"""The cell: a machine, its load and the deposition point.
 
-The one freedom at a point of the toolpath is the rotation phi about the tool axis. It is
-measured from a reference carried along without twist: the smallest rotation that takes
-the tool axis to the Z of the platform. With M the rotation from part coordinates to
-coordinates of the deposition point, M = Rz(phi) S(t) and M t = Z (Chalvin 2020, eq. 10).
-RZ of the paper is the last Bryant angle of the same M = Rx(RX) Ry(RY) Rz(RZ) (eq. 9); the
-two differ, and RZ degenerates where t is horizontal (ERRATA).
+On a robot, one degree of freedom remains at each toolpath point: the rotation phi about the
+tool axis. Its zero is the smallest rotation that takes the tool axis t to the platform Z, so the
+reference does not twist along a path. Let M be the rotation from part coordinates to deposition
+point coordinates. Then M = Rz(phi) S(t) and M t = Z (Chalvin 2020, eq. 10). RZ in the paper is
+the last Bryant angle of the same M = Rx(RX) Ry(RY) Rz(RZ) (eq. 9). phi and RZ differ, and RZ
+degenerates where t is horizontal (ERRATA).
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ from .torch import Torch
 
 CODE = "TOUCHED"
 MIN_POINTS = 3
-LINE = 0.05  # minimum distance of points from a line, as a share of their spread
-SAME_SIZE = 0.01  # allowed error of the distances between points, as a share
+LINE = 0.05  # minimum distance of points from a line, fraction of their spread
+SAME_SIZE = 0.01  # maximum relative error of the distances between points
 _UNITS = (
     (25.4, "inches"),
     (1000.0, "m"),
@@ -50,8 +50,10 @@ _UNITS = (
 
 @dataclass(frozen=True, eq=False)
 class WorkOffset:
-    """pose: (4, 4) of the part's coordinates in the manufacturer's base frame. residual: (n,) mm,
-    the distance of each point from its touched position.
+    """Pose of the part from touched points.
+
+    pose: (4, 4) part coordinates in the manufacturer's base frame, mm. residual: (n,) distance of
+    each point from its touched position, mm.
     """
 
     pose: Array
@@ -69,8 +71,9 @@ class WorkOffset:
 
 
 def offset_of_cell(parameters: CellParameters, arrangement: Arrangement) -> WorkOffset | None:
-    """Return the pose of the part of a cell from touched points; None without any. Raises
-    InputError TOUCHED.
+    """Return the part pose of a cell from its touched points; None without touched points.
+
+    Raises InputError TOUCHED.
     """
     points = parameters.touched
     if not points:
@@ -88,10 +91,10 @@ def offset_of_cell(parameters: CellParameters, arrangement: Arrangement) -> Work
 
 
 def work_offset(points: Sequence[TouchedPoint], tolerance: float) -> WorkOffset:
-    """Return the pose of the part.
+    """Return the part pose that best fits the touched points.
 
-    Raises InputError TOUCHED for fewer than three points, collinear points, points at another
-    scale, and a point that is farther than `tolerance` mm from its touched position.
+    Raises InputError TOUCHED for fewer than three points, collinear points, points at a different
+    scale, or a residual over `tolerance` mm.
     """
     if len(points) < MIN_POINTS:
         raise InputError(
@@ -140,7 +143,7 @@ def work_offset(points: Sequence[TouchedPoint], tolerance: float) -> WorkOffset:
 
 
 def _refuse_other_size(ratio: float) -> None:
-    """Reject touched points at another scale than the planned part."""
+    """Reject touched points whose scale differs from the planned part."""
     if abs(ratio - 1.0) <= SAME_SIZE:
         return
     unit = next((name for factor, name in _UNITS if abs(ratio * factor - 1.0) <= SAME_SIZE), "")
@@ -159,17 +162,17 @@ def _refuse_other_size(ratio: float) -> None:
 
 UP = (0.0, 0.0, 1.0)
 
-# the tip's Z points out of the nozzle, the tool axis from the deposit towards the tool
+# the tip Z points out of the nozzle; the tool axis points from the deposit to the tool
 _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
 class CellShapes:
-    """The shapes in a cell besides robot and part.
+    """The shapes in a cell other than robot and part.
 
-    obstacles: obstacles in the world, the manufacturer's base frame. torch: the holder of the
-    nozzle, in the frame of its tip, Z into it. external_links: the known links of positioner
-    and track, each in its own frame.
+    obstacles: in the world, which is the manufacturer's base frame. torch: the nozzle holder, in
+    the tip frame with Z into the holder. external_links: known links of positioner and track, each
+    in its own frame.
     """
 
     obstacles: tuple[Body, ...] = ()
@@ -181,11 +184,11 @@ class CellShapes:
 class CellPoses:
     """The poses (4, 4) of a cell, mm.
 
-    station: in base_link, the deposition point (part on robot, five-axis machine) or the
-    fixed platform (tool on robot). carried: on the flange, the platform (part on robot,
-    five-axis machine) or the nozzle's tip (tool on robot). A five-axis machine is a chain
-    seen from the torch, so the part is on its flange wherever its axes are. mount: in part
-    coordinates, the frame on the platform. offset: pose of the part from touched points.
+    station: fixed frame in base_link. It is the deposition point (part on robot, five-axis
+    machine) or the platform (tool on robot). carried: load frame on the flange. It is the platform
+    (part on robot, five-axis machine) or the nozzle tip (tool on robot). The chain of a five-axis
+    machine begins at the torch, so its flange always carries the part. mount: platform frame in
+    part coordinates. offset: part pose from touched points, if any.
     """
 
     station: Array
@@ -194,7 +197,7 @@ class CellPoses:
     offset: WorkOffset | None = None
 
     def to_flange(self, position: Array, tool: Array) -> tuple[Array, Array]:
-        """Return points and tool axes of the part in the frame of the flange that carries it.
+        """Transform points and tool axes from part coordinates to the frame of the carrying flange.
 
         Parameters
         ----------
@@ -216,7 +219,7 @@ class CellPoses:
         ].T
 
     def phi_of_rz(self, tool: Array, rz: Array) -> tuple[Array, Array]:
-        """Return the rotation phi for the RZ of the paper.
+        """Convert RZ of the paper to the rotation phi.
 
         Parameters
         ----------
@@ -242,7 +245,8 @@ class CellPoses:
         sy = -(t[:, 0] * cos - t[:, 1] * sin)
         cx = np.sqrt(sy * sy + t[:, 2] ** 2)
         level = np.where(cx > 0.0, cx, 1.0)
-        # Rx Ry Rz on the first row of the rotation that brings the tool upright; two of its entries give the angle
+        # Rx Ry Rz times the first row of the rotation that brings the tool upright; the first two
+        # components of the product give phi
         x, y, z = columns(frames.smallest_rotation(t, UP)[:, 0])
         x, y = cos * x - sin * y, sin * x + cos * y
         cos_y, sin_y = np.where(cx > 0.0, t[:, 2], 1.0) / level, sy / level
@@ -250,7 +254,7 @@ class CellPoses:
         return np.arctan2(first_row[1], first_row[0]), t[:, 2] / np.maximum(cx * cx, 1e-300)
 
     def rz_of_phi(self, tool: Array, phi: Array) -> Array:
-        """Return the RZ of the paper for rotations phi.
+        """Convert rotations phi to RZ of the paper.
 
         Parameters
         ----------
@@ -274,13 +278,13 @@ class CellPoses:
 
 @dataclass(frozen=True, eq=False)
 class Cell:
-    """A resolved cell: a machine with its limits and its surroundings.
+    """A resolved cell: a machine, its limits and its surroundings.
 
-    poses: of deposition point, platform, nozzle and part. branch: index of the branch
-    (spherical_wrist.branch_index), or None to search all. external: external axes; the machine is then
-    the robot together with them, and base_link of its chain is the face that carries the
-    part, or the world if only the robot is carried. up: (3,) against gravity in the world,
-    the manufacturer's base frame. shapes: the bodies in the cell besides robot and part.
+    branch: branch index (spherical_wrist.branch_index); None to search all branches. external:
+    external axes, if any. `machine` then includes robot and external axes, and base_link of its
+    chain is the face that carries the part, or the world if only the robot is carried. up: (3,)
+    unit vector against gravity in the world, which is the manufacturer's base frame. shapes: bodies
+    in the cell other than robot and part.
     """
 
     machine: Machine
@@ -297,11 +301,11 @@ class Cell:
 
     @property
     def robot(self) -> Machine:
-        """The machine without external axes, for which an inverse exists."""
+        """The machine without external axes; the closed-form inverse applies to it."""
         return self.machine if self.external is None else self.external.robot
 
     def external_of(self, joints: Array) -> Array | None:
-        """Return the values of the external axes among joints.
+        """Return the external axis values of joint vectors.
 
         Parameters
         ----------
@@ -311,12 +315,12 @@ class Cell:
         Returns
         -------
         (..., k) array or None
-            None without external axes.
+            External axis values, rad or mm; None without external axes.
         """
         return None if self.external is None else joints[..., self.robot.chain.axes :]
 
     def links(self, joints: Array) -> Array:
-        """Return the frames of the robot's links.
+        """Return the link frames of the robot.
 
         Parameters
         ----------
@@ -326,7 +330,7 @@ class Cell:
         Returns
         -------
         (..., axes + 1, 4, 4) array
-            Frames seen from the start of the machine's chain, base_link first, mm.
+            Frames in the first frame of the machine chain, base_link first, mm.
         """
         external = self.external_of(joints)
         if self.external is None or external is None:
@@ -338,7 +342,7 @@ class Cell:
         return moved
 
     def world(self, joints: Array) -> Array:
-        """Return the world frame, seen from the start of the chain.
+        """Return the world frame in the first frame of the machine chain.
 
         The world is the manufacturer's base frame.
 
@@ -357,13 +361,13 @@ class Cell:
         values = np.array(joints[..., self.robot.chain.axes :])
         if (
             self.external.slides is not None
-        ):  # with its track at zero the robot has the same pose in the world as without a track
+        ):  # the robot stands in the world as it does with the track at zero
             values[:, self.external.slides] = 0.0
         base_frames: Array = self.external.base(values) @ self.robot.base
         return base_frames
 
     def external_link_frames(self, joints: Array) -> Array:
-        """Return the frames of the links of external axes.
+        """Return the link frames of the external axes.
 
         Parameters
         ----------
@@ -373,7 +377,7 @@ class Cell:
         Returns
         -------
         (n, links, 4, 4) array
-            Frames of `shapes.external_links`, seen from the start of the machine's chain, mm.
+            Frames of `shapes.external_links` in the first frame of the machine chain, mm.
         """
         values = self.external_of(joints)
         if not self.shapes.external_links or self.external is None or values is None:
@@ -386,7 +390,7 @@ class Cell:
 
     @property
     def arrangement(self) -> Arrangement:
-        """The load of the flange, and its consequences."""
+        """The set-up record: what the flange carries, and its consequences."""
         return arrangement_of(self.setup)
 
     @property
@@ -398,13 +402,12 @@ class Cell:
 
     @property
     def carriers(self) -> tuple[Machine, ...]:
-        """Return the machines that carry and move the part, from the floor on.
+        """Return the machines that carry and move the part, starting at the floor.
 
         Returns
         -------
         tuple of Machine
-            The part is on the face, or the flange, of the last one; empty if it does
-            not move.
+            The last one holds the part on its face or flange. Empty if the part does not move.
         """
         if self.arrangement.carries_part:
             return (self.machine,)
@@ -427,7 +430,7 @@ class Cell:
     def pose_frames(
         self, position: Array, tool: Array, external: Array | None = None
     ) -> PoseFrames:
-        """Return the factors of flange poses that stay constant while the rotation varies.
+        """Return the factors of the flange poses that do not depend on the rotation.
 
         Parameters
         ----------
@@ -436,7 +439,7 @@ class Cell:
         tool : (n, 3) array
             Tool axes in part coordinates, unit vectors.
         external : (n, k) array or None, optional
-            Values of the external axes; required in a cell that has some.
+            External axis values; required in a cell with external axes.
 
         Returns
         -------
@@ -454,14 +457,12 @@ class Cell:
             )
         stands = self.poses.station @ frames.pose(np.swapaxes(upright, 1, 2), points)
         if self.external is not None:
-            assert (
-                external is not None
-            )  # callers must pass the values of external axes for such a cell
+            assert external is not None  # a cell with external axes needs their values
             stands = frames.inverse(self.external.base(external)) @ stands
         return PoseFrames(stands, -1.0, (_TURNED @ frames.inverse(self.poses.carried))[None])
 
     def to_carrier(self, position: Array) -> Array:
-        """Return points of the part in the frame of the flange or face that carries it.
+        """Transform points from part coordinates to the frame of the carrying flange or face.
 
         Parameters
         ----------
@@ -471,7 +472,7 @@ class Cell:
         Returns
         -------
         (n, 3) array
-            Points in the frame of the last of `carriers`, mm.
+            Points in the frame of the last carrier (see `carriers`), mm.
         """
         carrier_frame = (
             self.poses.carried if self.arrangement.carries_part else self.poses.station
@@ -492,7 +493,7 @@ class Cell:
         phi : (n,) array
             Rotations about the tool axes, rad.
         joints : (n, axes) array or None, optional
-            Joints nearby, from which the external axes are taken.
+            Joints that give the external axis values.
 
         Returns
         -------
@@ -504,7 +505,7 @@ class Cell:
         ).flange_poses(phi)
 
     def tip_in_part(self, flange: Array) -> tuple[Array, Array]:
-        """Return tip and axis of the nozzle in part coordinates.
+        """Return the nozzle tip and the tool axis in part coordinates.
 
         Parameters
         ----------
@@ -514,9 +515,9 @@ class Cell:
         Returns
         -------
         tip : (n, 3) array
-            The tip, mm.
+            Nozzle tip, mm.
         axis : (n, 3) array
-            The tool axis, unit vectors.
+            Tool axes, unit vectors.
         """
         if self.torch_stands:
             platform = flange @ self.poses.carried
@@ -529,7 +530,7 @@ class Cell:
         return in_part[:, :3, 3], in_part[:, :3, 2]
 
     def tip_at(self, joints: Array) -> Array:
-        """Return only the tip of the nozzle, in a third of the time of `tip_in_part`.
+        """Return the nozzle tip alone, in a third of the time of `tip_in_part`.
 
         Parameters
         ----------
@@ -539,7 +540,7 @@ class Cell:
         Returns
         -------
         (..., 3) array
-            The tip in part coordinates, mm.
+            Nozzle tip in part coordinates, mm.
         """
         chain = self.machine.chain
         if self.torch_stands:
@@ -553,11 +554,11 @@ class Cell:
 
     @property
     def torch_stands(self) -> bool:
-        """Whether the machine moves only the part, under a fixed torch."""
+        """Whether the torch is fixed and the machine moves the part."""
         return self.arrangement.carries_part
 
     def deposition_point(self, flange: Array) -> Array:
-        """Return the point of deposit for flange poses.
+        """Return the deposition point for flange poses.
 
         Parameters
         ----------
@@ -575,7 +576,7 @@ class Cell:
         return tip
 
     def rotation_axis(self, flange: Array) -> Array:
-        """Return the angular velocity of the flange per unit of phi.
+        """Return the angular velocity of the flange per unit rate of phi.
 
         Parameters
         ----------
@@ -585,7 +586,7 @@ class Cell:
         Returns
         -------
         (n, 3) array
-            Unit vectors in base_link; the rotation is about the deposition point.
+            Unit vectors in base_link, for a rotation about the deposition point.
         """
         if self.torch_stands:
             return np.broadcast_to(self.poses.station[:3, 2], (len(flange), 3))
@@ -594,21 +595,21 @@ class Cell:
 
 
 def mounted(parameters: CellParameters, feature_frame: Array, family: str) -> Array:
-    """Return the frame that sits on the platform.
+    """Return the frame of the part that coincides with the platform.
 
     Parameters
     ----------
     parameters : CellParameters
-        The cell, with `mount`.
+        The cell, including `mount`.
     feature_frame : (4, 4) array
-        The feature's own frame in part coordinates.
+        Feature frame in part coordinates.
     family : str
-        Kind of the feature; it decides for the mount 'auto'.
+        Kind of the feature, which decides for mount 'auto'.
 
     Returns
     -------
     (4, 4) array
-        The feature's frame, or the identity for the frame of the part file.
+        Feature frame, or the identity for the frame of the part file.
     """
     mount = parameters.mount if parameters.mount != "auto" else KINDS[family].mount
     return np.array(feature_frame) if mount == ON_FEATURE else np.eye(4)
@@ -620,16 +621,15 @@ def resolve(
     family: str = DEFAULT_KIND,
     folders: Sequence[str] = (),
 ) -> Cell:
-    """Return the cell of a job: the machine file read, the frames combined.
+    """Read the machine file of a job and combine the frames of its cell.
 
     Parameters
     ----------
     parameters : CellParameters
-        The cell as the job describes it.
+        The cell parameters of the job.
     feature_frame : (4, 4) array
-        The feature's own frame in part coordinates; it sits on the platform when `mount` is
-        'feature' (the default for parts of revolution), else the frame of the part file
-        does.
+        Feature frame in part coordinates. It coincides with the platform if `mount` is 'feature',
+        the default for parts of revolution; otherwise the frame of the part file does.
     family : str, optional
         Kind of the feature.
     folders : sequence of str, optional
@@ -643,8 +643,8 @@ def resolve(
     Raises
     ------
     InputError
-        UNKNOWN_MACHINE, BAD_MACHINE, UNKNOWN_LIMITS, NOT_YET for set-ups to come,
-        WRONG_SETUP for a robot as a table or the reverse, NO_CLOSED_FORM.
+        UNKNOWN_MACHINE, BAD_MACHINE, UNKNOWN_LIMITS, NOT_YET for set-ups that are not available
+        yet, WRONG_SETUP if the machine does not suit the set-up, NO_CLOSED_FORM.
     """
     arrangement = planned_of(parameters.setup)
     machine = machines.load(parameters.machine, tuple(folders))
@@ -688,8 +688,9 @@ def resolve(
 
 
 def _refuse_otherwise(machine: Machine, arrangement: Arrangement, has_external: bool) -> None:
-    """Raise InputError WRONG_SETUP for a set-up that the machine or external axes do not support,
-    NO_CLOSED_FORM for an arm without a known inverse.
+    """Raise InputError WRONG_SETUP if the machine or external axes do not suit the set-up.
+
+    Raise InputError NO_CLOSED_FORM for an arm without a known inverse.
     """
     if arrangement not in machine.arrangements:
         kind = "is a robot" if machine.free else "has prismatic axes"

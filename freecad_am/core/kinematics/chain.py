@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Forward kinematics of a serial chain of revolute and prismatic joints from its joint
-frames.
+"""Forward kinematics of a serial chain of revolute and prismatic joints from its joint frames.
 
-Independent of the closed form in `inverse.spherical_wrist`, so that one can check the other. Joint frames
-follow the machine file: T = product of Trans(origin) Rz(yaw) Ry(pitch) Rx(roll) Rot(axis,
-q_i), then the flange; a prismatic joint has Trans(axis q_i) in place of Rot(axis, q_i).
+This code shares nothing with the closed form in `inverse.spherical_wrist`, so each checks the
+other. Joint frames follow the machine file: T is the product of Trans(origin) Rz(yaw) Ry(pitch)
+Rx(roll) Rot(axis, q_i), then the flange. A prismatic joint has Trans(axis q_i) instead of
+Rot(axis, q_i).
 """
 
 from __future__ import annotations
@@ -18,13 +18,15 @@ import numpy as np
 from ..geometry import frames
 from ..types import Array, ArrayLike, Index, Mask
 
-# number of poses per batch: their data fits the processor's cache, and the call overhead stays small
+# poses per batch: small enough for the processor cache, large enough to keep call overhead low
 PIECE = 4096
 
 
 class JointFrames(NamedTuple):
-    """The axes of a chain: unit `directions` (..., axes, 3), a point `origins` (..., axes, 3) on
-    each axis, and the `flange` (..., 4, 4); all in base_link, mm.
+    """The axes of a chain in base_link.
+
+    directions: (..., axes, 3) unit vectors. origins: (..., axes, 3) a point on each axis, mm.
+    flange: (..., 4, 4), mm.
     """
 
     directions: Array
@@ -36,12 +38,11 @@ class JointFrames(NamedTuple):
 class Chain:
     """A serial chain.
 
-    `origins` (axes, 4, 4): the joint frames at zero in the previous link. `directions` (axes,
-    3): unit axes in the joint frames. `flange` (4, 4) in the last link; mm. `order` (axes,):
-    the index of the joint value of each joint, by default its own: in a chain that begins at
-    the part and reaches the robot through a positioner, the robot's values still come first.
-    `sliding` (axes,): which joints, in the order of the values, are prismatic, with values in
-    mm; none by default.
+    origins: (axes, 4, 4) joint frames in the previous link at zero, mm. directions: (axes, 3) unit
+    axes in the joint frames. flange: (4, 4) in the last link, mm. sliding: (axes,) whether each
+    joint value is prismatic, in mm; by default none is. order: (axes,) value index of each joint;
+    by default joint k has value k. A chain from the part through a positioner to the robot needs
+    an order, because robot values come first.
     """
 
     origins: Array
@@ -56,8 +57,7 @@ class Chain:
             object.__setattr__(self, "sliding", np.zeros(len(self.directions), dtype=bool))
         if not len(self.order):
             object.__setattr__(self, "order", np.arange(len(self.directions)))
-        # each joint is converted to a rotation about its Z, with constant poses between
-        # the rotations
+        # express each joint as a rotation about its own Z, with constant poses between joints
         to_axis = frames.pose(
             frames.smallest_rotation((0.0, 0.0, 1.0), self.directions), np.zeros(3)
         )
@@ -101,7 +101,7 @@ class Chain:
         return flange.reshape(angles.shape[:-1] + (4, 4))
 
     def frames(self, q: ArrayLike) -> JointFrames:
-        """Return the axes and the flange in base_link.
+        """Return the axes and the flange pose in base_link.
 
         Parameters
         ----------
@@ -111,7 +111,7 @@ class Chain:
         Returns
         -------
         JointFrames
-            Directions and origins of the axes in the order of the values, and the flange, mm.
+            Directions and origins of the axes in value order, and the flange pose, mm.
         """
         angles = np.asarray(q, float)
         lead = angles.shape[:-1]
@@ -125,7 +125,7 @@ class Chain:
         )
 
     def axes_at(self, q: ArrayLike) -> tuple[Array, Array]:
-        """Return only the directions and origins of `frames`.
+        """Return only the axis directions and origins of `frames`.
 
         Parameters
         ----------
@@ -142,8 +142,9 @@ class Chain:
         return self._axes(self._by_joint(np.asarray(q, float)), None)
 
     def _axes(self, by_joint: Array, flange: Array | None) -> tuple[Array, Array]:
-        """Return directions and origins (axes, 3, n) in the order of the values; fill in flange
-        poses (n, 4, 4) if given.
+        """Return directions and origins (axes, 3, n) in value order.
+
+        Fill in the flange poses (n, 4, 4) if given.
         """
         count = by_joint.shape[1]
         directions, origins = np.empty((self.axes, 3, count)), np.empty((self.axes, 3, count))
@@ -157,7 +158,7 @@ class Chain:
         return directions, origins
 
     def point_from_flange(self, q: ArrayLike, point: Array) -> Array:
-        """Return a fixed point as seen from the flange.
+        """Transform a fixed point to the flange frame.
 
         Parameters
         ----------
@@ -174,7 +175,7 @@ class Chain:
         return self._transform_point(q, point, range(self.axes), frames.inverse(self._links), -1.0)
 
     def point_position(self, q: ArrayLike, point: Array) -> Array:
-        """Return the position of a point of the flange.
+        """Transform a point of the flange to base_link.
 
         Parameters
         ----------
@@ -191,7 +192,7 @@ class Chain:
         return self._transform_point(q, point, range(self.axes)[::-1], self._links[::-1], 1.0)
 
     def links(self, q: ArrayLike) -> Array:
-        """Return the frames of the links.
+        """Return the link frames.
 
         Parameters
         ----------
@@ -201,8 +202,8 @@ class Chain:
         Returns
         -------
         (..., axes + 1, 4, 4) array
-            Frames in base_link, mm: base_link itself, then each joint's frame along the
-            chain, as the joint has moved it.
+            Frames in base_link, mm: base_link itself, then the frame of each joint after its
+            motion, along the chain.
         """
         angles = np.asarray(q, float)
         result = np.empty((*angles.shape[:-1], self.axes + 1, 4, 4))
@@ -217,18 +218,17 @@ class Chain:
             link_frame = result[..., joint, :, :]
             still = (link_frame.reshape(-1, 4) @ self.origins[joint]).reshape(
                 link_frame.shape
-            )  # one product for all, not one for each
+            )  # one matrix product for all poses
             result[..., joint + 1, :, :] = still @ frames.pose(*moved)
         return result
 
     def _transform_point(
         self, q: ArrayLike, point: Array, order: range, links: Array, sense: float
     ) -> Array:
-        """Transform a point by `links` (axes + 1, 4, 4) in turn, and by the joints in that order
-        between them.
+        """Transform a point by `links` (axes + 1, 4, 4), with the joints in `order` between them.
 
-        sense: 1 in the sense of the joints, -1 against it. A point takes a third of the time of a
-        frame.
+        sense: 1 applies the joint motions, -1 their inverses. Transforming a point takes a third
+        of the time of transforming a frame.
         """
         angles = np.asarray(q, float)
         by_joint = self._by_joint(angles)
@@ -255,16 +255,16 @@ class Chain:
 
     @property
     def _is_mixed(self) -> bool:
-        """Whether the joint values have another order than the joints."""
+        """Whether the order of joint values differs from the order of joints."""
         return bool((self.order[1:] < self.order[:-1]).any())
 
     def _by_joint(self, angles: Array) -> Array:
-        """Values (axes, n) of the joints in the order of the chain, of joint values (..., axes)."""
+        """Rearrange joint values (..., axes) to (axes, n) in chain order."""
         by_value: Array = np.moveaxis(angles, -1, 0).reshape(self.axes, -1)
         return by_value[self.order] if self._is_mixed else by_value
 
     def reversed(self) -> Chain:
-        """The same joints seen from the flange: its flange is the base of this chain."""
+        """Return the reversed chain, from the flange to the base."""
         back = frames.inverse(np.concatenate((self.origins, self.flange[None])))[::-1]
         return Chain(
             back[:-1], -self.directions[::-1], back[-1], self.sliding, self.order[::-1].copy()
@@ -273,13 +273,14 @@ class Chain:
     def _run_piece(
         self, angles: Array, axes: tuple[Array, Array] | None, flange: Array | None
     ) -> None:
-        """Fill in the requested directions and origins (axes, 3, n), and flange poses (n, 4, 4), for
-        angles (axes, n).
+        """Fill in directions and origins (axes, 3, n) and flange poses (n, 4, 4) if given.
+
+        angles: (axes, n) joint values in chain order.
         """
         sines, cosines = np.sin(angles), np.cos(angles)
         count = angles.shape[1]
-        # one row per column of the rotation, each with x, y, z of all poses; the first
-        # link is the same in all
+        # one row per column of the rotation matrix and one for the position, each with x, y, z of
+        # all poses; the first link does not depend on the joints
         moved = np.empty((4, 3, count))
         moved[:] = self._links[0, :3].T[:, :, None]
         columns, position = moved[:3].reshape(3, 3 * count), moved[3].ravel()
@@ -303,20 +304,20 @@ class Chain:
 
 
 def _upright(count: int) -> Array:
-    """(count, 4, 4) poses to be filled in."""
+    """Return poses (count, 4, 4) with only the last row set."""
     poses = np.zeros((count, 4, 4))
     poses[:, 3, 3] = 1.0
     return poses
 
 
 def _advance(columns: Array, position: Array, link: Array) -> tuple[Array, Array]:
-    """The frame (columns (3, 3n), position (3n,)) followed by the constant pose `link`."""
+    """Multiply frames (columns (3, 3n), position (3n,)) by the constant pose `link`."""
     moved: Array = link[:3].T @ columns
     return moved[:3], position + moved[3]
 
 
 def _turn(columns: Array, sine: Array, cosine: Array) -> None:
-    """Turn the frames whose columns (3, 3, n) are given about their own Z, in place."""
+    """Rotate frames, given by their columns (3, 3, n), about their own Z in place."""
     first_column = columns[0] * cosine
     first_column += columns[1] * sine
     columns[1] *= cosine
@@ -325,9 +326,10 @@ def _turn(columns: Array, sine: Array, cosine: Array) -> None:
 
 
 class Piece(NamedTuple):
-    """Part of a longer chain: `chain`, which begins at the pose `start` (4, 4) in the flange frame
-    of the previous piece, and the indices `values` (its axes,) of its joint values among those
-    of the whole chain.
+    """Piece of a longer chain.
+
+    start: (4, 4) pose of the piece in the flange frame of the previous piece. values: (axes,)
+    indices of its joint values in the whole chain.
     """
 
     start: Array
@@ -336,19 +338,19 @@ class Piece(NamedTuple):
 
 
 def join_chains(sections: Sequence[Piece], end: Array) -> Chain:
-    """Join consecutive pieces to one chain.
+    """Join consecutive pieces into one chain.
 
     Parameters
     ----------
     sections : sequence of Piece
-        The pieces, from the base on.
+        The pieces, starting at the base.
     end : (4, 4) array
-        The flange of the chain, seen from the flange of the last piece, mm.
+        Flange of the chain in the flange frame of the last piece, mm.
 
     Returns
     -------
     Chain
-        The chain, with its values in the order that the pieces state.
+        The chain, with values in the order given by the pieces.
     """
     origins: list[Array] = []
     flange = np.eye(4)

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """External axes: a robot and its mechanisms as one machine.
 
-Seen from the part, robot and mechanisms are one chain: from the face of the last
-mechanism that carries the part backwards through the positioner to the floor, or from the
-floor itself, and on through the track that carries the robot, and the robot, to its
-flange. So all code that drives a chain (limits, speeds, rapids, collisions, read-back)
-handles external axes without special cases; only the robot's own inverse needs the
-position of its base.
+Seen from the part, robot and mechanisms form one chain. It starts at the face that carries the
+part and runs backwards through the positioner to the floor; without a positioner it starts at the
+floor. From there it continues through the track, if any, and the robot to the flange. All code
+that works on a chain (limits, speeds, rapids, collisions, read-back) therefore handles external
+axes without special cases. Only the robot inverse needs the position of the robot base.
 """
 
 from __future__ import annotations
@@ -37,10 +36,11 @@ MECHANISMS = machines.BUILT_IN / "mechanisms"
 
 @dataclass(frozen=True, eq=False)
 class Mechanism:
-    """One of the mechanisms of a cell.
+    """A mechanism of a cell.
 
-    frame: (4, 4) start of its chain, seen from the world, or from the face of the mechanism
-    below it, `under`, by its index. values: indices of its values among the external axes.
+    frame: (4, 4) start of its chain in the world, or in the face of the mechanism `under` it.
+    values: indices of its values among the external axes. under: index of the mechanism below;
+    None on the floor.
     """
 
     machine: Machine
@@ -54,14 +54,13 @@ class Mechanism:
 class ExternalAxes:
     """The k external axes of a robot.
 
-    robot: the machine without them. to_robot: the chain from the frame under the part, the
-    platform's face or the world, to the robot's base_link. up: (3,) against gravity, in the
-    world. turning: the unit axes (3,) of the positioner in the world with all axes at zero,
-    from the floor on; `turned`: their indices among the values. at_zero: (3, 3) rotates
-    directions on the face into the world, at zero. along: (3,) the unit direction of the
-    track in the world and `slides` the index of its value, None if the robot is fixed.
-    carriers: the machines that carry the part, from the floor on. mechanisms: all, in the
-    given order.
+    robot: the machine without external axes. to_robot: chain from the frame under the part
+    (platform face or world) to the robot's base_link. up: (3,) unit vector against gravity in the
+    world. turning: unit axes (3,) of the positioner in the world with all axes at zero, starting
+    at the floor. turned: their value indices. at_zero: (3, 3) rotation from face to world at zero.
+    along: (3,) unit direction of the track in the world, and slides: its value index; both None if
+    the robot is fixed. carriers: machines that carry the part, starting at the floor. mechanisms:
+    all mechanisms in the given order.
     """
 
     robot: Machine
@@ -77,11 +76,11 @@ class ExternalAxes:
 
     @property
     def axes(self) -> int:
-        """Return the number of axes, k."""
+        """The number of external axes, k."""
         return self.to_robot.axes
 
     def base(self, values: Array) -> Array:
-        """Return the robot's base_link seen from the frame under the part.
+        """Return the robot's base_link in the frame under the part.
 
         Parameters
         ----------
@@ -96,7 +95,7 @@ class ExternalAxes:
         return self.to_robot.forward(values)
 
     def links(self, values: Array) -> list[Array]:
-        """Return the frames of each mechanism's links in the world.
+        """Return the link frames of each mechanism in the world.
 
         Parameters
         ----------
@@ -106,7 +105,7 @@ class ExternalAxes:
         Returns
         -------
         list of (n, axes + 1, 4, 4) array
-            The base first, mm.
+            Frames of each mechanism, base first, mm.
         """
         link_frames: list[Array] = []
         for mechanism in self.mechanisms:
@@ -121,7 +120,7 @@ class ExternalAxes:
         return link_frames
 
     def upright(self, directions: Array, values: Array) -> Array:
-        """Turn directions of the frame under the part into the world.
+        """Rotate directions from the frame under the part into the world.
 
         Parameters
         ----------
@@ -150,16 +149,16 @@ def coupled(
 ) -> tuple[Machine, Limits, ExternalAxes]:
     """Couple a robot with its external axes.
 
-    Joint values are the robot's and then the mechanisms' in the order of `named`.
+    Joint values are those of the robot, then those of the mechanisms in the order of `named`.
 
     Parameters
     ----------
     robot : Machine
         The robot.
     limits : Limits
-        Its limits.
+        Limits of the robot.
     named : sequence of ExternalMechanism
-        The mechanisms as the cell lists them.
+        The mechanisms in the order of the cell.
     up : (3,) sequence of float
         Direction against gravity in the world.
     folders : sequence of str, optional
@@ -198,7 +197,7 @@ def coupled(
     for k, (named_axis, machine) in enumerate(loaded):
         if named_axis.carries == ROBOT:
             start = frames.bryant(named_axis.pose) @ frames.inverse(machine.base)
-            # at zero the robot's base is the base of the world
+            # with the track at zero, the robot base is the world
             in_world = frames.inverse(start @ machine.chain.forward(np.zeros(1))) @ in_world
             sections.append(Piece(start, machine.chain, values[k]))
             along = start[:3, :3] @ machine.chain.frames(np.zeros(1)).directions[0]
@@ -264,7 +263,7 @@ def _check(loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> None:
 
 
 def _check_names(robot: Machine, loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> None:
-    """Reject mechanisms that are the robot itself, or that are listed twice."""
+    """Reject a mechanism that is the robot itself or that is listed twice."""
     for k, (named_axis, machine) in enumerate(loaded):
         if machine.id == robot.id or (_alike(machine, robot) and named_axis.carries == ROBOT):
             raise InputError(
@@ -301,14 +300,16 @@ def _alike(machine: Machine, reference: Machine) -> bool:
 
 
 def load(name: str, folders: Sequence[str] = ()) -> Machine:
-    """A mechanism by its id, in the user's folders or built in, by the path of a machine file, or the links of a URDF.
+    """Return the mechanism of an id, a machine file path or a URDF reference.
 
-    Raises InputError UNKNOWN_MACHINE, BAD_MACHINE, BAD_URDF.
+    An id is looked up in the user's folders, then among the built-in mechanisms. Raises InputError
+    UNKNOWN_MACHINE, BAD_MACHINE, BAD_URDF.
     """
     description = reference(name)
     if description is not None:
         urdf_chain = urdf_machine.chain_of(description)
-        called = f"{urdf_chain.name} {' - '.join(urdf_chain.joints)}"  # a file may describe several mechanisms
+        # a file may describe several mechanisms, so the joints are part of the id
+        called = f"{urdf_chain.name} {' - '.join(urdf_chain.joints)}"
         return dataclasses.replace(
             machines.machine_of_description(name, urdf_chain, None), id=called, title=called
         )
@@ -345,10 +346,10 @@ def upward(up: Sequence[float]) -> Array:
 
 
 def _chain(loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> tuple[Chain, Array]:
-    """Return the chain from the world to the face that carries the part, and that face (4, 4) at
+    """Return the chain from the world to the face that carries the part, and this face (4, 4) at
     zero.
 
-    Poses of mechanisms are those in the world with all axes at zero.
+    Mechanism poses are given in the world with all axes at zero.
     """
     sections: list[Piece] = []
     flange, begin = np.eye(4), 0
@@ -367,8 +368,9 @@ def _chain(loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> tuple[Chain, 
 def _mechanisms(
     loaded: Sequence[tuple[ExternalMechanism, Machine]], values: Sequence[Index]
 ) -> tuple[Mechanism, ...]:
-    """Return the mechanisms with their frames; each one that carries the part stands on the
-    previous one.
+    """Return the mechanisms with their frames.
+
+    Each mechanism that carries the part stands on the previous one.
     """
     adjacent: list[Mechanism] = []
     under: int | None = None
@@ -384,7 +386,7 @@ def _mechanisms(
 
 
 def _together(robot: Machine, machines_beside: Sequence[Machine], chain: Chain) -> Machine:
-    """The robot with further axes e1, e2 ...."""
+    """Return the robot with its external axes, which are named e1, e2 and so on."""
     count, axes = sum(machine.chain.axes for machine in machines_beside), robot.chain.axes
     matrix = np.eye(axes + count)
     matrix[:axes, :axes] = robot.controller_matrix
@@ -446,7 +448,7 @@ def _limits(robot: Limits, machines_beside: Sequence[Machine]) -> Limits:
 
 
 def tilt_from(directions: Array, up: Array) -> Array:
-    """Return the angles of unit vectors to a direction.
+    """Return the angles between unit vectors and a direction.
 
     Parameters
     ----------
@@ -467,10 +469,10 @@ def tilt_from(directions: Array, up: Array) -> Array:
 def positioners(
     robot: Machine, mass: float, radius: float, folders: Sequence[str] = ()
 ) -> list[Machine]:
-    """Return the known positioners with one or two revolute axes for a part, the best suited first.
+    """Return the known positioners with one or two revolute axes for a part, the best first.
 
-    The order: tables as wide as the part; known speeds; the robot's manufacturer; the lowest
-    rating.
+    Prefer a table at least as wide as the part, then known axis speeds, then the robot's
+    manufacturer, then the lowest payload.
 
     Parameters
     ----------
@@ -486,7 +488,7 @@ def positioners(
     Returns
     -------
     list of Machine
-        Mechanisms whose files state enough payload, or none.
+        Mechanisms whose files state a sufficient payload.
     """
     candidates = [
         machine
@@ -499,7 +501,7 @@ def positioners(
 
 
 def tracks(robot: Machine, folders: Sequence[str] = ()) -> list[Machine]:
-    """Return tracks with one prismatic axis, those of the robot's manufacturer first."""
+    """Return the known tracks with one prismatic axis, those of the robot's manufacturer first."""
     candidates = [
         machine
         for machine in _known(folders)
@@ -519,8 +521,9 @@ def _rank(robot: Machine, machine: Machine) -> tuple[bool, bool, float, str]:
 
 
 def _known(folders: Sequence[str]) -> list[Machine]:
-    """Return all mechanisms in the user's folders and built in, without files that are invalid or
-    describe no mechanism.
+    """Return the mechanisms in the user's folders and the built-in ones.
+
+    Skip files that are invalid or describe no mechanism.
     """
     mechanisms: dict[str, Machine] = {}
     for folder in [MECHANISMS, *map(Path, folders)]:
@@ -535,7 +538,10 @@ def _known(folders: Sequence[str]) -> list[Machine]:
 
 
 def _table(machine: Machine) -> float:
-    """Return the extent of the last link from its axis, mm; infinite if unknown."""
+    """Return the distance of the farthest point of the last link from its axis, mm.
+
+    Infinite if the shape is unknown.
+    """
     point_sets = [
         solid.points
         for solid in (machine.bodies[-1] if machine.bodies else ())

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The geometric Jacobian over arrays of joint vectors, and its distance from singularity.
+"""Geometric Jacobians of arrays of joint vectors, and measures of distance from singularity.
 
-A Jacobian mixes mm and rad, so every measure takes a characteristic length in mm that
-divides the translation rows (errata to Chalvin 2020, eq. 6). The condition is sigma_min /
-sigma_max of the scaled Jacobian: 1 is best, 0 is singular.
+A Jacobian mixes mm and rad, so every measure divides the translation rows by a characteristic
+length in mm (errata to Chalvin 2020, eq. 6). The condition is sigma_min / sigma_max of the scaled
+Jacobian: 1 is best, 0 is singular.
 
-Internally an array holds one entry of the matrices of all poses.
+Internal arrays hold one matrix entry for all poses.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from ..types import Array, ArrayLike
 from .chain import Chain
 
-BATCH_SIZE = 4096  # poses: limits the memory of intermediate arrays
+BATCH_SIZE = 4096  # poses per batch, to limit the memory of intermediate arrays
 
 
 def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
@@ -30,13 +30,13 @@ def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
     q : (n, axes) array
         Joint values, rad or mm.
     point : (n, 3) or (3,) array
-        The current position of the point in base_link, mm.
+        Current position of the point in base_link, mm.
 
     Returns
     -------
     (n, 6, axes) array
-        Rows: velocity in mm and angular velocity in rad, per rad or mm of each joint, in
-        base_link.
+        Three rows for velocity (mm), three for angular velocity (rad), per rad or mm of each
+        joint, in base_link.
     """
     angles = np.asarray(q, float)
     count = len(angles)
@@ -56,14 +56,14 @@ def jacobian(chain: Chain, q: ArrayLike, point: ArrayLike) -> Array:
 
 
 def condition(jacobians: ArrayLike, length: float) -> Array:
-    """Return the ratio of the smallest to the largest singular value.
+    """Return the inverse condition number of Jacobians.
 
     Parameters
     ----------
     jacobians : (n, 6, axes) array
         Jacobians in mm and rad.
     length : float
-        Characteristic length that divides the rows of translation, mm.
+        Characteristic length that divides the translation rows, mm.
 
     Returns
     -------
@@ -72,8 +72,7 @@ def condition(jacobians: ArrayLike, length: float) -> Array:
 
     Notes
     -----
-    Computed from the eigenvalues of J J^T: accurate to about 1e-15 divided by the condition
-    itself.
+    It uses the eigenvalues of J J^T, with an accuracy of about 1e-15 divided by the result.
     """
 
     def compute_batch(scaled: Array) -> Array:
@@ -93,27 +92,26 @@ def condition_bound(jacobians: ArrayLike, length: float) -> Array:
     jacobians : (n, 6, 6) array
         Jacobians in mm and rad.
     length : float
-        Characteristic length that divides the rows of translation, mm.
+        Characteristic length that divides the translation rows, mm.
 
     Returns
     -------
     (n,) array
-        1 / (norm(J) norm(J^-1)) with Frobenius norms; 0 where the last three axes have no
-        common inverse, at the wrist's singularity.
+        1 / (norm(J) norm(J^-1)) with Frobenius norms; 0 at a wrist singularity, where the block
+        of the last three axes has no inverse.
 
     Notes
     -----
-    The condition is at most 6 times the bound, for arms of the usual proportions 1 to 2.5
-    times.
+    The condition is at most 6 times the bound; for arms of usual proportions 1 to 2.5 times.
     """
     return _in_pieces(_frobenius, jacobians, length)
 
 
 def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Array:
-    """Return the derivative of `condition` while the joints move.
+    """Return the derivative of `condition` along joint rates.
 
-    The point moves with the last link. If the rates leave it in place, as the rotation about
-    the tool axis does, a point fixed in the base frame gives the same.
+    The Jacobian point moves with the last link. If the rates leave the point in place, as rotation
+    about the tool axis does, the result also holds for a point fixed in base_link.
 
     Parameters
     ----------
@@ -122,18 +120,18 @@ def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Arr
     rates : (n, 6) array
         Joint rates, rad per unit of the parameter.
     length : float
-        Characteristic length that divides the rows of translation, mm.
+        Characteristic length that divides the translation rows, mm.
 
     Returns
     -------
     (n,) array
-        Derivative by the parameter; NaN where sigma_min is 0. For a double singular value
-        it is one-sided and not unique.
+        Derivative with respect to the parameter; NaN where sigma_min is 0. For a double
+        singular value it is one-sided and not unique.
 
     Notes
     -----
-    Computed from the singular vectors and the derivative of the columns: joint j turns the
-    columns after it, and moves the point of the columns before it.
+    It uses the singular vectors and the derivatives of the columns. Joint j rotates the columns
+    after j, and moves the point of the columns before j.
     """
     rates = np.asarray(rates, float).T
 
@@ -157,14 +155,14 @@ def condition_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Arr
 
 
 def manipulability(jacobians: ArrayLike, length: float) -> Array:
-    """Return the manipulability of Jacobians.
+    """Return the manipulability for Jacobians.
 
     Parameters
     ----------
     jacobians : (n, 6, 6) array
         Jacobians in mm and rad.
     length : float
-        Characteristic length that divides the rows of translation, mm.
+        Characteristic length that divides the translation rows, mm.
 
     Returns
     -------
@@ -184,7 +182,7 @@ def manipulability(jacobians: ArrayLike, length: float) -> Array:
 
 
 def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -> Array:
-    """Return the derivative of `manipulability` while the joints move.
+    """Return the derivative of `manipulability` along joint rates.
 
     Parameters
     ----------
@@ -193,16 +191,16 @@ def manipulability_rate(jacobians: ArrayLike, rates: ArrayLike, length: float) -
     rates : (n, 6) array
         Joint rates, rad per unit of the parameter.
     length : float
-        Characteristic length that divides the rows of translation, mm.
+        Characteristic length that divides the translation rows, mm.
 
     Returns
     -------
     (n,) array
-        Derivative by the parameter; NaN where J is singular.
+        Derivative with respect to the parameter; NaN where J is singular.
 
     Notes
     -----
-    Jacobi's formula, d det J = det J tr(J^-1 dJ).
+    It uses Jacobi's formula, d det J = det J tr(J^-1 dJ).
     """
     rates = np.asarray(rates, float).T
 
@@ -227,7 +225,7 @@ def _in_pieces(
     length: float,
     with_slice: bool = False,
 ) -> Array:
-    """Return `function` of scaled Jacobians (6, axes, m), in batches."""
+    """Apply `function` to scaled Jacobians (6, axes, m), in batches."""
     matrices = np.moveaxis(np.asarray(jacobians, float), 0, -1)
     result = np.empty(matrices.shape[2])
     for start in range(0, len(result), BATCH_SIZE):
@@ -236,7 +234,7 @@ def _in_pieces(
         scaled[:3] *= 1.0 / length
         unknown = np.isnan(scaled).any(axis=(0, 1)) if np.isnan(scaled.max()) else None
         if unknown is not None:
-            # LAPACK rejects NaN: replace it by any finite matrix
+            # LAPACK rejects NaN: replace NaN matrices by finite ones
             scaled[:, :, unknown] = np.eye(scaled.shape[0], scaled.shape[1])[:, :, None]
         result[rows] = function(scaled, rows) if with_slice else function(scaled)
         if unknown is not None:
@@ -245,9 +243,10 @@ def _in_pieces(
 
 
 def _rate(matrices: Array, rates: Array) -> Array:
-    """The derivative (6, 6, n) of Jacobians along joint rates (6, n).
+    """Return the derivative (6, 6, n) of Jacobians along joint rates (6, n).
 
-    d J_i / d q_j is (z_j x v_i, z_j x z_i) for j <= i, and (z_i x v_j, 0) for j > i, with v and z the columns' halves.
+    d J_i / d q_j is (z_j x v_i, z_j x z_i) for j <= i and (z_i x v_j, 0) for j > i. v and z are the
+    velocity and direction halves of the columns.
     """
     velocity, direction = matrices[:3], matrices[3:]
     turning = np.cumsum(direction * rates, axis=1)
@@ -259,7 +258,10 @@ def _rate(matrices: Array, rates: Array) -> Array:
 
 
 def _frobenius(matrices: Array) -> Array:
-    """1 / (|J|_F |J^-1|_F) (n,) of (6, 6, n), by blocks: [[A, B], [C, D]] with the inverse of D and of A - B D^-1 C."""
+    """Return 1 / (|J|_F |J^-1|_F) (n,) for J (6, 6, n) = [[A, B], [C, D]].
+
+    The block inverse uses the inverses of D and of A - B D^-1 C.
+    """
     upper_right, lower_left = matrices[:3, 3:], matrices[3:, :3]
     with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
         wrist = _inverse3(matrices[3:, 3:])
@@ -276,22 +278,25 @@ def _frobenius(matrices: Array) -> Array:
 
 
 def _squared_norm(matrices: Array) -> Array:
-    """The sums of squares (n,) of the entries of matrices (k, k, n)."""
+    """Return the sum of squared entries (n,) of matrices (k, k, n)."""
     result: Array = np.einsum("ijn,ijn->n", matrices, matrices)
     return result
 
 
 def _product(a: Array, b: Array) -> Array:
-    """Products (3, 3, n) of matrices (3, 3, n)."""
+    """Return the products (3, 3, n) of matrices (3, 3, n)."""
     result: Array = a[:, 0, None] * b[None, 0]
     spare = np.empty_like(result)
-    for k in (1, 2):  # as einsum does it, in four fifths of its time
+    for k in (1, 2):  # takes four fifths of the time of einsum
         result += np.multiply(a[:, k, None], b[None, k], out=spare)
     return result
 
 
 def _inverse3(matrices: Array) -> Array:
-    """Inverses of matrices (3, 3, n): the cross products of the rows are the columns of the adjugate."""
+    """Return the inverses of matrices (3, 3, n) by the adjugate.
+
+    Cross products of the rows are the columns of the adjugate.
+    """
     row_a, row_b, row_c = matrices
     adjugate = np.stack((_cross(row_b, row_c), _cross(row_c, row_a), _cross(row_a, row_b)), axis=1)
     adjugate *= 1.0 / np.einsum("in,in->n", row_a, adjugate[:, 0])
@@ -299,7 +304,7 @@ def _inverse3(matrices: Array) -> Array:
 
 
 def _cross(a: Array, b: Array) -> Array:
-    """Cross products (3, ...) of vectors along the first dimension."""
+    """Return cross products (3, ...) along the first dimension."""
     result = np.empty(np.broadcast_shapes(a.shape, b.shape))
     for row, (following, preceding) in enumerate(((1, 2), (2, 0), (0, 1))):
         np.multiply(a[following], b[preceding], out=result[row])

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Joint limits: of each axis, and of sums of axes coupled by a linkage or a controller; and the
-reserve kept from them.
-"""
+"""Joint limits of single axes and of coupled axes, and the reserve kept from them."""
 
 from __future__ import annotations
 
@@ -16,14 +14,14 @@ from ..types import Array, ArrayLike, Index, Integers, Mask
 
 @dataclass(frozen=True, eq=False)
 class PoseFrames:
-    """Flange poses as left . Rz(sign phi) . right; left and right are (n, 4, 4) or (1, 4, 4)."""
+    """Flange poses left Rz(sign phi) right, with left and right (n, 4, 4) or (1, 4, 4)."""
 
     left: Array
     sign: float
     right: Array
 
     def of(self, rows: slice | Integers) -> PoseFrames:
-        """The frames of chosen points."""
+        """Return the pose frames of selected points."""
         left_frames = self.left if len(self.left) == 1 else self.left[rows]
         right = self.right if len(self.right) == 1 else self.right[rows]
         return PoseFrames(left_frames, self.sign, right)
@@ -44,7 +42,7 @@ class PoseFrames:
         return np.ascontiguousarray(self.by_entry(phi))
 
     def by_entry(self, phi: Array) -> Array:
-        """Return the same poses, in the memory order that is fastest to compute.
+        """Return flange poses for rotations, in the memory order that is fastest to compute.
 
         Parameters
         ----------
@@ -54,7 +52,7 @@ class PoseFrames:
         Returns
         -------
         (..., n, 4, 4) array
-            Poses, mm; for carried parts each entry is contiguous over the poses.
+            Poses, mm. If the part is carried, each matrix entry is contiguous over the poses.
         """
         cos, sin = np.cos(phi), self.sign * np.sin(phi)
         if len(self.left) == 1:
@@ -70,7 +68,7 @@ class PoseFrames:
                     poses[row, column] = self.right[:, row, column]
             return _moved_by(self.left[0], np.moveaxis(poses, (0, 1), (-2, -1)))
         rotated = np.empty((*phi.shape, 4, 4))
-        # entry by entry: along axes of length four it takes twice as long
+        # entry by entry: looping over matrix axes of length four takes twice as long
         for row in range(4):
             entry_a, entry_b = np.ascontiguousarray(self.left[:, row, :2].T)
             rotated[..., row, 0] = cos * entry_a + sin * entry_b
@@ -81,7 +79,7 @@ class PoseFrames:
 
 
 def _moved_by(frame: Array, poses: Array) -> Array:
-    """Return frame @ poses; most cells are upright, so often there is no rotation."""
+    """Return frame @ poses; skip the rotation for an upright frame, the usual case."""
     if np.array_equal(frame[:3, :3], np.eye(3)):
         poses[..., :3, 3] += frame[:3, 3]
         return poses
@@ -90,7 +88,10 @@ def _moved_by(frame: Array, poses: Array) -> Array:
 
 
 class Smallest(NamedTuple):
-    """The smallest margin of each joint vector, rad, and the index of its limit in `Limits.labels`."""
+    """Minimum margin of each joint vector.
+
+    margin: (...) rad or mm. label: (...) index of the limit in `Limits.labels`.
+    """
 
     margin: Array
     label: Index
@@ -98,11 +99,11 @@ class Smallest(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Limits:
-    """One set of joint limits, rad, on the serial angles.
+    """One set of joint limits on the serial joint values, rad or mm.
 
-    `lower` and `upper` (axes,) are infinite where an axis is continuous. Each of the m coupled
-    limits holds `coefficients` (m, axes) @ q between `coupled_lower` and `coupled_upper` (m,);
-    `labels` names the axes first, then the coupled limits.
+    lower, upper: (axes,), infinite for a continuous axis. Each of the m coupled limits keeps
+    `coefficients` (m, axes) @ q between `coupled_lower` and `coupled_upper` (m,). labels: names of
+    the axes, then of the coupled limits.
     """
 
     name: str
@@ -131,12 +132,12 @@ class Limits:
 
     @property
     def continuous(self) -> Mask:
-        """Which axes (axes,) are continuous."""
+        """(axes,) bool, True for continuous axes."""
         without: Mask = ~np.isfinite(self.upper - self.lower)
         return without
 
     def margin(self, q: ArrayLike) -> Array:
-        """Return the distance of joint vectors to the nearer end of every limit.
+        """Return the distance of joint vectors to the nearer end of each limit.
 
         Parameters
         ----------
@@ -146,8 +147,8 @@ class Limits:
         Returns
         -------
         (..., axes + m) array
-            Distances, rad or mm; negative outside, infinite for a continuous axis, NaN
-            where q is NaN.
+            Distances, rad or mm; negative beyond a limit, infinite for a continuous axis, NaN for
+            NaN joints.
         """
         angles = np.asarray(q, float)
         result = np.empty(angles.shape[:-1] + (self.axes + len(self.coupled_lower),))
@@ -159,7 +160,7 @@ class Limits:
         return result
 
     def shares(self, q: Array) -> Array:
-        """Return the margins to every limit as shares of half the range.
+        """Return the margin to each limit as a fraction of half the range.
 
         Parameters
         ----------
@@ -169,7 +170,7 @@ class Limits:
         Returns
         -------
         (..., axes + m) array
-            `margins` of each axis and then of each coupled limit.
+            `margins` of the axes, then of the coupled limits.
         """
         return np.concatenate(
             [
@@ -180,10 +181,10 @@ class Limits:
         )
 
     def smallest_share(self, q: Array) -> Array:
-        """Return the smallest of the `shares` of each joint vector.
+        """Return the minimum of `shares` for each joint vector.
 
-        Computed limit by limit, without an array as large as all shares: allocating memory
-        dominates the time.
+        It is computed limit by limit, because allocating the array of all shares would dominate
+        the time.
 
         Parameters
         ----------
@@ -193,7 +194,7 @@ class Limits:
         Returns
         -------
         (n,) array
-            1 in the middle of all ranges, 0 at a limit, less beyond.
+            1 at mid-range of all limits, 0 at a limit, negative beyond a limit.
         """
         smallest = np.full(len(q), np.inf)
         for axis, (low, high) in enumerate(zip(self.lower, self.upper, strict=True)):
@@ -207,7 +208,7 @@ class Limits:
         return smallest
 
     def smallest(self, q: ArrayLike) -> Smallest:
-        """Return the smallest margin of joint vectors.
+        """Return the minimum margin of joint vectors.
 
         Parameters
         ----------
@@ -217,7 +218,7 @@ class Limits:
         Returns
         -------
         Smallest
-            The margin (...), rad or mm, NaN where q is, and the number of its limit (...).
+            Margins (...), rad or mm, NaN for NaN joints, and the indices (...) of their limits.
         """
         margins = self.margin(q)
         index = np.argmin(margins, axis=-1)
@@ -231,43 +232,43 @@ class Limits:
         q : (..., axes) array_like
             Joint values, rad or mm.
         tolerance : float, optional
-            Excess that is allowed, rad or mm.
+            Allowed excess, rad or mm.
 
         Returns
         -------
         (..., axes + m) array of bool
-            Axes first, then the coupled limits.
+            True for exceeded limits: axes first, then coupled limits.
         """
         result: Mask = self.margin(q) < -tolerance
         return result
 
 
 def margins(joints: Array, lower: Array, upper: Array) -> Array:
-    """Return the distance to the nearer limit as a share of half the range.
+    """Return the distance to the nearer limit as a fraction of half the range.
 
     Parameters
     ----------
     joints : (..., a) array
         Joints, rad or mm.
     lower, upper : (a,) array
-        Limits, infinite where an axis is continuous.
+        Limits; infinite for continuous axes.
 
     Returns
     -------
     (..., a) array
-        1 in the middle and for continuous axes, 0 at a limit, negative beyond it; NaN
-        where a joint is NaN.
+        1 at mid-range and for continuous axes, 0 at a limit, negative beyond a limit; NaN for
+        NaN joints.
     """
     share = np.empty_like(joints)
     for axis, (low, high) in enumerate(
         zip(lower, upper, strict=True)
-    ):  # temporary arrays of this size are slow to allocate
+    ):  # column by column, because large temporary arrays are slow to allocate
         share[..., axis] = _share(joints[..., axis], low, high)
     return share
 
 
 def _share(column: Array, low: float, high: float) -> Array:
-    """`margins` of one joint."""
+    """Return `margins` of one joint."""
     half = 0.5 * (high - low)
     if np.isfinite(half):
         return np.asarray(np.minimum(column - low, high - column) / (half if half > 0.0 else 1.0))
@@ -276,16 +277,18 @@ def _share(column: Array, low: float, high: float) -> Array:
 
 @dataclass(frozen=True)
 class Payload:
-    """Maximum load of a machine: kg, and distance, mm, of the load's centre of gravity from the
-    last axis; infinite if unknown.
+    """Maximum load of a machine.
+
+    kg: mass. from_axis: distance of the centre of gravity from the last axis, mm. Infinite if
+    unknown.
     """
 
     kg: float = math.inf
     from_axis: float = math.inf
 
 
-# ---- The margin kept free at every limit (docs/decisions/0009)
+# ---- Reserve at each limit (docs/decisions/0009)
 
-# rad, and mm of prismatic axes: the last digit of a program, of a degree or mm, must not move an
-# axis past its limit
+# rad, or mm for prismatic axes; rounding to the last digit of a program, in deg or mm, must not
+# exceed a limit
 RESERVE = math.radians(0.05)

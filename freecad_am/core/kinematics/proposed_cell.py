@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The default cell of a machine until the user describes the real one.
+"""Propose a cell for a machine until the user describes the real one.
 
-For a robot: a suitable deposition point, or fixed platform, and the branch to work in.
-Points in front of the robot are tried on a grid in the plane of its arm. At each the
-robot deposits on a ball, from upright to horizontal, with the best rotation about the
-tool axis. The worst of these poses counts: the margin of an axis to its limit, of the
-wrist to being stretched and of the arm to its reach. If it carries the part, axis 6 is
-left out: it turns the part, so the choice of points on the ball would decide it. If it
-carries the tool, the ball is approached from all sides; if no position allows horizontal
-deposit, one that allows less is taken. Poses in which a link, as drawn from the
-kinematics, touches platform or nozzle do not count, unless there are no others anywhere.
+For a robot, this is a deposition point or a fixed platform, and a branch. Candidate points lie on
+a grid in front of the robot, in the plane of its arm. At each point the robot deposits on a ball,
+with tool axes from vertical to horizontal and the best tool rotation. The rating is the margin of
+the worst pose: distance of the axes from their limits, of the wrist from being stretched and of
+the arm from its reach. If the robot carries the part, axis 6 is ignored: it rotates the part, so
+the choice of points on the ball would decide its value. If the robot carries the tool, it
+approaches the ball from all sides; if no position allows horizontal deposit, a smaller tilt is
+accepted. Poses in which a link, drawn from the kinematics, touches platform or nozzle are excluded,
+unless no other pose exists.
 """
 
 from __future__ import annotations
@@ -38,11 +38,11 @@ from .machines import machine as machines
 USUAL_POINT, USUAL_BRANCH = (1562.0, 0.0, 691.0, 0.0, 0.0, 0.0), ("front", "down", "noflip")
 
 TILTS = np.radians([0.0, 30.0, 60.0, 85.0])  # tilts of the tool axis on the part
-BALL = 50.0  # mm, radius of the deposit held
-TURNS = 36  # rotations about the tool axis that are tried
-# number of directions from which a fixed ball is approached
+BALL = 50.0  # mm; radius of the ball
+TURNS = 36  # number of tool rotations to try
+# tilts, rad, and number of directions, from which the robot approaches a fixed ball
 LEANING, ROUND = np.radians([0.0, 15.0, 30.0, 45.0, 60.0, 85.0]), 12
-AHEAD = np.linspace(0.4, 0.85, 8)  # shares of the reach, from axis 2
+AHEAD = np.linspace(0.4, 0.85, 8)  # grid positions relative to axis 2, as fractions of the reach
 ABOVE = np.linspace(-0.5, 0.7, 9)
 
 
@@ -52,23 +52,23 @@ def cell_of(
     setup: str = OF_ROBOTS[0].setup,
     tool: Pose | None = None,
 ) -> CellParameters:
-    """Return the parameters of a cell with a machine.
+    """Return the cell parameters for a machine.
 
     Parameters
     ----------
     machine : str
-        Id or file of the machine, '' for the default one.
+        Machine id or file; '' for the default machine.
     folders : sequence of str, optional
         Folders with user machines.
     setup : str, optional
         Requested set-up of a robot.
     tool : Pose or None, optional
-        Pose of the tip on the robot's flange; None if unknown.
+        Tip pose on the robot flange; None if unknown.
 
     Returns
     -------
     CellParameters
-        The parameters, proposed for a robot.
+        The parameters; a proposal for a robot.
 
     Raises
     ------
@@ -86,12 +86,12 @@ def cell_of(
 def proposed(
     parameters: CellParameters, folders: Sequence[str] = (), own_branch: bool = False
 ) -> CellParameters:
-    """Return the cell with the best deposition point, or platform, and branch.
+    """Return the cell with the best deposition point or platform, and the best branch.
 
     Parameters
     ----------
     parameters : CellParameters
-        The cell; the default one has a known answer.
+        The cell; the result for the default cell is stored.
     folders : sequence of str, optional
         Folders with user machines.
     own_branch : bool, optional
@@ -100,13 +100,13 @@ def proposed(
     Returns
     -------
     CellParameters
-        The cell, on whole mm; unchanged if no position serves or the part is on a
+        The cell, rounded to whole mm; unchanged if no position is feasible or the part is on a
         positioner.
 
     Raises
     ------
     InputError
-        As `cell.resolve`.
+        Errors of `cell.resolve`.
     """
     if parameters == CellParameters() and not own_branch:
         return replace(parameters, deposition_point=USUAL_POINT, branch=USUAL_BRANCH)
@@ -116,7 +116,7 @@ def proposed(
 def search_cell(
     parameters: CellParameters, folders: Sequence[str] = (), own_branch: bool = False
 ) -> CellParameters:
-    """Search the best deposition point, or platform, and branch for `proposed`.
+    """Search for the best deposition point or platform, and the best branch, for `proposed`.
 
     Parameters
     ----------
@@ -130,12 +130,12 @@ def search_cell(
     Returns
     -------
     CellParameters
-        The cell; unchanged if no position serves.
+        The cell; unchanged if no position is feasible.
 
     Raises
     ------
     InputError
-        As `cell.resolve`.
+        Errors of `cell.resolve`.
     """
     machine = machines.load(parameters.machine, tuple(folders))
     arrangement = arrangement_of(parameters.setup)
@@ -166,8 +166,9 @@ def search_cell(
 
 
 def _directions(tilts: Array, count: int) -> Array:
-    """Return unit vectors (n, 3) leaning by the tilts, each in `count` directions around Z;
-    upright once.
+    """Return unit vectors (n, 3) with the given tilts, each in `count` directions around Z.
+
+    The vertical vector occurs once.
     """
     turn = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
     tilt, turn = (grid.ravel() for grid in np.meshgrid(tilts, turn, indexing="ij"))
@@ -177,11 +178,9 @@ def _directions(tilts: Array, count: int) -> Array:
 
 
 class _Place(NamedTuple):
-    """A possible deposition point with the room of its worst pose in a branch; the lowest number
-    has the most room.
-    """
+    """A candidate deposition point in a branch, ordered by the margin of its worst pose."""
 
-    lack: float  # of room, 1 - room
+    lack: float  # 1 - margin
     number: int
     branch: int
     point: Pose
@@ -190,17 +189,16 @@ class _Place(NamedTuple):
 def _best(
     cell: Cell, axes: Array, branches: Sequence[int], cylinders: Sequence[Sequence[Cylinder]]
 ) -> _Place | None:
-    """Return the position where deposit on a ball along the axes (n, 3) has most margin, None if
-    it has none anywhere.
+    """Return the position with the maximum margin for deposit on a ball along the axes (n, 3).
 
-    Without cylinders, contacts of links are ignored.
+    None if no position has a margin. Without cylinders, link contacts are ignored.
     """
     candidates = sorted(_places(cell, axes, branches))
     best: _Place | None = None
     for candidate in candidates if cylinders else candidates[:1]:
         if (
             best is not None and best.lack <= candidate.lack
-        ):  # the remaining positions have no more room, even without contacts
+        ):  # the remaining positions have less margin, even without contacts
             break
         lack = 1.0 - _clear_margin(_stood(cell, candidate.point), axes, candidate.branch, cylinders)
         if lack < (1.0 if best is None else best.lack):
@@ -209,12 +207,12 @@ def _best(
 
 
 def _places(cell: Cell, axes: Array, branches: Sequence[int]) -> Iterator[_Place]:
-    """Yield the positions on the grid, and the branches, where all poses have margin."""
+    """Yield the grid positions and branches where all poses have a margin."""
     arm = cell.machine.arm
     assert arm is not None
     shoulder, height = arm.shoulder
     heights = height + ABOVE * arm.reach
-    if not cell.torch_stands:  # a platform must not be in the floor
+    if not cell.torch_stands:  # a platform must not be below the floor
         heights = np.unique(np.maximum(heights, 0.0))
     for number, (ahead, above) in enumerate(itertools.product(AHEAD, heights)):
         x, z = np.round([shoulder + ahead * arm.reach, above])
@@ -227,13 +225,15 @@ def _places(cell: Cell, axes: Array, branches: Sequence[int]) -> Iterator[_Place
 
 
 def _stood(cell: Cell, point: Pose) -> Cell:
-    """The cell with deposition point or platform at a point of the manufacturer's base frame."""
+    """Return the cell with its deposition point or platform at a pose in the manufacturer's base
+    frame.
+    """
     station = cell.machine.base @ frames.bryant(point)
     return replace(cell, poses=replace(cell.poses, station=station))
 
 
 def _joints(cell: Cell, axes: Array) -> Array:
-    """(8, turns, n, 6) joint values for deposit on a ball along the axes (n, 3), by branch."""
+    """Return joints (8, turns, n, 6) for deposit on a ball along the axes (n, 3), by branch."""
     arm = cell.machine.arm
     assert arm is not None
     phi = np.broadcast_to(
@@ -247,8 +247,9 @@ def _joints(cell: Cell, axes: Array) -> Array:
 def _clear_margin(
     cell: Cell, axes: Array, branch: int, cylinders: Sequence[Sequence[Cylinder]]
 ) -> float:
-    """Return the margin of the worst pose in a branch, over rotations without contact; negative
-    if none is free.
+    """Return the margin of the worst pose in a branch, with the best rotation free of contact.
+
+    Negative if a pose has no such rotation.
     """
     joints = _joints(cell, axes)[branch]
     margin = _margin(cell, joints)
@@ -261,8 +262,9 @@ def _clear_margin(
 
 
 def _margin(cell: Cell, joints: Array) -> Array:
-    """Return the margin (..., turns, n): 1 in the middle of all ranges, 0 at a limit or a
-    stretched arm or wrist, less beyond.
+    """Return the margin (..., turns, n).
+
+    1 at mid-range of all axes, 0 at a limit or for a stretched arm or wrist, negative beyond.
     """
     arm, limits = cell.machine.arm, cell.limits
     assert arm is not None

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The torch as a solid: the holder of the nozzle, as a file shows it. `cell.nozzle.shape`.
+"""The torch, which holds the nozzle, as a solid from a file (`cell.nozzle.shape`).
 
-Next to the deposit, up to `cell.nozzle.length`, the nozzle is the cone that build
-directions keep clear; a torch that is not within it there is rejected. Beyond, it is
-cylinders, as links are, which keep `cell.arm_clearance`.
+Up to `cell.nozzle.length` from the tip, the nozzle is the cone that build directions keep clear. A
+torch that extends outside this cone there is rejected. Beyond this length, cylinders enclose the
+torch and keep `cell.arm_clearance`, like robot links.
 """
 
 from __future__ import annotations
@@ -22,23 +22,25 @@ from ..types import Array, Integers
 Piece = tuple[Array, Integers]
 
 CODE, WHERE = "TORCH", "cell.nozzle.shape"
-MAX_TIP_DISTANCE_MM = 50.0  # mm; maximum distance from the tip to the torch: wires are not longer, so beyond it the file has another origin
+# mm; maximum distance from the tip to the torch: no wire is longer, so the file has a wrong origin
+MAX_TIP_DISTANCE_MM = 50.0
 MAX_BEYOND_TIP_MM = (
-    0.5  # mm; allowed reach beyond the tip: anything there would be inside the deposit
+    0.5  # mm; maximum extent beyond the tip, where the torch would be inside the deposit
 )
-MAX_EXCESS_MM = 0.05  # mm; allowed excess over the cone, the error of triangles on round sides
+MAX_EXCESS_MM = 0.05  # mm; maximum excess over the cone, the error of triangles on round surfaces
 MAX_CYLINDERS, MIN_SAVED_SHARE = (
     16,
     0.02,
-)  # maximum number of cylinders, and the share of their volume that another one must save
-# in files Z points out of the nozzle, in our tip frame into it
+)  # maximum number of cylinders, and minimum fraction of their volume that another cylinder saves
+# in files Z points out of the nozzle, in our tip frame into the nozzle
 _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True)
 class Torch:
-    """body: the whole torch; cylinders: around its part beyond the nozzle's cone. In the frame
-    of the tip, Z into it.
+    """The torch in the tip frame, with Z into the torch.
+
+    body: the whole torch. cylinders: around its part beyond the nozzle cone.
     """
 
     body: Body
@@ -46,10 +48,10 @@ class Torch:
 
 
 def torch(body: Body, nozzle: NozzleParameters) -> Torch:
-    """Return the torch of a file's body.
+    """Return the torch of a file body.
 
-    Raises InputError TORCH if it is open, far from its tip, beyond it or wider than the
-    nozzle.
+    Raises InputError TORCH if the body is open, too far from its origin, extends beyond the tip or
+    is wider than the nozzle.
     """
     if inside_of(body) is None:
         raise InputError(
@@ -86,8 +88,9 @@ def torch(body: Body, nozzle: NozzleParameters) -> Torch:
 
 
 def _cylinders(all_triangles: Piece) -> list[Cylinder]:
-    """Return cylinders around triangles, which are repeatedly cut in two where that saves most
-    of their volume.
+    """Return cylinders that enclose triangles.
+
+    Pieces are cut in two repeatedly, each time where the cut saves the most volume.
     """
     cut_pieces = [_Cut(all_triangles)] if len(all_triangles[1]) else []
     while 0 < len(cut_pieces) < MAX_CYLINDERS:
@@ -101,8 +104,9 @@ def _cylinders(all_triangles: Piece) -> list[Cylinder]:
 
 
 class _Cut:
-    """A piece with its cylinder, and its best cut in two: the parts, and the saved volume of the
-    cylinder.
+    """A piece with its enclosing cylinder and its best cut in two.
+
+    parts: the halves. saved: cylinder volume that the cut saves.
     """
 
     def __init__(self, mesh: Piece) -> None:
@@ -123,7 +127,7 @@ def _volume(cylinder: Cylinder) -> float:
 
 
 def _halves(mesh: Piece) -> list[tuple[Piece, Piece]]:
-    """Return the cuts of a piece in two through its middle and its quarters, across each axis."""
+    """Return the cuts of a piece in two at 1/4, 1/2 and 3/4 of its extent along each axis."""
     points, cuts = mesh[0][np.unique(mesh[1])], []
     for axis in range(3):
         low, high = float(points[:, axis].min()), float(points[:, axis].max())
@@ -137,34 +141,34 @@ def _halves(mesh: Piece) -> list[tuple[Piece, Piece]]:
 
 
 def cut(points: Array, triangles: Integers, height: float, above: bool, axis: int = 2) -> Piece:
-    """Return the part of triangles above or below a height.
+    """Cut triangles at a height and return the part above or below.
 
     Parameters
     ----------
     points : (n, 3) array
-        Corners, mm.
+        Vertices, mm.
     triangles : (m, 3) int array
-        Indices of corners.
+        Vertex indices.
     height : float
         Height of the cut, mm.
     above : bool
-        Whether the part above is kept.
+        Whether to keep the part above.
     axis : int, optional
         Axis of the height, 0 to 2.
 
     Returns
     -------
     points : (k, 3) array
-        The corners and the crossings of edges with the height.
+        Vertices, and intersections of edges with the height.
     triangles : (l, 3) int array
-        The remaining triangles.
+        Remaining triangles.
     """
     side = (points[:, axis] - height) * (1.0 if above else -1.0)
     inside = side[triangles] >= 0.0
     count = inside.sum(axis=1)
     triangle_blocks, point_blocks = [triangles[count == 3]], [points]
     start = len(points)
-    for number in (1, 2):  # corners that stay
+    for number in (1, 2):  # number of vertices to keep
         crossing = triangles[count == number]
         if not len(crossing):
             continue
@@ -190,8 +194,9 @@ def _crossing(points: Array, side: Array, inner: Integers, outer: Integers) -> A
 
 
 def _refuse_wider(torch_body: Body, nozzle: NozzleParameters) -> None:
-    """Reject a torch outside the nozzle's cone; the cone is convex, so testing the corners of
-    the triangles is enough.
+    """Reject a torch that extends outside the nozzle cone.
+
+    The cone is convex, so testing the vertices of the triangles is enough.
     """
     points, triangles = cut(torch_body.vertices, torch_body.triangles, nozzle.length, above=False)
     corners = points[np.unique(triangles)]
@@ -225,7 +230,7 @@ def _refuse_wider(torch_body: Body, nozzle: NozzleParameters) -> None:
 
 
 def _from_origin(corners: Array) -> Array:
-    """Squared distances (m,), mm2, of triangles (m, 3, 3) from the origin."""
+    """Return squared distances (m,), mm^2, of triangles (m, 3, 3) from the origin."""
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     normal = np.cross(b - a, c - a)
     square = np.einsum("ij,ij->i", normal, normal)

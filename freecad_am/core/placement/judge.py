@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A job with its part at one pose: the result of planning some of its points.
+"""Rate a job with its part at one pose by planning a sample of its beads.
 
-Anything that can be planned is planned, not estimated: the sampled beads are planned like the
-whole job, including rapids between consecutive ones. The result is a coarse picture of the
-whole job: beads that are left out may be worse.
+Results come from plans, not from estimates. The sampled beads are planned like the whole job,
+including rapids between consecutive beads. Beads outside the sample may be worse.
 """
 
 from __future__ import annotations
@@ -36,21 +35,24 @@ from ..planning.task import MIN_MARGIN, Task
 from ..toolpath import Bead, Toolpath
 from ..types import Array, Mask
 
-TURNS = 72  # rotations about the tool to try
-FINER = 9  # between two of these, near the best one of a point without a serving rotation
+TURNS = 72  # tested rotations about the tool axis
+FINER = 9  # refinement of that step near the best rotation of a point that no rotation serves
 BRANCHES = 8
 
 
 class Screened(NamedTuple):
-    """The share of points that some rotation serves, within limits and far enough from singularities, in the configuration
-    that serves most, and this one."""
+    """Result of a screening.
+
+    share: maximum fraction of points over the tested configurations. A point counts if some tool
+    rotation keeps it within limits and away from singularities. branch: that configuration.
+    """
 
     share: float
     branch: int
 
 
 def single_points(beads: Sequence[Bead], cell: Cell) -> Points:
-    """The points of beads, each as a bead of one point."""
+    """Return the points of beads, each point as a separate bead."""
     position, tool, parameter = (
         np.concatenate([getattr(bead, name) for bead in beads])
         for name in ("points", "tool", "parameter")
@@ -75,23 +77,23 @@ def single_points(beads: Sequence[Bead], cell: Cell) -> Points:
 def screen_points(
     cell: Cell, points: Points, parameters: JointParameters, only_branch: int | None
 ) -> Screened:
-    """Return the share of points that a robot serves.
+    """Return the fraction of points that a robot can serve.
 
     Parameters
     ----------
     cell : Cell
         The cell with a robot.
     points : Points
-        The points, each independent.
+        Independent points.
     parameters : JointParameters
-        Thresholds and range of the rotation.
+        Thresholds and rotation range.
     only_branch : int or None
-        The configuration to test; None for the best one.
+        Configuration to test; None to test all and return the best.
 
     Returns
     -------
     Screened
-        Share and configuration.
+        Fraction and configuration.
     """
     results = [
         Screened(float(_find_served(Task(cell, branch, parameters), points).mean()), branch)
@@ -101,7 +103,7 @@ def screen_points(
 
 
 def _find_served(task: Task, points: Points) -> Mask:
-    """(C,) which points some rotation serves."""
+    """Return which points (C,) at least one tool rotation serves."""
     low, high = task.parameters.rotation_range
     is_full_turn = high - low >= TURN - 1e-9
     values = np.linspace(low, high, TURNS, endpoint=not is_full_turn)
@@ -123,12 +125,13 @@ def _find_served(task: Task, points: Points) -> Mask:
 
 
 def _serves(task: Task, points: Points, phi: Array) -> tuple[Mask, Array]:
-    """(C,) which points one of their rotations (R, C) serves, and the margins (R, C) of the limits."""
+    """Return which points (C,) a rotation of `phi` (R, C) serves, and the limit margins (R, C)."""
     joints = task.joints(points, phi)
     margin = task.rows.margin(joints)
     threshold = task.thresholds(points)
     served = np.zeros(len(points), dtype=bool)
-    # most points are served by the rotation with the largest margin: the condition takes the longest
+    # try the rotation with the maximum margin first: it serves most points, and the condition
+    # number is the slowest check
     is_best = np.zeros(phi.shape, dtype=bool)
     is_best[margin.argmax(axis=0), np.arange(len(points))] = True
     for selected in (is_best, ~is_best):
@@ -142,8 +145,8 @@ def _serves(task: Task, points: Points, phi: Array) -> tuple[Mask, Array]:
 
 Cylinders = tuple[tuple[Cylinder, ...], ...]
 
-BEADS_IN_SEQUENCE = 2  # consecutive beads, so that the plan includes rapids
-REACH = 200.0  # mm; larger clearances of the arm are not measured
+BEADS_IN_SEQUENCE = 2  # consecutive beads per sample, so that the plan includes rapids
+REACH = 200.0  # mm; maximum arm clearance that is measured
 UNREACHED = "NO_ROTATION"
 
 
@@ -151,8 +154,8 @@ UNREACHED = "NO_ROTATION"
 class Job:
     """The job to place.
 
-    cell: resolves cell parameters to a cell with its obstacles, or raises AmError. cylinders: of
-    the links of the robot in a cell.
+    cell: resolves cell parameters to a cell with its obstacles, or raises AmError. cylinders:
+    returns the cylinders around the robot links of a cell.
     """
 
     toolpath: Toolpath
@@ -166,11 +169,11 @@ class Job:
 class Judged:
     """The rating of a pose.
 
-    share: of the sampled points that the machine serves. code: of the first error, '' for a
-    feasible pose. margin: the least share of a range that is left to a limit, 1 in its middle.
-    time: of the whole job, s. clearance: mm between the arm and everything else, at most REACH, at
-    the points of beads. These three are NaN without a plan; the clearance is also NaN for machines
-    with rotary axes. branch: the configuration of the plan. message: of the first error.
+    share: fraction of the sampled points that the machine serves. code: of the first error, '' if
+    the pose is feasible. margin: minimum distance from a joint limit, 0 at a limit and 1 at
+    mid-range. time: of the whole job, s. clearance: minimum distance at bead points between the arm
+    and all other bodies, mm, at most REACH. These three are NaN without a plan; five-axis machines
+    also have no clearance. branch: the planned configuration. message: of the first error.
     """
 
     share: float
@@ -183,13 +186,13 @@ class Judged:
 
     @property
     def feasible(self) -> bool:
-        """Whether the sampled points can be carried out."""
+        """Whether the sampled points have a plan without errors."""
         return not self.code
 
 
 @dataclass(frozen=True)
 class Judge:
-    """Judges poses of a job by some of its points, about `most`, or by all with None."""
+    """Rates poses of a job with a sample of about `most` points; None for all points."""
 
     job: Job
     most: int | None
@@ -217,7 +220,7 @@ class Judge:
     def evaluate(
         self, settings: CellParameters, progress: Progress = lambda share, text: None
     ) -> Judged:
-        """Plan the job in a cell and return the result. progress may raise to cancel."""
+        """Plan the job in a cell and return its rating. `progress` may raise to cancel."""
         job, sampled_toolpath = self.job, self._some.toolpath
         try:
             cell = job.cell(settings)
@@ -248,7 +251,9 @@ class Judge:
         return self._figures(cell, path, motion, [*path.issues, *rapids], cylinders)
 
     def _share(self, cell: Cell) -> float | None:
-        """The share of points that the robot serves; None if a track decides the position of the robot."""
+        """Return the fraction of points that the robot serves; None on a track, which decides where
+        the robot stands.
+        """
         sampled_toolpath, job = self._some.toolpath, self.job
         if cell.external is not None and cell.external.slides is not None:
             return None
@@ -289,8 +294,9 @@ class Judge:
         )
 
     def _clearance(self, cell: Cell, path: JointPath, cylinders: Cylinders) -> float:
-        """mm between the arm and everything else at the points of the beads, including the deposit of each
-        moment.
+        """Return the minimum distance of the arm from other bodies at the bead points, mm.
+
+        The deposit counts as far as printed at each point.
         """
         if not cylinders:
             return np.nan
@@ -321,8 +327,8 @@ class Judge:
     def _time(self, path: JointPath, motion: Motion) -> float:
         """Estimate the time of the whole job, s.
 
-        It sums the deposit at the reduced speeds of this plan, rapids like those between
-        consecutive beads of this plan, lead times and waits.
+        It sums the deposit time at the reduced speeds of this plan, the rapids, lead times and
+        waits. Rapids are extrapolated from those between consecutive beads of this plan.
         """
         all_beads, process = [bead for _, _, bead in self.job.toolpath], self.job.process
         requested = sum(_lasts(bead) for _, _, bead in self._some.toolpath)
@@ -335,13 +341,13 @@ class Judge:
         return float(deposit + waits + self._rapids(motion, len(all_beads)))
 
     def _rapids(self, motion: Motion, beads: int) -> float:
-        """Estimate the time of all rapids between `beads` beads, and of the moves onto the first
-        and off the last, s.
+        """Estimate the time of all rapids between `beads` beads, including the first approach and
+        the last retract, s.
         """
         steps, starts = np.nan_to_num(motion.duration), motion.deposit & (motion.point == 0)
         number = np.cumsum(
             np.append(False, starts[:-1])
-        )  # of the bead that a row leads to, or belongs to
+        )  # index of the bead that a row leads to or belongs to
         of_bead = np.bincount(
             number[~motion.deposit], steps[~motion.deposit], int(starts.sum()) + 1
         )
@@ -361,11 +367,11 @@ class Judge:
 
 
 def _several_alike(cell: Cell) -> bool:
-    """Whether several solutions have the same configuration name; the screen knows only one."""
+    """Whether several solutions share a configuration name; screening finds only one of them."""
     arm = cell.machine.arm if cell.external is None else cell.robot.arm
     return arm is not None and arm.followed
 
 
 def _lasts(bead: Bead) -> float:
-    """s of a bead at its speeds."""
+    """Return the deposit time of a bead at its speeds, s."""
     return float((np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]).sum())

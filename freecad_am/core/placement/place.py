@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Placement of part, positioner or deposition point: rates a box of poses and finds the best one.
+"""Placement of part, positioner or deposition point: rate a box of poses and find the best pose.
 
-`screen` checks each pose, then `judge` plans it at some of its points. The best poses are planned
-at every point until one is feasible, so that a proposed pose is known to work.
+`screen_points` checks each pose, then `Judge` plans a sample of the job there. The best poses are
+planned with all points until one is feasible, so a proposed pose is known to work.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from .judge import Job, Judge, Judged
 
 
 def movable(settings: CellParameters) -> tuple[str, ...]:
-    """Return the movable poses of a cell among POINT, PLATFORM and POSITIONER, the usual one first."""
+    """Return the movable frames of a cell (POINT, PLATFORM, POSITIONER), the default first."""
     arrangement = arrangement_of(settings.setup)
     if arrangement.holds_part:
         return (POINT, PLATFORM)
@@ -47,7 +47,7 @@ def movable(settings: CellParameters) -> tuple[str, ...]:
 
 
 def select_movable(settings: CellParameters, moves: str) -> str:
-    """Return the pose to move. Raises InputError NOT_FOR_SETUP if the cell does not have it."""
+    """Return the frame to move. Raises InputError NOT_FOR_SETUP if the cell does not have it."""
     available = movable(settings)
     if moves == AUTO and available:
         return available[0]
@@ -64,7 +64,7 @@ def select_movable(settings: CellParameters, moves: str) -> str:
 
 
 def pose_of(settings: CellParameters, moves: str) -> Pose:
-    """The current pose of the movable, mm and rad."""
+    """Return the current pose of the movable frame, mm and rad."""
     if moves == POINT:
         return settings.deposition_point
     if moves == POSITIONER:
@@ -78,7 +78,7 @@ def pose_of(settings: CellParameters, moves: str) -> Pose:
 
 
 def replace_pose(settings: CellParameters, moves: str, pose: Sequence[float]) -> CellParameters:
-    """Return the cell with another pose of the movable.
+    """Return the cell with a new pose of the movable frame.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def replace_pose(settings: CellParameters, moves: str, pose: Sequence[float]) ->
     Returns
     -------
     CellParameters
-        The cell.
+        The cell with that pose.
     """
     x, y, z, rx, ry, rz = (float(number) for number in pose)
     new_pose = (x, y, z, rx, ry, rz)
@@ -109,22 +109,22 @@ def replace_pose(settings: CellParameters, moves: str, pose: Sequence[float]) ->
 
 
 def outer(pose: Pose) -> list[float]:
-    """A pose in mm and deg, digits that a sum of steps leaves behind rounded away."""
+    """Return a pose in mm and deg, without the rounding residues of summed steps."""
     return [
         round(value, 7) + 0.0 for value in (*pose[:3], *(math.degrees(angle) for angle in pose[3:]))
     ]
 
 
-JUDGING = 0.8  # of the time goes into all poses, the rest into planning the best ones whole
+JUDGING = 0.8  # fraction of the progress bar for rating all poses; the rest is for full plans
 
 
 @dataclass(frozen=True, eq=False)
 class Placed:
-    """P rated poses (P, 6) of the movable frame in a cell with these settings, mm and rad.
+    """P rated poses (P, 6) of the movable frame of a cell, mm and rad.
 
-    about: its present pose in the cell. points: number of toolpath points for the rating; of: their
-    total. proven: by pose number, the rating with all points, in the order of planning; the best
-    pose is the last entry if it is feasible.
+    settings: the cell. about: the current pose of the frame. points: number of sampled toolpath
+    points. of: number of all toolpath points. proven: results with all points by pose index, in
+    the order of planning. The last of them is the best pose if it is feasible.
     """
 
     settings: CellParameters
@@ -138,23 +138,23 @@ class Placed:
 
     @property
     def best(self) -> int | None:
-        """The number of the best pose, None without one."""
+        """Index of the best pose; None if no planned pose is feasible."""
         last_proven = next(reversed(self.proven), None)
         return (
             last_proven if last_proven is not None and self.proven[last_proven].feasible else None
         )
 
     def pose(self, number: int) -> Pose:
-        """Return one of the poses, rounded as its text."""
+        """Return a pose, rounded like its text output."""
         x, y, z, a, b, c = np.round(self.poses[number], 9).tolist()
         return (x, y, z, a, b, c)
 
     def result_of(self, number: int) -> Judged:
-        """Return the result of a pose, with all points if it was planned so."""
+        """Return the result of a pose, with all points if available."""
         return self.proven.get(number, self.judged[number])
 
     def entries(self, number: int) -> dict[str, object]:
-        """Return the parameters that set a pose of the cell, in the units of macros: mm and deg."""
+        """Return the cell parameters that set a pose, in the units of macros: mm and deg."""
         if self.moves == POSITIONER:
             moved = replace_pose(self.settings, self.moves, self.pose(number))
             return {"external": EXTERNAL.text(moved.external)}
@@ -168,7 +168,7 @@ class Placed:
 def place_part(
     job: Job, settings: CellParameters, parameters: PlaceParameters, progress: Progress
 ) -> Placed:
-    """Judge the poses of a box and find the best.
+    """Rate all poses of a box and find the best pose.
 
     Parameters
     ----------
@@ -179,17 +179,17 @@ def place_part(
     parameters : PlaceParameters
         The box, the criterion and the number of points.
     progress : callable
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
     Placed
-        All poses with their results.
+        All poses and their results.
 
     Raises
     ------
     InputError
-        NOT_FOR_SETUP if the cell does not have the movable.
+        NOT_FOR_SETUP if the cell does not have the requested frame.
     """
     moves = select_movable(settings, parameters.moves)
     about = pose_of(settings, moves)
@@ -212,7 +212,7 @@ def _proven(
     placed: Placed,
     progress: Progress,
 ) -> dict[int, Judged]:
-    """Plan the best poses with all points, until one is feasible."""
+    """Plan the best poses with all points until one is feasible."""
     judge, proofs = Judge(job, None), dict[int, Judged]()
     for number in ranked(placed, parameters.best)[: parameters.proven]:
         share = JUDGING + (1.0 - JUDGING) * len(proofs) / parameters.proven
@@ -224,15 +224,15 @@ def _proven(
 
 
 def ranked(placed: Placed, best: str) -> list[int]:
-    """Return the feasible poses, the best first; ties are resolved by the other figures, then by the
-    distance to the current pose.
+    """Return the feasible poses, the best first.
 
-    Poses where the arm touches an obstacle, which only `cell.arm_clearance` forbids, come last.
+    The other criteria resolve ties, then the distance from the current pose. Poses where the arm
+    touches an obstacle come last; only `cell.arm_clearance` makes such a contact an error.
     """
     change = np.abs(placed.poses - np.array(placed.about))
     distances = np.linalg.norm(change[:, :3], axis=1) + 1000.0 * change[:, 3:].sum(
         axis=1
-    )  # mm; a rad counts as a metre
+    )  # mm; 1 rad counts as 1 m
 
     def order(number: int) -> tuple[float, ...]:
         result = placed.judged[number]
@@ -254,7 +254,7 @@ def ranked(placed: Placed, best: str) -> list[int]:
     )
 
 
-# ---- Poses and their results as a table, and the best one as a line of a job file
+# ---- Poses and results as a table, and the best pose as a line of a job file
 
 HEAD = (
     "x_mm",
@@ -275,9 +275,9 @@ HEAD = (
 
 
 def rows(placed: Placed) -> Iterator[str]:
-    """Return the lines of place.csv, the header first.
+    """Yield the lines of place.csv, the header first.
 
-    A pose that was planned with all points has the figures of that plan.
+    A pose that was planned with all points has the values of that plan.
     """
     yield ",".join(HEAD) + "\n"
     for number in range(len(placed.poses)):
@@ -302,7 +302,7 @@ def rows(placed: Placed) -> Iterator[str]:
 
 
 def key(placed: Placed, number: int) -> str:
-    """The line of the section `cell` of a job file that gives the cell a pose."""
+    """Return the line of section `cell` of a job file that sets a pose."""
     if placed.moves == POINT:
         return f"deposition_point: {_list(placed.pose(number))}"
     if placed.moves == PLATFORM:

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The reach of a robot as a volume: at each point of a grid, the directions in which it can hold its
-load.
-"""
+"""Robot reach as a grid: at each point, the fraction of tool directions that the robot can hold."""
 
 from __future__ import annotations
 
@@ -18,14 +16,18 @@ from ..planning.plan import Progress
 from ..planning.task import LimitRows, limit_rows
 from ..types import Array
 
-DIRECTIONS, TURNS = 32, 12  # unit vectors that are tried, and rotations about each
-PIECE = 60  # places done together
+DIRECTIONS, TURNS = 32, 12  # tested directions, and rotations about each direction
+PIECE = 60  # grid points computed per batch
 MOST_PLACES = 40_000
 
 
 @dataclass(frozen=True, eq=False)
 class Reach:
-    """places: (n, 3) mm in base_link, those where the robot can be at all; share: (n,) of DIRECTIONS in which it can."""
+    """Reachable grid points.
+
+    places: (n, 3) mm in base_link. share: (n,) fraction of the DIRECTIONS that the robot can hold
+    at each place. step: grid spacing, mm.
+    """
 
     places: Array
     share: Array
@@ -35,22 +37,22 @@ class Reach:
 def reach(cell: Cell, step: float, progress: Progress = lambda share, text: None) -> Reach:
     """Return the reachable positions of the nozzle tip on a grid.
 
-    With the part on the robot, these are positions of the middle of the platform. They respect
-    the limits. Obstacles and external axes are not considered.
+    For a robot that holds the part, return positions of the platform centre. Joint limits apply;
+    obstacles and external axes are ignored.
 
     Parameters
     ----------
     cell : Cell
         The cell with its configuration.
     step : float
-        Distance between grid points, mm; larger if needed to stay within MOST_PLACES.
+        Grid spacing, mm; increased where needed to keep the grid within MOST_PLACES.
     progress : callable, optional
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
     Reach
-        The positions; empty for machines with rotary axes.
+        The reachable positions; empty for five-axis machines.
     """
     arm = cell.robot.arm
     if arm is None:
@@ -80,10 +82,10 @@ def _pieces(count: int) -> Iterator[slice]:
 
 
 def _poses(cell: Cell) -> Array:
-    """(DIRECTIONS, TURNS, 4, 4) poses of the flange with its load at the origin, in all directions."""
+    """Return flange poses (DIRECTIONS, TURNS, 4, 4) that hold the load at the origin."""
     number = np.arange(DIRECTIONS) + 0.5
     up = 1.0 - 2.0 * number / DIRECTIONS
-    around = np.pi * (1.0 + np.sqrt(5.0)) * number  # evenly on a ball, along a spiral
+    around = np.pi * (1.0 + np.sqrt(5.0)) * number  # even distribution on a sphere (Fibonacci)
     across = np.sqrt(1.0 - up * up)
     axes = np.stack([across * np.cos(around), across * np.sin(around), up], axis=1)
     lean = np.swapaxes(frames.smallest_rotation(axes, (0.0, 0.0, 1.0)), 1, 2)
@@ -95,7 +97,7 @@ def _poses(cell: Cell) -> Array:
 
 
 def _share(cell: Cell, rows: LimitRows, points: Array, hold: Array) -> Array:
-    """Shares (n,) of the directions at points (n, 3)."""
+    """Return the fraction (n,) of directions that the robot can hold at points (n, 3)."""
     arm = cell.robot.arm
     assert arm is not None
     poses = np.broadcast_to(hold, (len(points), *hold.shape)).copy()

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Keeps the links of a robot clear of the cell and of each other during planning, by
-`cell.arm_clearance`.
-"""
+"""Keep the robot links clear of the cell and of each other in planning, by `cell.arm_clearance`."""
 
 from __future__ import annotations
 
@@ -28,20 +26,21 @@ CODE = "ARM_CLEARANCE"
 STEP, SLIDE = (
     float(np.radians(2.0)),
     10.0,
-)  # largest joint step on rapids between two checks, rad and mm
+)  # maximum joint step between two checks on rapids: rad for revolute, mm for prismatic axes
 
 
 @dataclass(frozen=True)
 class ArmKept:
-    """The link clearance check, with the number of printed points when a bead begins, by layer and
-    index.
+    """The link clearance check.
+
+    before: number of points printed before each bead, by its layer and index.
     """
 
     contact: ArmContact
     before: Mapping[Place, int]
 
     def touches(self, joints: Array, points: Points, bead_ids: Sequence[Place]) -> Touches:
-        """Return the contacts of links at the points of some beads.
+        """Return the link contacts at the points of beads.
 
         Parameters
         ----------
@@ -55,7 +54,7 @@ class ArmKept:
         Returns
         -------
         Touches
-            The contacts, checked against the deposit present when each bead begins.
+            Contacts, with the deposit printed before each bead.
         """
         return self.contact.touches(
             joints,
@@ -63,14 +62,14 @@ class ArmKept:
         )
 
     def rotations_near(self, joints: Array, bead: Index, bead_ids: Sequence[Place]) -> Mask:
-        """Return at which rotations a link gets too close.
+        """Return the rotations at which a link gets too close.
 
         Parameters
         ----------
         joints : (R, T, axes) array
             Joint values for R rotations at T points, rad or mm.
         bead : (T,) int array
-            Number of the bead that each point belongs to.
+            Bead index of each point.
         bead_ids : sequence of Place
             Layer and index of each bead.
 
@@ -84,8 +83,9 @@ class ArmKept:
         return met.any.reshape(joints.shape[:2])
 
     def moment(self, bead_id: Place) -> int:
-        """Number of points printed before a bead; for a bead that was divided later, before its
-        layer.
+        """Return the number of points printed before a bead.
+
+        For a piece of a split bead, count the points printed before its layer.
         """
         return self.before.get(bead_id, self.before[bead_id[0], 0])
 
@@ -98,14 +98,14 @@ def build_arm_clearance(toolpath: Toolpath, cell: Cell, cylinders: Cylinders) ->
     toolpath : Toolpath
         Toolpath in part coordinates; its bead sizes and surroundings count as obstacles.
     cell : Cell
-        The cell, with the requested `arm_clearance` in mm.
+        The cell, including the requested `arm_clearance`, mm.
     cylinders : Cylinders
-        Cylinders about each link of the robot.
+        Cylinders around each robot link.
 
     Returns
     -------
     ArmKept or None
-        None if the job does not ask for a clearance or the link geometry is unknown.
+        None if the job requests no clearance or the link geometry is unknown.
     """
     beads = [bead for _, _, bead in toolpath]
     contact = contact_of(
@@ -134,25 +134,25 @@ def contact_of(
     width: float,
     height: float,
 ) -> ArmContact | None:
-    """Return the contact check of the robot's links against bodies and beads.
+    """Return the contact check of the robot links against bodies and beads.
 
     Parameters
     ----------
     beads : sequence of Bead
         Beads in print order, part coordinates.
     cell : Cell
-        The cell, with the requested `arm_clearance` in mm.
+        The cell, including the requested `arm_clearance`, mm.
     cylinders : Cylinders
-        Cylinders about each link of the robot.
+        Cylinders around each robot link.
     bodies : sequence of Body
         Obstacles in part coordinates.
     width, height : float
-        Size of beads without their own, mm.
+        Size of beads without a size, mm.
 
     Returns
     -------
     ArmContact or None
-        None without a requested clearance or without link geometry.
+        None if no clearance is requested or the link geometry is unknown.
     """
     if cell.arm_clearance is None or not cylinders:
         return None
@@ -163,7 +163,7 @@ def contact_of(
 def check_moves(
     contact: ArmContact, start: Array, end: Array, deposited: Index
 ) -> tuple[Index, Touches]:
-    """Find links that get too close on moves that are straight in the joints.
+    """Find links that get too close on joint moves.
 
     Parameters
     ----------
@@ -172,14 +172,14 @@ def check_moves(
     start, end : (k, axes) array
         Joints at the ends of the moves, rad or mm.
     deposited : (k,) int array
-        Number of printed points at each move.
+        Number of points printed before each move.
 
     Returns
     -------
     move : (n,) int array
-        The move of each check.
+        Move index of each check.
     touches : Touches
-        The contacts of each check. Moves with NaN joints have none.
+        Contacts of each check. Moves with NaN joints have no contacts.
     """
     steps = np.where(contact.cell.machine.chain.sliding, SLIDE, STEP)
     step_count = np.nan_to_num(np.abs(end - start) / steps).max(axis=1, initial=0.0)
@@ -191,12 +191,12 @@ def check_moves(
 def clearance_issue(
     cell: Cell, link: str, what: str, layer: int, bead: int, on_way: bool = False
 ) -> Issue:
-    """Build the issue for a link that gets too close to an obstacle.
+    """Return the issue for a link that gets too close to an obstacle.
 
     Parameters
     ----------
     cell : Cell
-        The cell; its links of external axes decide the proposed remedy.
+        The cell; its external links decide the remedy.
     link : str
         A name of `ArmContact.links`, NOZZLE, PART, TORCH or BASE.
     what : str
@@ -204,12 +204,12 @@ def clearance_issue(
     layer, bead : int
         The bead concerned.
     on_way : bool, optional
-        Whether the contact is on the rapid to the bead.
+        Whether the contact occurs on the rapid to the bead.
 
     Returns
     -------
     Issue
-        An error with the remedy.
+        An error, including the remedy.
     """
     where = " on the rapid to the bead" if on_way else ""
     stands = what in [external_link.name for external_link in cell.shapes.external_links]

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rotations at which the links of the robot stay clear.
+"""Tool rotations that keep the robot links clear.
 
-The search drops candidates at which a link gets too close to an obstacle. The local search may
-move a clear candidate too close again. It then runs once more, with the linearized distances of the
-links as constraints, from the polynomial that goes furthest towards its first result and stays
-clear. If this run finds no clear result, that polynomial is used.
+The global search drops candidates whose links get too close to an obstacle. The local search may
+move a clear candidate too close again. In this case take the last clear polynomial on the way to
+its result, and repeat the local search from there with linearised link distances as constraints. If
+the repeated search finds no clear result, keep this polynomial.
 """
 
 from __future__ import annotations
@@ -37,41 +37,39 @@ from .rotation.refine_state import state_of
 from .task import MIN_MARGIN, UNREACHABLE, Task, condition_margin
 
 MAX_LINEARIZATIONS = 10
-GAP_RANGE_MM = (
-    50.0  # mm; link pairs with more extra clearance than this do not constrain the search
-)
-EXTRA_GAP_MM = 0.01  # mm of extra clearance, so that the result is clear
-REACH = 0.3  # rad; largest change of a polynomial between two checks
-UNCHANGED = 1e-4  # rad, and share of the objective; smaller changes do not count
+GAP_RANGE_MM = 50.0  # mm; extra clearance beyond which a link pair does not constrain the search
+EXTRA_GAP_MM = 0.01  # mm; extra clearance in the constraints, so that the result is clear
+REACH = 0.3  # rad; maximum change of a polynomial between two checks
+UNCHANGED = 1e-4  # changes below this do not count: rad, or fraction of the objective
 STOPPED = "the path to a better solution comes too near"
 
 
 def refined_clear(
     task: Task, arm_clearance: ArmKept, points: Points, bead_ids: Sequence[Place], start: Array
 ) -> Refined:
-    """Return polynomials of the beads with a lower objective that also keep the links clear.
+    """Lower the objective of bead polynomials while the links stay clear.
 
-    The clearance is linearised about the current polynomial and the bead optimised again, with
-    half the reach after each step that does not help.
+    Each step linearises the clearance about the current polynomial and optimises the bead again. A
+    step without improvement halves the reach.
 
     Parameters
     ----------
     task : Task
-        The plan that the beads belong to.
+        The plan of the beads.
     arm_clearance : ArmKept
         The link clearance check.
     points : Points
-        All T points of the B beads.
+        T points of B beads.
     bead_ids : sequence of Place
         Layer and index of each bead.
     start : (B, degree + 1) array
-        Coefficients of the rotation at the start, the constant first.
+        Start coefficients in ascending order.
 
     Returns
     -------
     Refined
-        Coefficients, objective, reason and iterations of each bead. A bead without a better
-        polynomial keeps its start and has an infinite objective.
+        Coefficients, objective, stop reason and iteration count of each bead. A bead without a
+        better polynomial keeps its start and has an infinite objective.
     """
     thresholds = task.thresholds(points)
     directions = refine_state.changes(task, points, start.shape[1] - 1)
@@ -127,10 +125,10 @@ def refined_clear(
 def _looked(
     task: Task, gaps: Gaps, points: Points, coefficients: Array, moment: Index, selected: Mask
 ) -> tuple[Array, Array, Array]:
-    """Return the polynomial values and the link gaps of the selected beads (B,).
+    """Return polynomial values and link gaps of the selected beads (B,).
 
-    The values (T,), the gaps (pairs, T) of all link pairs at all points, mm, and the derivatives
-    (pairs, T) of the gaps with respect to the values.
+    The values are (T,), the gaps (pairs, T) in mm for all link pairs and points. The derivatives
+    (pairs, T) are with respect to the polynomial values.
     """
     value = points.polynomial(coefficients)
     phi, phi_rate = task.rotation(points, value)
@@ -154,45 +152,45 @@ def _looked(
 FIRST_LOOK, TURNS = (
     4,
     72,
-)  # number of candidates checked before a map is computed, and number of rotations in the map
-# number of points checked first: a bead fails if one of them has no clear rotation
+)  # candidates checked directly before a map is computed, and rotations in this map
+# points checked first; a bead fails if one of them has no clear rotation
 ENDS = 3
-POINTS_PER_BEAD = 24  # and turn, at which the links are checked
+POINTS_PER_BEAD = 24  # points per bead and turn for the link check
 SHARES = (
     0.75,
     0.5,
     0.25,
     0.0,
-)  # shares of the step from the start of the local search to its result
-TOUCHING = -1e-3  # margin of the candidate that is planned if none is clear, so that a message can name the obstacle
+)  # fractions of the local search step to fall back to
+TOUCHING = -1e-3  # margin of the best candidate if none is clear; its plan names the obstacle
 
 
 def exclude_touching(
     task: Task, arm_clearance: ArmKept, points: Points, bead_ids: Sequence[Place], candidates: Found
 ) -> Found:
-    """Return the candidates, without a margin where a link gets too close.
+    """Remove the margin of candidates whose links get too close.
 
-    The best candidates of each bead are checked directly, until one is clear; if the first few
-    are not, all are checked by a map of the rotations at which links get too close.
+    The best candidates of each bead are checked directly until one is clear. After a few failures,
+    a map of the rotations with contact checks all candidates.
 
     Parameters
     ----------
     task : Task
-        The plan that the beads belong to.
+        The plan of the beads.
     arm_clearance : ArmKept
         The link clearance check.
     points : Points
-        Points of the B beads, perhaps thinned.
+        Points of the B beads; may be a sample.
     bead_ids : sequence of Place
         Layer and index of each bead.
     candidates : Found
-        C candidates per bead, from the search.
+        C candidates per bead from the global search.
 
     Returns
     -------
     Found
-        The same candidates; margin -inf where a link gets too close. If no candidate of a
-        bead is clear, the best one keeps a margin just below 0.
+        The candidates, with margin -inf where a link gets too close. If no candidate of a bead
+        is clear, its best candidate keeps a margin just below 0.
     """
     margin, bead_rows = candidates.margin.copy(), np.arange(points.beads)
     pending = np.ones(points.beads, dtype=bool)
@@ -225,8 +223,10 @@ def _mapped(
     coefficients: Array,
     selected: Mask,
 ) -> Mask:
-    """Return for which candidates (C, B, degree + 1) of the selected beads a link gets too close at
-    a mapped rotation adjacent to theirs, as a mask (C, B).
+    """Return for which candidates (C, B) of the selected beads a link gets too close.
+
+    coefficients: (C, B, degree + 1). A candidate is rated by the mapped rotations on either side of
+    its rotation.
     """
     joints = task.raw_joints(
         points, np.broadcast_to(np.arange(TURNS)[:, None] * (TURN / TURNS), (TURNS, len(points)))
@@ -249,9 +249,9 @@ def _map(
 ) -> tuple[Mask, Mask]:
     """Return the rotations at which a link gets too close, and the beads without a clear rotation.
 
-    The first is a mask (TURNS, T) for the joints (TURNS, T, axes) at all rotations of the selected
-    beads. The second is a mask (B,): beads with a point at which no rotation is clear. At most ENDS
-    points of these beads are checked.
+    The first mask (TURNS, T) applies to the joints (TURNS, T, axes) of the selected beads. The
+    second mask (B,) marks beads with a point at which no rotation is clear. ENDS points per bead
+    are checked first, and other points only if these have a clear rotation.
     """
     contact_map = np.zeros(joints.shape[:2], dtype=bool)
     hopeless = np.zeros(points.beads, dtype=bool)
@@ -278,12 +278,12 @@ def brought_clear(
     start: Array,
     reached: Refined,
 ) -> tuple[Refined, Mask]:
-    """Replace the polynomials in `reached` that do not keep the links clear, if clear ones exist.
+    """Replace polynomials whose links get too close by clear ones, where possible.
 
     Parameters
     ----------
     task : Task
-        The plan that the beads belong to.
+        The plan of the beads.
     arm_clearance : ArmKept
         The link clearance check.
     beads : sequence of Bead
@@ -291,16 +291,16 @@ def brought_clear(
     bead_ids : sequence of Place
         Layer and index of each bead.
     start : (B, degree + 1) array
-        Coefficients at the start of the local search.
+        Start coefficients of the local search.
     reached : Refined
-        The result of the local search.
+        Result of the local search.
 
     Returns
     -------
     refined : Refined
-        The polynomials, with clear ones where they exist.
+        The polynomials, clear where possible.
     replaced : (B,) bool array
-        Beads that touched and got a clear polynomial.
+        Beads with contact that got a clear polynomial.
     """
     points = gather(beads, task.cell, POINTS_PER_BEAD)
     touching = _find_touching(
@@ -342,8 +342,9 @@ def brought_clear(
 
 @dataclass(frozen=True)
 class _Serving:
-    """Returns which beads (B,) keep limits, condition and link clearance with coefficients (B,
-    degree + 1).
+    """Tests which beads (B,) keep limits, condition and link clearance.
+
+    Call with coefficients (B, degree + 1).
     """
 
     task: Task
@@ -366,10 +367,10 @@ class _Serving:
 def _stepped_back(
     start: Array, reached: Array, joined: Mask, serves: Callable[[Array], Mask]
 ) -> tuple[Array, Mask]:
-    """Return coefficients (B, degree + 1) that serve, as close as possible to `reached`, and the
-    mask (B,) of them.
+    """Step back from `reached` towards `start` until limits, condition and clearance are kept.
 
-    Beads without such coefficients keep `reached`. joined: (B,) beads whose ends must join.
+    Return coefficients (B, degree + 1) and the mask (B,) of beads for which this succeeds; other
+    beads keep `reached`. joined: (B,) beads whose rotation must return to its start.
     """
     result, changed = reached.copy(), np.zeros(len(start), dtype=bool)
     for share in SHARES:
@@ -379,14 +380,14 @@ def _stepped_back(
         good = ~changed & serves(mixed)
         if (
             share > 0.0
-        ):  # a bead whose ends must join does not join between two numbers of whole turns
+        ):  # an intermediate slope is not integer, so the rotation would not return to its start
             good &= ~joined | (np.abs(reached - start)[:, 1:].max(axis=1, initial=0.0) < 1e-9)
         result[good], changed[good] = mixed[good], True
     return result, changed
 
 
 def findings(arm_clearance: ArmKept, paths: Sequence[BeadPath]) -> list[Issue]:
-    """Report each bead at whose points a link gets too close, with the link and its obstacle."""
+    """Return an issue for each bead with a link too close, naming the link and the obstacle."""
     issues = []
     for path in paths:
         sampled = np.unique(
@@ -414,7 +415,7 @@ def _find_touching(
     coefficients: Array,
     selected: Mask,
 ) -> Mask:
-    """Return on which of the selected beads a link gets too close, as a mask (B,)."""
+    """Return on which of the selected beads (B,) a link gets too close."""
     joints = task.joints(points, task.rotation(points, points.polynomial(coefficients))[0])
     met = arm_clearance.touches(
         np.where(selected[points.bead, None], joints, np.nan), points, bead_ids
@@ -423,7 +424,7 @@ def _find_touching(
 
 
 def _fits(task: Task, points: Points, threshold: Array, coefficients: Array) -> Mask:
-    """Return whether each bead keeps limits and condition, (B,)."""
+    """Return which beads (B,) keep limits and condition."""
     phi = task.rotation(points, points.polynomial(coefficients))[0]
     joints = task.joints(points, phi)
     margin = np.minimum(

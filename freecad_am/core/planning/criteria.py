@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The criteria of a joint path (Chalvin 2020, eqs. 1 to 6 as corrected in ERRATA, and eq. 17).
+"""Criteria of a joint path (Chalvin 2020, eqs. 1 to 6 as corrected in ERRATA, and eq. 17).
 
-Every criterion is minimised and given per bead, with its derivative along d q / d phi at each
-point. Sums over points are means, so that more points do not make a bead worse; eq. 17 stays a sum.
+Each criterion is minimised. It has one value per bead and a derivative along d q / d phi at each
+point. Values are means over points, so the number of points does not matter; eq. 17 is a sum.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .joint_path import BeadPath, JointPath
 from .points import Points, gather, steps
 from .task import Task
 
-# value (..., B) for joints (..., T, axes), condition left to the caller's need
+# maps joints (..., T, axes) to a criterion per bead (..., B), without computing the condition
 Values = Callable[[Task, Points, Array], Array]
 
 
@@ -30,7 +30,7 @@ def displacement(task: Task, points: Points, joints: Array) -> Array:
     Parameters
     ----------
     task : Task
-        The plan, with the weights of the axes.
+        The plan, including axis weights.
     points : Points
         T points of B beads.
     joints : (..., T, axes) array
@@ -50,12 +50,12 @@ def displacement(task: Task, points: Points, joints: Array) -> Array:
 
 
 def displacement_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
-    """Return the derivative of the displacement by the rotation at each point.
+    """Return the derivative of the displacement with respect to phi at each point.
 
     Parameters
     ----------
     task : Task
-        The plan, with the weights of the axes.
+        The plan, including axis weights.
     points : Points
         T points of B beads.
     joints : (T, axes) array
@@ -66,7 +66,7 @@ def displacement_rate(task: Task, points: Points, joints: Array, rates: Array) -
     Returns
     -------
     (T,) array
-        Derivative of eq. 17 by the phi of each point.
+        Derivative of eq. 17 with respect to the phi of each point.
     """
     step = steps(joints, points) * task.weights
     ahead = np.zeros_like(step)
@@ -76,12 +76,12 @@ def displacement_rate(task: Task, points: Points, joints: Array, rates: Array) -
 
 
 def limits_liegeois(task: Task, points: Points, joints: Array) -> Array:
-    """Return the mean squared distance of the joints from the middle of their ranges.
+    """Return the mean squared distance of the joints from mid-range, relative to half the range.
 
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     points : Points
         T points of B beads.
     joints : (..., T, axes) array
@@ -100,12 +100,12 @@ def limits_liegeois(task: Task, points: Points, joints: Array) -> Array:
 
 
 def limits_fournier(task: Task, points: Points, joints: Array) -> Array:
-    """Return the mean squared distance from the middle, relative to the full range.
+    """Return the mean squared distance of the joints from mid-range, relative to the full range.
 
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     points : Points
         T points of B beads.
     joints : (..., T, axes) array
@@ -124,12 +124,12 @@ def limits_fournier(task: Task, points: Points, joints: Array) -> Array:
 
 
 def limits_klein(task: Task, points: Points, joints: Array) -> Array:
-    """Return the largest distance of any joint from the middle of its range.
+    """Return the maximum distance of any joint from mid-range, relative to the full range.
 
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     points : Points
         T points of B beads.
     joints : (..., T, axes) array
@@ -138,7 +138,7 @@ def limits_klein(task: Task, points: Points, joints: Array) -> Array:
     Returns
     -------
     (..., B) array
-        Largest abs(q - mean) / stroke over axes and points.
+        Maximum of abs(q - mean) / stroke over axes and points.
 
     References
     ----------
@@ -173,11 +173,11 @@ def manipulability(task: Task, points: Points, joints: Array, matrix: Array) -> 
     Parameters
     ----------
     task : Task
-        The plan, with the characteristic length that divides the rows of translation.
+        The plan, including the characteristic length that scales the translation rows.
     points : Points
         T points of B beads.
     joints : (T, axes) array
-        Not used; criteria share one signature.
+        Unused; all criteria share one signature.
     matrix : (T, 6, axes) array
         Jacobians at the deposition point.
 
@@ -199,11 +199,11 @@ def condition(task: Task, points: Points, joints: Array, matrix: Array) -> Array
     Parameters
     ----------
     task : Task
-        The plan, with the characteristic length that divides the rows of translation.
+        The plan, including the characteristic length that scales the translation rows.
     points : Points
         T points of B beads.
     joints : (T, axes) array
-        Not used; criteria share one signature.
+        Unused; all criteria share one signature.
     matrix : (T, 6, axes) array
         Jacobians at the deposition point.
 
@@ -220,14 +220,14 @@ def condition(task: Task, points: Points, joints: Array, matrix: Array) -> Array
 
 
 def mean_inverse(points: Points, measure: Array) -> Array:
-    """Return the mean of the inverse of a measure over the points of each bead.
+    """Return the mean reciprocal of a measure over the points of each bead.
 
     Parameters
     ----------
     points : Points
         T points of B beads.
     measure : (T,) array
-        Distance from singularity; values of 0 count as 1e-300.
+        Distance from singularity; at least 1e-300 in the reciprocal.
 
     Returns
     -------
@@ -238,23 +238,23 @@ def mean_inverse(points: Points, measure: Array) -> Array:
 
 
 def value(task: Task, points: Points, joints: Array, matrix: Array | None) -> Array:
-    """Return the objective chosen in the job.
+    """Return the objective of the job for each bead.
 
     Parameters
     ----------
     task : Task
-        The plan, with the objective.
+        The plan, including the objective.
     points : Points
         T points of B beads.
     joints : (T, axes) array
         Joints, rad or mm.
     matrix : (T, 6, axes) array or None
-        Jacobians; None if the objective needs only joints.
+        Jacobians; None if the objective depends only on joints.
 
     Returns
     -------
     (B,) array
-        The objective of each bead.
+        Objective of each bead.
     """
     name = task.parameters.objective
     if name in JOINT_ONLY:
@@ -264,12 +264,12 @@ def value(task: Task, points: Points, joints: Array, matrix: Array | None) -> Ar
 
 
 def rate(task: Task, points: Points, joints: Array, rates: Array, matrix: Array) -> Array:
-    """Return the derivative of the objective by the rotation at each point.
+    """Return the derivative of the objective with respect to phi at each point.
 
     Parameters
     ----------
     task : Task
-        The plan, with the objective.
+        The plan, including the objective.
     points : Points
         T points of B beads.
     joints : (T, axes) array
@@ -282,7 +282,7 @@ def rate(task: Task, points: Points, joints: Array, rates: Array, matrix: Array)
     Returns
     -------
     (T,) array
-        Derivative by the phi of each point.
+        Derivative with respect to the phi of each point.
     """
     name = task.parameters.objective
     if name in JOINT_ONLY:
@@ -300,12 +300,12 @@ def rate(task: Task, points: Points, joints: Array, rates: Array, matrix: Array)
 
 
 def joint_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array:
-    """Return the derivative of an objective that needs no Jacobian.
+    """Return the derivative of an objective of `JOINT_ONLY` with respect to phi at each point.
 
     Parameters
     ----------
     task : Task
-        The plan, with an objective of `JOINT_ONLY`.
+        The plan, including the objective.
     points : Points
         T points of B beads.
     joints : (T, axes) array
@@ -316,7 +316,7 @@ def joint_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array
     Returns
     -------
     (T,) array
-        Derivative by the phi of each point.
+        Derivative with respect to the phi of each point.
     """
     name = task.parameters.objective
     if name == "displacement":
@@ -329,14 +329,14 @@ def joint_rate(task: Task, points: Points, joints: Array, rates: Array) -> Array
 
 
 def condition_rate(task: Task, joints: Array, rates: Array, matrix: Array) -> Array:
-    """Return the derivative of the condition by the rotation at each point.
+    """Return the derivative of the inverse condition number with respect to phi at each point.
 
     Parameters
     ----------
     task : Task
-        The plan, with the characteristic length.
+        The plan, including the characteristic length.
     joints : (T, axes) array
-        Not used.
+        Unused.
     rates : (T, axes) array
         Derivatives d q / d phi.
     matrix : (T, 6, axes) array
@@ -371,29 +371,30 @@ def _mean(points: Points, values: Array) -> Array:
 
 
 def _is_worst(points: Points, values: Array) -> Mask:
-    # one point per bead, the first of the worst ones, so that a sum over points is the gradient of the maximum
+    # mark one point per bead, the first worst one, so that a sum over points is the gradient of
+    # the maximum
     worst = values <= points.worst(values)[points.bead]
     occurrence: Integers = np.cumsum(worst) - (np.cumsum(worst) - worst)[points.first][points.bead]
     return np.asarray(worst & (occurrence == 1), dtype=np.bool_)
 
 
 def path_figures(path: JointPath, cell: Cell, parameters: JointParameters) -> dict[str, object]:
-    """Return the figures of a planned joint path for the report.
+    """Return the statistics of a planned joint path for the report.
 
     Parameters
     ----------
     path : JointPath
         The joint path.
     cell : Cell
-        Its cell.
+        The cell of the plan.
     parameters : JointParameters
-        The parameters of its plan.
+        The parameters of the plan.
 
     Returns
     -------
     dict[str, object]
-        Angles in degrees, lists in axis order; for a machine with rotary axes only the axis
-        figures.
+        Statistics with angles in degrees and lists in axis order. A five-axis machine has only
+        the axis statistics.
     """
     if not path.branch:
         return _figures(
@@ -403,11 +404,11 @@ def path_figures(path: JointPath, cell: Cell, parameters: JointParameters) -> di
 
 
 def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
-    """Return the figures of the joint paths of a robot, angles in degrees, lists in axis order.
+    """Return statistics of robot joint paths, with angles in degrees and lists in axis order.
 
-    None replaces a missing value. limit_margin_deg is the smallest distance to a limit of each axis
-    (None: continuous). Speeds, accelerations and jerks are the largest within the beads at their
-    travel speed, by differences over the points. Prismatic axes have mm instead of degrees.
+    A missing value is None. limit_margin_deg is the minimum distance of each axis from its limits
+    (None for a continuous axis). Speeds, accelerations and jerks are maxima within beads at their
+    travel speed, from finite differences. Prismatic axes have mm instead of degrees.
     """
     complete = all(path.reachable for path in paths)
     return _figures(
@@ -453,10 +454,10 @@ def _figures(
 
 
 def criteria_values(task: Task, paths: Sequence[BeadPath]) -> dict[str, float | None]:
-    """Return all criteria (criteria.py) of the whole path, whatever its objective was.
+    """Return all criteria for the whole path, including those that were not the objective.
 
-    Sums over steps for the displacement, the largest value for limits-klein, means over points for the others; None
-    where a point is unreachable.
+    The displacement is a sum over steps and limits-klein a maximum; the other criteria are means
+    over points. All are None if any point is unreachable.
     """
     if not all(path.reachable for path in paths):
         return dict.fromkeys(OBJECTIVES)
@@ -481,7 +482,10 @@ def criteria_values(task: Task, paths: Sequence[BeadPath]) -> dict[str, float | 
 
 
 def _rates(path: BeadPath) -> tuple[Array, Array, Array]:
-    """Largest speed, acceleration and jerk of each axis over one bead, rad or mm per s, s^2, s^3."""
+    """Return the maximum speed, acceleration and jerk of each axis in a bead.
+
+    Units are rad or mm per s, s^2 and s^3.
+    """
     length = np.linalg.norm(np.diff(path.bead.points, axis=0), axis=1)
     time = length / path.bead.speed[1:]
     speed = np.diff(path.joints, axis=0) / time[:, None]
@@ -497,7 +501,7 @@ def _rates(path: BeadPath) -> tuple[Array, Array, Array]:
 
 
 def _in_axis_units(values: Array | None, units: Array) -> list[float | None] | None:
-    """Values of the axes in their displayed units."""
+    """Convert axis values to displayed units."""
     if values is None:
         return None
     return [float(value) if np.isfinite(value) else None for value in values / units]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Checks a planned bead point by point, and reports problems with layer, point and axis."""
+"""Check a planned bead point by point, and report problems with layer, point and axis."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from ..kinematics.cell import Cell
 from .joint_path import BeadPath
 from .task import Task
 
-# rad; rounding error of the closed form and of whole turns at a limit that is kept exactly
+# rad; rounding error of the closed form and of whole turns, for joints exactly at a limit
 ROUNDING = 1e-9
 
 
 def findings(task: Task, path: BeadPath) -> list[Issue]:
-    """Return at most one issue per kind and axis for the bead, at its worst point."""
+    """Return at most one issue per kind and axis, at the worst point of the bead."""
     bead_fields = {"layer": path.layer, "bead": path.index}
     unreachable = np.flatnonzero(~np.isfinite(path.joints).all(axis=1))
     if len(unreachable) and not task.cell.machine.free:
@@ -65,9 +65,7 @@ def findings(task: Task, path: BeadPath) -> list[Issue]:
 
 
 def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
-    """Report a positioner out of the robot's reach: no bead gets within the reach of the arm with
-    its tool.
-    """
+    """Report a positioner out of reach: arm and tool are too short for every point of the part."""
     external, arm = cell.external, cell.robot.arm
     if (
         external is None
@@ -149,7 +147,7 @@ def _limit_findings(task: Task, path: BeadPath, bead_fields: dict[str, int]) -> 
 def _condition_findings(path: BeadPath, bead_fields: dict[str, int]) -> list[Issue]:
     short = path.threshold - path.condition
     point = int(short.argmax())
-    # `not >` also holds for NaN: without redundancy the condition is undefined
+    # `not >` also covers NaN: machines without redundancy have no condition number
     if not short[point] > ROUNDING:
         return []
     return [

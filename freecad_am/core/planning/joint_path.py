@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The joint path: the result of planning for every bead."""
+"""The joint path: the planning result for every bead."""
 
 from __future__ import annotations
 
@@ -18,11 +18,12 @@ from ..types import Array
 class BeadPath:
     """The joints of one bead of n points.
 
-    bead: the bead, perhaps with a moved seam, or a piece of a split bead, if an axis requires it.
-    phi: (n,) rotation about the tool axis, rad. joints: (n, axes) serial, rad, unwrapped within the
-    bead, NaN where unreachable. condition and threshold: (n,) sigma_min / sigma_max and the
-    smallest allowed. coefficients: of the layer's polynomial, the constant first, None without one.
-    reason, iterations: why and when the optimiser stopped.
+    bead: the bead as planned; its seam may have moved, or it may be a piece of a split bead. phi:
+    (n,) rotation about the tool axis, rad. joints: (n, axes) serial joint values, rad or mm,
+    unwrapped within the bead, NaN where unreachable. condition, threshold: (n,) sigma_min /
+    sigma_max and its required minimum. coefficients: of the layer's rotation polynomial in
+    ascending order; None without a polynomial. reason, iterations: stop reason and iteration count
+    of the optimiser.
     """
 
     layer: int
@@ -40,14 +41,12 @@ class BeadPath:
 
     @property
     def reachable(self) -> bool:
-        """True when every point has joint values."""
+        """Whether every point has joint values."""
         return bool(np.isfinite(self.joints).all())
 
 
 def numbered(paths: Sequence[BeadPath]) -> list[BeadPath]:
-    """Return the paths with their beads renumbered within each layer; some paths are pieces of
-    beads.
-    """
+    """Renumber beads within each layer, because planning may have split some."""
     count: dict[int, int] = {}
     result = []
     for path in paths:
@@ -59,23 +58,23 @@ def numbered(paths: Sequence[BeadPath]) -> list[BeadPath]:
 
 @dataclass(frozen=True)
 class JointPath:
-    """The joint path of a toolpath: beads in print order, and their issues."""
+    """The joint path of a toolpath: beads in print order, and issues."""
 
     method: str
     objective: str
-    branch: tuple[str, ...]  # None for a five-axis machine
+    branch: tuple[str, ...]  # empty for a five-axis machine
     limits: str
     beads: tuple[BeadPath, ...]
     issues: tuple[Issue, ...]
     comparison: tuple[dict[str, object], ...] = ()
     optimality: dict[str, object] | None = None  # with joints.certificate: objective, bound and gap
     of_level: dict[str, object] | None = (
-        None  # with optimised external axes: figures of the `level` plan
+        None  # with optimised external axes: statistics of the `level` plan
     )
 
     @property
     def feasible(self) -> bool:
-        """True when no point is unreachable and no limit, condition or collision forbids a program."""
+        """Whether the path has no errors (reach, limits, condition, collisions, speeds)."""
         return not has_errors(self.issues)
 
     @property
@@ -90,7 +89,7 @@ class JointPath:
         return np.concatenate([bead.joints for bead in self.beads])
 
     def conditions(self, motion: Motion) -> tuple[Array, Array]:
-        """Return condition and threshold at the deposit rows of a motion.
+        """Return condition and threshold of the deposit rows of a motion.
 
         Parameters
         ----------
@@ -100,7 +99,7 @@ class JointPath:
         Returns
         -------
         condition, threshold : (T,) array
-            NaN where a bead overlaps its own start.
+            NaN for the seam overlap of a bead.
         """
         starts = np.flatnonzero(motion.point[motion.deposit] == 0)
         condition = np.full(int(motion.deposit.sum()), np.nan)
@@ -111,7 +110,7 @@ class JointPath:
         return condition, threshold
 
     def toolpath(self, planned: Toolpath) -> Toolpath:
-        """The toolpath with its beads as executed: with moved seams and split beads."""
+        """Return the toolpath with its beads as executed, with moved seams and split beads."""
         layers = []
         for index, layer in enumerate(planned.layers):
             beads = tuple(path.bead for path in self.beads if path.layer == index)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Linear moves onto beads, for controllers whose arc instruction is such a move, which lights the arc
-at its end, or that switch the deposit ahead of a position on such moves.
+"""Linear approaches to beads, for controllers whose deposit instruction needs a linear move.
 
-Rapids run straight in the joints, and clearance was checked on that path. The linear move covers
-only the end of the rapid that stays close to this path.
+An arc instruction may be a linear move that strikes the arc at its end. Other controllers switch
+the deposit ahead of a position only on linear moves. Rapids are joint moves, and clearance was
+checked on their joint path. A linear approach therefore covers only the end of the rapid, where it
+stays close to this path.
 """
 
 from __future__ import annotations
@@ -22,22 +23,21 @@ from ..program import OFF_WAY_MM, OFF_WAY_RAD
 from ..types import Array, Index
 from .program_beads import ARC
 
-SHARE = (
-    0.75  # share of the allowed deviation from the checked path to which a linear move is shortened
-)
+SHARE = 0.75  # fraction of the allowed deviation from the checked path, target after shortening
 _BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 
 
 def asked(parameters: ProgramParameters, controller: Controller) -> bool:
-    """Whether the last moves onto beads are linear."""
+    """Whether the last move to each bead must be linear."""
     arc = parameters.schedule.by == ARC and controller.arc_moves
     ahead = parameters.trigger.lead is not None and controller.linear_triggers
     return parameters.motion == "cartesian" and (arc or ahead)
 
 
 def shorten_approaches(motion: Motion, cell: Cell) -> Motion:
-    """Return the motion with one more row on the last rapid onto each bead where a linear move from its
-    start would deviate too far; the joints still run straight along it, and stop there.
+    """Split the last rapid to a bead where a linear move would deviate too far from it.
+
+    The added row lies on the joint path of the rapid, so this path does not change.
     """
     ends = _ends(motion)
     ends = ends[ends > 0]
@@ -68,7 +68,7 @@ def shorten_approaches(motion: Motion, cell: Cell) -> Motion:
 
 
 def linear_deviations(motion: Motion, cell: Cell, ends: Index) -> tuple[Array, Array]:
-    """Return by how much linear moves deviate from straight joint motion.
+    """Return the deviation of linear moves from the joint moves that were checked.
 
     Parameters
     ----------
@@ -77,14 +77,14 @@ def linear_deviations(motion: Motion, cell: Cell, ends: Index) -> tuple[Array, A
     cell : Cell
         The cell.
     ends : (k,) int array
-        Rows in which the moves end.
+        Rows at which the moves end.
 
     Returns
     -------
     distance : (k,) array
-        Largest deviation of the tip, mm.
+        Maximum deviation of the tip, mm.
     angle : (k,) array
-        Norm of the largest difference of the tool axes, rad for small angles.
+        Norm of the maximum difference between the tool axes; rad for small angles.
     """
     joints, position, tool = (
         (
@@ -106,7 +106,7 @@ def linear_deviations(motion: Motion, cell: Cell, ends: Index) -> tuple[Array, A
 
 
 def check(motion: Motion, cell: Cell, rows: Index, arriving: bool, arc: bool = True) -> None:
-    """Reject a linear move onto a bead that deviates from the checked path.
+    """Reject a linear approach that deviates from the checked path.
 
     Parameters
     ----------
@@ -115,11 +115,11 @@ def check(motion: Motion, cell: Cell, rows: Index, arriving: bool, arc: bool = T
     cell : Cell
         The cell.
     rows : (k,) int array
-        Rows of the rapid; the last one is at the bead.
+        Rows of the rapid; the last row is at the bead.
     arriving : bool
-        Whether the start of the first row is unknown.
+        Whether the position before the first row is unknown.
     arc : bool, optional
-        Whether the arc instruction needs the move, not a switch ahead of a position.
+        Whether an arc instruction needs the move; otherwise a switch ahead of a position does.
 
     Raises
     ------
@@ -152,5 +152,5 @@ def check(motion: Motion, cell: Cell, rows: Index, arriving: bool, arc: bool = T
 
 
 def _ends(motion: Motion) -> Index:
-    """The rows of the last moves onto beads."""
+    """Return the rows of the last rapid before each bead."""
     return np.flatnonzero(~motion.deposit[:-1] & motion.deposit[1:])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Puts the beads and the rapid moves between them into one motion."""
+"""Combine beads and the rapids between them into one motion."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ from .joint_path import BeadPath, JointPath
 from .rapids.moves_between_beads import RapidWays, Way, findings
 from .rapids.retracts import Leg
 
-RAPID_SHARE = 0.8  # share of the maximum axis speed that a rapid may use
-OF_ALL = ("layer", "bead", "bead_class")  # columns that are constant for all rows of a part
+RAPID_SHARE = 0.8  # fraction of the maximum axis speed that a rapid may use
+OF_ALL = ("layer", "bead", "bead_class")  # fields with one value for all rows of a group
 
 
 @dataclass(frozen=True, eq=False)
 class _Rows:
-    """Some rows of a motion before they are joined."""
+    """A group of motion rows before joining."""
 
     role: Integers
     layer: int
@@ -57,13 +57,13 @@ def assemble(
     layer_height: float = 0.0,
     cylinders: Cylinders = (),
 ) -> tuple[Motion, tuple[Issue, ...]]:
-    """Return the motion of a joint path with its rapids.
+    """Return the motion of a joint path, including its rapids.
 
-    Between two beads the tool retracts along its axis by `between_layers.lift`, moves to the
-    same height above the next start and approaches along the axis. A continuous axis that turns
-    far on the way does so in several moves. If limits, reach or condition prevent this path,
-    another one is taken (`retracts`). If the nozzle would hit an obstacle on its way, it
-    retracts further, up to beyond the sphere about all obstacles, then in other directions.
+    Between two beads the tool retracts along its axis by `between_layers.lift`, travels to the same
+    height above the next start and approaches along its axis. A continuous axis that rotates far
+    does so in several moves. If limits, reach or condition rule out this path, `retracts` chooses
+    another. If the nozzle would hit an obstacle, it retracts further, up to outside the sphere
+    around all obstacles, and then in other directions.
 
     Parameters
     ----------
@@ -72,23 +72,23 @@ def assemble(
     cell : Cell
         The cell.
     process : ProcessParameters
-        Process with lift and bead sizes.
+        The process, including lift and bead sizes.
     bodies : sequence of Body, optional
         Obstacles in part coordinates.
     parameters : JointParameters or None, optional
-        Parameters of the joint plan, for the least condition; None for the defaults.
+        Joint planning parameters, for the minimum condition; None for the defaults.
     layer_height : float, optional
-        Height of beads without their own, mm.
+        Height of beads without a height, mm.
     cylinders : Cylinders, optional
-        Cylinders about each link of the robot, kept clear like the nozzle if
-        `cell.arm_clearance` asks for it.
+        Cylinders around each robot link; kept clear like the nozzle if `cell.arm_clearance` is
+        set.
 
     Returns
     -------
     motion : Motion
-        Rapids and beads in order.
+        Rapids and beads in execution order.
     issues : tuple of Issue
-        Rapids that cannot be moved or that meet an obstacle.
+        Issues for rapids that are infeasible or hit an obstacle.
     """
     rapids = RapidWays(
         joint_path,
@@ -114,7 +114,7 @@ def assemble(
 
 
 def _place(path: BeadPath) -> tuple[int, int, int]:
-    """Layer, bead and class."""
+    """Return layer, bead index and bead class of a path."""
     return path.layer, path.index, number_of(path.bead.role.bead_class)
 
 

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Detects contact of a moving nozzle with the obstacles of the cell, `cell.obstacles`, or with
-links of positioner and track.
+"""Detect contact of a moving nozzle with `cell.obstacles` or links of positioner and track.
 
-The check covers deposit moves, between points too, and rapids if the part moves in the world. For a
-fixed nozzle, rapids treat obstacles like everything else around the part.
+The check covers deposit moves, including between points, and rapids if the part moves in the world.
+If the part is fixed, rapids treat obstacles like the other bodies around the part.
 """
 
 from __future__ import annotations
@@ -19,14 +18,14 @@ from ..types import Array, Mask
 from .rapids.clearance import evenly
 
 ON_BEADS = "CLEARANCE"
-# maximum steps between two checks: of the joint that moves most, rad and mm, and of the nozzle's
-# ends in the world, mm
+# maximum steps between two checks: joint motion, rad and mm, and motion of the nozzle ends in the
+# world, mm
 STEP, SLIDE, WAY = float(np.radians(2.0)), 5.0, 1.0
-PIECE = 4096  # number of moves or checks in one batch
+PIECE = 4096  # moves or checks per batch
 
 
 def in_the_way(cell: Cell) -> tuple[str, ...]:
-    """Return the names of the bodies that are checked for contact with a nozzle.
+    """Return the names of the bodies to check for contact with a moving nozzle.
 
     Parameters
     ----------
@@ -36,7 +35,7 @@ def in_the_way(cell: Cell) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        Names as messages show them: obstacles, then links of external axes.
+        Names in messages: obstacles, then external links.
     """
     return (
         *(body.name for body in cell.shapes.obstacles),
@@ -45,7 +44,7 @@ def in_the_way(cell: Cell) -> tuple[str, ...]:
 
 
 def findings(motion: Motion, cell: Cell) -> list[Issue]:
-    """Report each body that the nozzle touches while it deposits, at the first bead with contact."""
+    """Report each body that the nozzle touches while depositing, at the first bead with contact."""
     rows = 1 + np.flatnonzero(motion.deposit[1:])
     met_there, issues = find_contacts(cell, motion.joints[rows - 1], motion.joints[rows]), []
     for number, (name, hits) in enumerate(zip(in_the_way(cell), met_there, strict=True)):
@@ -74,19 +73,19 @@ def findings(motion: Motion, cell: Cell) -> list[Issue]:
 
 
 def find_contacts(cell: Cell, start: Array, end: Array) -> Mask:
-    """Return which bodies a nozzle touches on moves that are straight in the joints.
+    """Return which bodies a moving nozzle touches on joint moves.
 
     Parameters
     ----------
     cell : Cell
         The cell; a fixed torch has no contacts.
     start, end : (n, axes) array
-        Joints at the ends of the moves, rad or mm; NaN: no contact.
+        Joints at the ends of the moves, rad or mm; moves with NaN have no contact.
 
     Returns
     -------
     (k, n) bool array
-        One row for each body of `in_the_way`.
+        One row per body of `in_the_way`.
     """
     hits = np.zeros((len(in_the_way(cell)), len(start)), dtype=bool)
     if cell.torch_stands or not len(hits):
@@ -127,7 +126,7 @@ def _find_batch_contacts(cell: Cell, start: Array, end: Array) -> Mask:
 
 
 def _in_world(cell: Cell, joints: Array) -> tuple[Array, Array]:
-    """Tip and axis (n, 3) of a nozzle that the flange carries, in the manufacturer's base frame."""
+    """Return tip and axis (n, 3) of a moving nozzle in the manufacturer's base frame."""
     to_world = frames.inverse(cell.world(joints)) @ (
         cell.poses.station @ frames.inverse(cell.poses.mount)
     )
@@ -135,6 +134,6 @@ def _in_world(cell: Cell, joints: Array) -> tuple[Array, Array]:
 
 
 def _transform(pose: Array, tip: Array, axis: Array) -> tuple[Array, Array]:
-    """Points and directions (n, 3) transformed by poses (n, 4, 4)."""
+    """Transform points and directions (n, 3) by poses (n, 4, 4)."""
     turn = pose[:, :3, :3]
     return np.einsum("nij,nj->ni", turn, tip) + pose[:, :3, 3], np.einsum("nij,nj->ni", turn, axis)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Other cells for a job, the likeliest first: another branch, another part position, external axes.
+"""Propose other cells for a job: another branch, another part position, external axes.
 
-Each change is given as keys of a job file.
+The most likely change comes first. Each change is given as keys of a job file.
 """
 
 from __future__ import annotations
@@ -33,18 +33,16 @@ from .joint_path import JointPath
 from .motion import assemble
 from .plan import Progress, best_branches, plan_joints
 
-LAYERS = 3  # layers of a job that are planned with each change
-POINTS = 12_000  # total number of points planned with each change
+LAYERS = 3  # number of layers to plan with each change
+POINTS = 12_000  # maximum total number of points in the plans of all changes
 
 
-# returns the issues of a joint path in a cell; the path may cover only some layers of the toolpath
+# returns the issues of a joint path in a cell; the path may cover only some layers
 Look = Callable[[JointPath, cells.Cell, Toolpath], Sequence[Issue]]
 
 
 class Fixed(NamedTuple):
-    """A toolpath with fixed build directions as a change: its job keys, and the function that makes
-    it.
-    """
+    """A change to fixed build directions: its job keys and a function that returns its toolpath."""
 
     remedy: str
     make: Callable[[], Toolpath]
@@ -52,12 +50,12 @@ class Fixed(NamedTuple):
 
 @dataclass(frozen=True)
 class Tried:
-    """A job to plan: the infeasible one, or this job with a change as keys of a job file.
+    """A job to plan: the infeasible job, or this job with a change.
 
-    fixed: the toolpath with the part's axis as build direction; None if it has that direction
-    already or cannot. own_speed: for several features, whether each has a travel speed of its own.
-    shapes: of its cell, as loaded. look: finds collisions of arm and platform; None to skip this
-    check.
+    remedy: the change as keys of a job file. fixed: change to the part axis as build direction;
+    None if the toolpath already has this direction or cannot have it. own_speed: for several
+    features, whether each one has its own travel speed. shapes: shapes of the cell, as loaded.
+    look: finds collisions of arm and platform; None to skip this check.
     """
 
     toolpath: Callable[[], Toolpath]
@@ -85,17 +83,17 @@ class Tried:
         Parameters
         ----------
         toolpath : Toolpath
-            The toolpath to plan, perhaps with only some layers.
+            The toolpath to plan; may have only some layers.
         whole : bool
-            Whether the toolpath is complete; only then are rapids checked.
+            Whether to check rapids; set for a complete toolpath.
         progress : callable
-            Called with the completed share and a text; may raise to cancel.
+            Called with the completed fraction and a text; may raise to cancel.
 
         Returns
         -------
         tuple of Issue
-            Issues of toolpath and joint path, and without errors in these of rapids and
-            collisions.
+            Issues of toolpath and joint path. If these have no errors, also issues of rapids
+            and collisions.
         """
         cell = self.cell(toolpath)
         joints = dataclasses.replace(self.joints, compare=())
@@ -113,33 +111,33 @@ class Tried:
 
 
 def some_of(toolpath: Toolpath, failed: Sequence[int]) -> Toolpath:
-    """Return the toolpath with at most LAYERS layers, chosen among the failed layers, or among all."""
+    """Return the toolpath with at most LAYERS layers, chosen from the failed layers or from all."""
     known = [k for k in failed if k < len(toolpath.layers)] or list(range(len(toolpath.layers)))
     chosen = sorted({known[round(at)] for at in np.linspace(0, len(known) - 1, LAYERS)})
     return dataclasses.replace(toolpath, layers=tuple(toolpath.layers[k] for k in chosen))
 
 
 COLLISIONS = frozenset({"ARM_COLLISION", "PLATFORM_COLLISION", "ARM_CLEARANCE"})
-CLEARANCE = 5.0  # mm, of the arm
-BELOW = 0.5  # mm; bodies that extend farther below the platform plane collide with it
+CLEARANCE = 5.0  # mm; arm clearance to try
+BELOW = 0.5  # mm; bodies that extend further below the platform plane collide with the platform
 SHIFTS = (
     (0.0, -150.0),
     (0.0, 150.0),
     (-150.0, 0.0),
     (150.0, 0.0),
-)  # shifts of the deposition point, ahead of the robot and up, mm
+)  # shifts of the deposition point: away from the robot, and up, mm
 
 
 def change_cell(job: Tried, remedy: str, **values: object) -> Tried:
-    """The job in its cell with other values."""
+    """Return the job with changed cell parameters."""
     settings = dataclasses.replace(job.settings, **values)  # type: ignore[arg-type]
     return dataclasses.replace(job, settings=settings, remedy=remedy)
 
 
 def clear_of_arm(job: Tried, codes: set[str]) -> Iterator[Tried]:
-    """Yield changes that may clear arm and platform from part and substrate.
+    """Yield changes that may clear arm and platform of part and substrate.
 
-    These are a clamp that reaches below part and substrate, a plan with arm clearance, and both.
+    These are a clamp below part and substrate, a plan with arm clearance, and both.
     """
     if codes.isdisjoint(COLLISIONS):
         return
@@ -159,10 +157,9 @@ def clear_of_arm(job: Tried, codes: set[str]) -> Iterator[Tried]:
 
 
 def held_by_clamp(job: Tried) -> Tried | None:
-    """Return the job with everything below the platform raised above it, centred, and without a
-    platform plate.
+    """Return the job without a platform plate, with part and substrate centred above the platform.
 
-    This is how pipes are clamped. None if nothing extends below the platform.
+    This corresponds to a clamped pipe. None if nothing extends below the platform.
     """
     toolpath, settings = job.toolpath(), job.settings
     cell = job.cell(toolpath)
@@ -190,7 +187,7 @@ def held_by_clamp(job: Tried) -> Tried | None:
 
 
 def branches(job: Tried) -> Iterator[Tried]:
-    """The most promising other branches."""
+    """Yield the other branches that `best_branches` proposes."""
     if job.settings.branch == "auto" or job.joints.own_branch != OF_CELL:
         return
     toolpath = job.toolpath()
@@ -210,7 +207,7 @@ def branches(job: Tried) -> Iterator[Tried]:
 def points(job: Tried) -> Iterator[Tried]:
     """Yield other positions of the deposition point or the fixed platform.
 
-    The first one leaves the machine most room; positions near the present one follow.
+    The first one leaves the machine the most range. Positions near the current one follow.
     """
     if job.settings.external:  # the platform is on the positioner
         return
@@ -237,7 +234,7 @@ def points(job: Tried) -> Iterator[Tried]:
 
 
 def external_axes(job: Tried, codes: set[str]) -> Iterator[Tried]:
-    """Yield a positioner at other positions, or external axes for a robot without any."""
+    """Yield other positioner positions, or external axes for a robot without external axes."""
     for remedy, settings in external_remedies.move_positioner(job.settings, job.folders):
         yield dataclasses.replace(job, settings=settings, remedy=remedy)
     toolpath = job.toolpath()
@@ -265,7 +262,7 @@ def _adjacent(point: Pose) -> list[Pose]:
 
 
 def _before(job: Tried) -> list[Pose]:
-    """Level positions of a platform in front of a robot that carries the tool."""
+    """Return level platform positions in front of a robot that holds the tool."""
     cell = cells.resolve(job.settings, np.eye(4), folders=job.folders)
     arm = cell.machine.arm
     if arm is None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""From a toolpath and a cell to the joint path: branch, method, turns, points between, findings."""
+"""Plan the joint path of a toolpath in a cell: branch, planning method, unwrapping and checks."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ METHODS = {
 }
 ALL_METHODS = METHODS | {
     closed_form.METHOD: closed_form.plan
-}  # method of machines without a free coordinate
+}  # planning method for machines without a free tool rotation
 # settings that apply only to robots with a free tool rotation
 OF_ROBOTS = (
     "method",
@@ -79,8 +79,8 @@ def plan_joints(
 ) -> JointPath:
     """Plan the joint path of a toolpath.
 
-    Problems (unreachable, over a limit, singular, too fast) are issues of the result with
-    layer, bead and point; the path exists even so, for display.
+    Report problems (unreachable, over a limit, singular, too fast) as issues with layer, bead
+    and point. An infeasible path is still returned for display.
 
     Parameters
     ----------
@@ -91,16 +91,16 @@ def plan_joints(
     parameters : JointParameters
         Method, objective, branch and thresholds.
     progress : callable, optional
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
     cylinders : Cylinders, optional
-        Cylinders about each link of the robot, kept clear if `cell.arm_clearance` asks for
-        it.
+        Cylinders around each robot link; kept clear of obstacles if `cell.arm_clearance` is
+        set.
 
     Returns
     -------
     JointPath
-        The first feasible path in the order of branches and external axes; else the first
-        one, with its issues.
+        The first feasible path in the order of external axis values, then branches. If no path
+        is feasible, the first one with its issues.
 
     Raises
     ------
@@ -150,8 +150,9 @@ def plan_joints(
 
 
 def _choices(task: Task) -> tuple[str, str, tuple[str, ...]]:
-    """Method, objective and branch of a joint path; without a free coordinate there is one method
-    and no objective.
+    """Return the planning method, objective and branch names of a joint path.
+
+    A machine without a free tool rotation has one method and no objective.
     """
     if not task.cell.machine.free:
         return closed_form.METHOD, "none", ()
@@ -163,9 +164,9 @@ def _choices(task: Task) -> tuple[str, str, tuple[str, ...]]:
 
 
 def _branch_wanted(cell: Cell, parameters: JointParameters) -> int | None:
-    """Return the branch to plan in, None to search all of them.
+    """Return the branch to plan in; None to search all branches.
 
-    Machines without a free coordinate choose it bead by bead.
+    A machine without a free tool rotation chooses the branch per bead.
     """
     if not cell.machine.free:
         return 0
@@ -183,7 +184,7 @@ def _in_branches(
     branches: Sequence[int],
     progress: Progress,
 ) -> JointPath:
-    """The joint path in the first feasible branch, with the external axes of the beads."""
+    """Plan in each branch until a path is feasible; if none is, return the first branch's path."""
     (beads, bead_ids), cell, parameters = placed, base_task.cell, base_task.parameters
     together, notes = optimised.asked(parameters, cell)
     task = dataclasses.replace(base_task, branch=branches[0])
@@ -191,7 +192,7 @@ def _in_branches(
     failed = _failed(paths, issues, bead_ids)
     for branch in branches[1:] if has_errors(issues) else ():
         branch_task = dataclasses.replace(base_task, branch=branch)
-        # most branches fail at the same beads, so plan only these first: it is fast
+        # a branch usually fails at the same beads as the first: plan these beads first
         failed_beads = [beads[k] for k in failed], [bead_ids[k] for k in failed]
         if failed and has_errors(_planned(branch_task, *failed_beads, progress)[1]):
             continue
@@ -240,8 +241,9 @@ def _in_branches(
 def _failed(
     paths: Sequence[BeadPath], issues: Sequence[Issue], bead_ids: Sequence[tuple[int, int]]
 ) -> list[int]:
-    """Return the beads with errors, at most SCREENED; if some beads were divided, all beads in
-    their layers.
+    """Return the indices of up to SCREENED beads with errors.
+
+    If planning split a bead, every bead of a layer with errors counts as failed.
     """
     wrong = {(issue.layer, issue.bead) for issue in issues if issue.level == ERROR}
     if len(paths) != len(set(bead_ids)):
@@ -255,8 +257,9 @@ def _failed(
 
 
 def _used(cell: Cell, parameters: JointParameters) -> tuple[JointParameters, list[Issue]]:
-    """Return the parameters with defaults for settings of a tool rotation that the machine lacks,
-    and a note.
+    """Reset the tool rotation settings on a machine without a free tool rotation.
+
+    Return the parameters, and a note that lists the ignored settings.
     """
     if cell.machine.free:
         return parameters, []
@@ -295,8 +298,8 @@ def best_branches(
 ) -> list[int]:
     """Return the branches worth planning, the best first.
 
-    These serve the largest number of beads; the order is by objective, then by margin. The
-    ranking samples a few beads from the first to the last, so the plan may still fail.
+    They reach the most beads, ordered by objective and then by margin. The ranking samples a
+    few beads along the toolpath, so a full plan may still fail.
 
     Parameters
     ----------
@@ -307,9 +310,9 @@ def best_branches(
     parameters : JointParameters
         Objective and thresholds.
     joined : bool, optional
-        Whether polynomials of closed beads must return to their start value.
+        Whether the rotation polynomial of a closed bead must return to its start value.
     arm_clearance : ArmKept or None, optional
-        The link clearance check; None without one.
+        The link clearance check; None to skip it.
     bead_ids : sequence of Place, optional
         Layer and index of each bead; needed with `arm_clearance`.
 
@@ -327,10 +330,10 @@ def best_branches(
 def _ranked(
     beads: Sequence[Bead], bead_ids: Sequence[Place], base_task: Task, among: Sequence[int]
 ) -> list[tuple[int, int, float, float, int]]:
-    """Return the ranking keys of each branch, the best first.
+    """Return the ranking key of each branch, the best first.
 
-    The keys are the number of sampled beads that it serves (negative), the number that it would
-    serve without the link clearance (negative), the objective, the margin (negative), and the
+    A key holds the number of sampled beads that the branch can print (negative), that number
+    without the link clearance check (negative), the objective, the margin (negative) and the
     branch.
     """
     sampled = np.unique(np.round(np.linspace(0, len(beads) - 1, SCREENED)).astype(int))
@@ -352,7 +355,7 @@ def _ranked(
         objective = candidates.objective[best, bead_rows]
         feasible = margin >= 0.0
         worth = float(objective[feasible].sum()) if feasible.any() else np.inf
-        # rounded, so that every computer ranks two mirrored branches alike
+        # round, so that two mirrored branches rank the same on every computer
         ranks.append(
             (
                 -int(feasible.sum()),
@@ -386,7 +389,9 @@ def _optimise_external(
     level: tuple[list[BeadPath], list[Issue]],
     progress: Progress,
 ) -> tuple[tuple[list[BeadPath], list[Issue]], dict[str, object]]:
-    """The joint path with optimised external axes, and the figures of `level`."""
+    """Return the better of `level` and the plan with optimised external axes, with the statistics
+    of `level`.
+    """
     planned, issues = METHODS[task.parameters.method](task, beads, bead_ids, _silent)
     first_issues = given.not_used(task.parameters, bead_ids) + issues
 
@@ -404,8 +409,9 @@ def _optimise_external(
 
 
 def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
-    """Return the paths with the points that straight motion needs and unwrapped turns, and their
-    issues.
+    """Finish planned paths: add points for linear motion, unwrap, split into phases and slow down.
+
+    Return the paths and their issues.
     """
     from .certificate import bound  # few jobs need it
 
@@ -427,11 +433,11 @@ def _finished(task: Task, paths: Sequence[BeadPath]) -> tuple[list[BeadPath], li
 
 
 def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[Issue]]]:
-    """The paths with retreats and overlaps added, and the points that straight motion needs."""
+    """Extend each path by its retreat and seam overlap, and refine it to the chord error."""
     if (
         not task.cell.machine.free
-        # these beads are checked with overlap and retreat: the axes have room for the
-        # whole run or not at all
+        # planned with overlap and retreat already: the axis limits allow the whole bead or
+        # none of it
     ):
         return [(path, []) for path in paths]
     longer = [
@@ -444,7 +450,7 @@ def _as_run(task: Task, paths: Sequence[BeadPath]) -> list[tuple[BeadPath, list[
 def _slowed(
     cell: Cell, paths: Sequence[BeadPath], features: Parts
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Slow the paths where axes cannot follow and slowing is usual, and report the rest."""
+    """Slow the beads that axes cannot follow, where the strategy allows it; report the others."""
     slowed, notes = list(paths), []
     for feature, layers in features:
         feature_layers = set(layers.tolist())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The points of many beads as one set of columns, so that all layers are handled together."""
+"""The points of many beads in one set of arrays, so that all layers are computed at once."""
 
 from __future__ import annotations
 
@@ -15,17 +15,19 @@ from ..kinematics.limits import PoseFrames
 from ..toolpath import Bead
 from ..types import Array, Integers, Mask
 
-PIECE = 4096  # points whose poses and Jacobians are held together
+PIECE = 4096  # points per batch of poses and Jacobians, to limit memory
 UNPOSED = PoseFrames(np.zeros((0, 4, 4)), 1.0, np.zeros((0, 4, 4)))
 
 
 @dataclass(frozen=True, eq=False)
 class Points:
-    """T points of B beads. position, tool: (T, 3) part frame. parameter: (T,). first: (B,) index of each
-    bead's
-       first point. bead: (T,) the bead a point belongs to. closed: (B,) bool, whether the bead ends
-       where it starts. external: (T, k) values of the external axes, None without external axes.
-       sliding: (axes,) prismatic axes, None without any."""
+    """T points of B beads.
+
+    position, tool: (T, 3) part frame. parameter: (T,) polynomial variable. first: (B,) index of the
+    first point of each bead. bead: (T,) bead index of each point. closed: (B,) bool, whether the
+    bead ends where it starts. frames: pose frames of the points. external: (T, k) external axis
+    values; None without external axes. sliding: (axes,) bool, prismatic axes; None without any.
+    """
 
     position: Array
     tool: Array
@@ -47,34 +49,34 @@ class Points:
 
     @property
     def ends(self) -> tuple[Array, Array]:
-        """Return the parameter at both ends of each bead.
+        """Return the parameter at the ends of each bead.
 
         Returns
         -------
         first, last : (B,) array
-            Parameter at the first and at the last point.
+            Parameter at the first and last point.
         """
         return self.parameter[self.first], self.parameter[np.append(self.first[1:], len(self)) - 1]
 
     @cached_property
     def starts(self) -> Mask:
-        """(T,) bool, true at the first point of a bead."""
+        """(T,) bool, True at the first point of each bead."""
         starts = np.zeros(len(self.position), dtype=bool)
         starts[self.first] = True
         return starts
 
     def select_points(self, index: Integers) -> Points:
-        """Return selected points, each as a bead of one point.
+        """Return selected points, each as a separate bead.
 
         Parameters
         ----------
         index : (n,) array of int
-            Numbers of the points.
+            Point indices.
 
         Returns
         -------
         Points
-            n points of n beads, none closed.
+            n points of n open beads.
         """
         numbers = np.arange(len(index))
         return Points(
@@ -95,14 +97,14 @@ class Points:
         Parameters
         ----------
         bead : int
-            Number of the bead.
+            Bead index.
 
         Returns
         -------
         points : Points
-            Its points.
+            Points of this bead.
         rows : slice
-            Their rows among all points.
+            Rows of the bead among all points.
         """
         ends = np.append(self.first, len(self))
         rows = slice(int(ends[bead]), int(ends[bead + 1]))
@@ -131,7 +133,7 @@ class Points:
         Returns
         -------
         (T, degree + 1) array
-            The constant first.
+            Powers in ascending order.
         """
         return np.vander(self.parameter, degree + 1, increasing=True)
 
@@ -141,7 +143,7 @@ class Points:
         Parameters
         ----------
         coefficients : (B, degree + 1) array
-            The constant first.
+            Coefficients in ascending order.
 
         Returns
         -------
@@ -154,7 +156,7 @@ class Points:
         return value
 
     def worst(self, values: Array) -> Array:
-        """Return the smallest value within each bead.
+        """Return the minimum value of each bead.
 
         Parameters
         ----------
@@ -164,7 +166,7 @@ class Points:
         Returns
         -------
         (..., B) array
-            Their minima.
+            Minima.
         """
         smallest: Array = np.minimum.reduceat(values, self.first, axis=-1)
         return smallest
@@ -175,17 +177,17 @@ class Points:
         Parameters
         ----------
         values : (..., B, axes) array
-            Values of the beads.
+            One value per bead and axis.
 
         Returns
         -------
         (..., T, axes) array
-            Values at the points, stored axis by axis.
+            Values at the points, contiguous per axis.
         """
         return np.swapaxes(np.swapaxes(values, -1, -2)[..., self.bead], -1, -2)
 
     def total(self, values: Array) -> Array:
-        """Return the sum of values within each bead.
+        """Return the sum of the values of each bead.
 
         Parameters
         ----------
@@ -195,7 +197,7 @@ class Points:
         Returns
         -------
         (..., B) array
-            Their sums.
+            Sums.
         """
         total: Array = np.add.reduceat(values, self.first, axis=-1)
         return total
@@ -204,7 +206,7 @@ class Points:
 def gather(
     beads: Sequence[Bead], cell: Cell, max_points: int | None = None, posed: bool = True
 ) -> Points:
-    """Return the points of beads as one set of columns.
+    """Return the points of beads in one set of arrays.
 
     Parameters
     ----------
@@ -213,8 +215,8 @@ def gather(
     cell : Cell
         The cell, for pose frames and external axes.
     max_points : int or None, optional
-        Number of points per bead and turn about the axis; both ends stay. None for all
-        points.
+        Maximum number of points per bead and per turn about the axis, including both ends. None
+        for all points.
     posed : bool, optional
         Whether to compute the pose frames; otherwise they are empty.
 
@@ -246,14 +248,12 @@ def gather(
 
 
 def in_pieces(count: int) -> list[slice]:
-    """Return slices that divide `count` points into pieces for processing in sequence."""
+    """Return slices that divide `count` points into batches."""
     return [slice(start, start + PIECE) for start in range(0, count, PIECE)]
 
 
 def _frames_of(cell: Cell, position: Array, tool: Array, external: Array | None) -> PoseFrames:
-    """Return `cell.pose_frames`, computed in pieces: its intermediate arrays are many times as
-    large.
-    """
+    """Return `cell.pose_frames`, computed in batches to limit the memory of intermediate arrays."""
     frame_groups = [
         cell.pose_frames(position[rows], tool[rows], None if external is None else external[rows])
         for rows in in_pieces(len(position))
@@ -272,19 +272,19 @@ def _frames_of(cell: Cell, position: Array, tool: Array, external: Array | None)
 
 
 def thinned(bead: Bead, max_points: int | None) -> Integers:
-    """Return the sampled points of a bead.
+    """Return evenly spaced points of a bead.
 
     Parameters
     ----------
     bead : Bead
         The bead.
     max_points : int or None
-        Most points per turn about the axis; None: all points.
+        Maximum number of points per turn about the axis; None for all points.
 
     Returns
     -------
     (k,) array of int
-        Numbers of the points, evenly spread.
+        Point indices.
     """
     if max_points is None:
         return np.arange(len(bead))
@@ -297,9 +297,9 @@ def thinned(bead: Bead, max_points: int | None) -> Integers:
 
 @lru_cache(maxsize=64)
 def _evenly(count: int, max_points: int) -> Integers:
-    """Return evenly spaced rows, both ends included.
+    """Return evenly spaced indices, including both ends.
 
-    Cached, as beads often have equal counts.
+    Cached, because many beads have the same number of points.
     """
     rows: Integers = np.unique(np.round(np.linspace(0, count - 1, max_points)).astype(np.int64))
     rows.flags.writeable = False
@@ -307,7 +307,7 @@ def _evenly(count: int, max_points: int) -> Integers:
 
 
 def steps(joints: Array, points: Points) -> Array:
-    """Return the joint motion from the point before.
+    """Return the joint steps between consecutive points.
 
     Parameters
     ----------
@@ -319,14 +319,15 @@ def steps(joints: Array, points: Points) -> Array:
     Returns
     -------
     (..., T, axes) array
-        Steps, the short way round for turning axes; 0 at the first point of a bead.
+        Step from the previous point, the short way for revolute axes; 0 at the first point of a
+        bead.
     """
     step = np.zeros_like(joints)
     np.subtract(joints[..., 1:, :], joints[..., :-1, :], out=step[..., 1:, :])
     step[..., points.first, :] = 0.0
     if (
         not max(step.max(initial=0.0), -step.min(initial=0.0)) <= 0.5 * TURN
-    ):  # else all are the short way
+    ):  # otherwise every step already is the short way
         long = np.abs(step) > 0.5 * TURN
         if points.sliding is not None:
             long &= ~points.sliding
@@ -335,7 +336,7 @@ def steps(joints: Array, points: Points) -> Array:
 
 
 def unwrapped(joints: Array, points: Points) -> Array:
-    """Unwrap joints from the first point of each bead.
+    """Unwrap joints along each bead, starting at its first point.
 
     Parameters
     ----------
@@ -347,7 +348,7 @@ def unwrapped(joints: Array, points: Points) -> Array:
     Returns
     -------
     (..., T, axes) array
-        Unwrapped joints; NaN after a NaN point of the same bead.
+        Unwrapped joints; NaN from the first NaN point of a bead on.
     """
     rising = steps(joints, points)
     unreachable = np.isnan(rising)
@@ -364,9 +365,9 @@ def unwrapped(joints: Array, points: Points) -> Array:
 
 
 def unwrapped_by_turns(joints: Array, points: Points) -> Array:
-    """Unwrap joints that are all within reach, in a third of the time.
+    """Unwrap reachable joints in a third of the time of `unwrapped`.
 
-    The result equals `unwrapped` up to rounding. Only axes that take whole turns are changed.
+    The result equals `unwrapped` up to rounding. Only axes with steps over half a turn change.
 
     Parameters
     ----------
@@ -397,20 +398,20 @@ def unwrapped_by_turns(joints: Array, points: Points) -> Array:
 
 
 def whole_turns(step: Array, points: Points) -> Array:
-    """Return the whole turns in an angle along each bead.
+    """Return the accumulated whole turns of an angle along each bead.
 
     Parameters
     ----------
     step : (..., T - 1) array
-        Change of the angle from point to point, rad.
+        Step of the angle between consecutive points, rad.
     points : Points
         The T points.
 
     Returns
     -------
     (..., T) array
-        Angle to subtract so that it goes the short way from point to point, rad; 0 at the
-        first point of a bead.
+        Angle to subtract so that each step is the short way, rad; 0 at the first point of a
+        bead.
     """
     turns = np.zeros((*step.shape[:-1], len(points)), dtype=np.int32)
     turns[..., 1:] = np.rint(step / TURN)

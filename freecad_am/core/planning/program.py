@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Turns a motion into a program: controller values, deposit switching, what happens between layers."""
+"""Convert a motion to a program: joint values, deposit switching, actions between layers."""
 
 from __future__ import annotations
 
@@ -49,23 +49,23 @@ from .program_beads import ARC, deposited, split_by_schedule, standing
 
 
 def frames_of(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:
-    """Return the fixed frame and the load of the flange for a program.
+    """Return the fixed frame and the flange load frame of a program.
 
-    The frame that belongs to the part is taken at the program's origin.
+    The frame fixed to the part is moved to the program origin.
 
     Parameters
     ----------
     cell : Cell
         The cell.
     parameters : ProgramParameters
-        Program settings with the origin.
+        Program settings, including the origin.
 
     Returns
     -------
     station : (4, 4) array
-        The fixed frame in base_link.
+        Fixed frame in base_link.
     carried : (4, 4) array
-        The load in the flange frame.
+        Load frame in the flange frame.
     """
     if isinstance(parameters.origin, str):
         return cell.poses.station, cell.poses.carried
@@ -76,7 +76,7 @@ def frames_of(cell: Cell, parameters: ProgramParameters) -> tuple[Array, Array]:
 
 
 def six_of(pose: Array) -> Six:
-    """Return a pose as six numbers.
+    """Convert a pose to six numbers.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def six_of(pose: Array) -> Six:
     Returns
     -------
     tuple of float
-        x, y, z, mm, and the Bryant angles rx, ry, rz, rad.
+        x, y, z in mm and the Bryant angles rx, ry, rz in rad.
     """
     x, y, z = pose[:3, 3].tolist()
     rx, ry, rz = frames.to_bryant(pose[:3, :3]).tolist()
@@ -96,7 +96,7 @@ def six_of(pose: Array) -> Six:
 def remarks_of(
     cell: Cell, parameters: ProgramParameters, moves: Sequence[Moves]
 ) -> tuple[str, ...]:
-    """Return the remarks at the head of a program.
+    """Return the header remarks of a program.
 
     Parameters
     ----------
@@ -105,12 +105,12 @@ def remarks_of(
     parameters : ProgramParameters
         Program settings.
     moves : sequence of Moves
-        The moves, for the ranges of speed and wire feed.
+        The moves, which give the speed and wire feed ranges.
 
     Returns
     -------
     tuple of str
-        Machine, limits, frames and ranges, one remark a line.
+        Machine, limits, frames and ranges, one remark per line.
     """
     moved = not isinstance(parameters.origin, str)
     station, carried = frames_of(cell, parameters)
@@ -144,9 +144,7 @@ def remarks_of(
 
 
 def _ranges(moves: Sequence[Moves]) -> list[str]:
-    """Return the figures of the program itself: the speeds of its beads and, if it states them, of their
-    wire.
-    """
+    """Return remarks with the travel speed range and, if known, the wire feed range."""
     beads = [run for run in moves if run.kind == DEPOSIT]
     if not beads:
         return []
@@ -168,7 +166,7 @@ def _pose_remarks(what: str, six: Six) -> tuple[str, str]:
     return f"{what} {x:.3f} {y:.3f} {z:.3f}", f"RX RY RZ {rx:.3f} {ry:.3f} {rz:.3f}"
 
 
-# what the rows of a motion are for, by its numbers
+# role names, indexed by the role number of a motion row
 ROLES = (DEPOSIT, RETRACT, TRAVEL, APPROACH)
 
 
@@ -199,11 +197,11 @@ def build(
     name : str
         Name of the program.
     waits : sequence of float, optional
-        Pauses before each layer (`Layer.wait`), s; `between_layers.wait` counts towards
-        them. None if omitted; the first executed layer has none.
+        Pause before each layer (`Layer.wait`), s; `between_layers.wait` runs at the same time.
+        Empty for no pauses. The first executed layer never pauses.
     returns : Collection[tuple[int, int]], optional
-        Beads (layer, index) that return to an earlier place, see `returning`; the torch
-        waits above them until the deposit has cooled.
+        Beads (layer, index) that start above earlier deposit, see `returning`. The torch waits
+        above such a bead until the deposit has cooled.
 
     Returns
     -------
@@ -213,7 +211,7 @@ def build(
     Raises
     ------
     InputError
-        START_AT for a start past the last bead; NO_SCHEDULE or SCHEDULE for unsuitable
+        START_AT if the start is past the last bead; NO_SCHEDULE or SCHEDULE for unsuitable
         schedules.
     """
     blocks = _Blocks(motion, cell, process, parameters, controller).build_all(waits, returns)
@@ -224,7 +222,7 @@ def build(
 def build_header(
     cell: Cell, parameters: ProgramParameters, controller: Controller, name: str
 ) -> Program:
-    """Return the program of a cell up to the first move.
+    """Return the program of a cell without blocks and remarks.
 
     Parameters
     ----------
@@ -287,7 +285,7 @@ def build_header(
 
 
 def _owners(cell: Cell) -> list[Machine]:
-    """The machine of each axis: the robot, or an external mechanism."""
+    """Return the machine that each axis belongs to: the robot or an external mechanism."""
     owners = (
         [cell.robot, *(mechanism.machine for mechanism in cell.external.mechanisms)]
         if cell.external
@@ -307,7 +305,7 @@ def external_kinds(cell: Cell) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        'linear' or 'rotary' of each axis.
+        'linear' or 'rotary' for each external axis.
     """
     return tuple(
         LINEAR if slides else ROTARY
@@ -316,9 +314,9 @@ def external_kinds(cell: Cell) -> tuple[str, ...]:
 
 
 def _unit(cell: Cell, parameters: ProgramParameters, controller: Controller) -> str:
-    """Return the controller's name of the mechanism with the external axes.
+    """Return the controller's name for the mechanism of the external axes.
 
-    A track has no name unless one is given: it is always on.
+    A track has no name by default, because it is always active.
     """
     if cell.external is None:
         return ""
@@ -326,9 +324,10 @@ def _unit(cell: Cell, parameters: ProgramParameters, controller: Controller) -> 
 
 
 def returning(toolpath: Toolpath, paths: Sequence[BeadPath]) -> frozenset[tuple[int, int]]:
-    """Return the first beads (layer, index) of a joint path where something was printed before.
+    """Return the beads (layer, index) of a joint path that start above earlier deposit.
 
-    These are beads on layers of a rotary slicing solid, or the first beads of whole layers.
+    For a rotary slicing solid, the bead roles mark them. Otherwise they are the first beads of
+    the layers that no feature begins with.
     """
     if any(path.bead.role.returns for path in paths):
         return frozenset((path.layer, path.index) for path in paths if path.bead.role.returns)
@@ -338,33 +337,35 @@ def returning(toolpath: Toolpath, paths: Sequence[BeadPath]) -> frozenset[tuple[
 
 
 def _letter(axis: str) -> str:
-    """Return the controller's letter of an axis: X for mx, which has the m because x is a part
-    coordinate, A for a.
+    """Return the controller's letter of an axis: X for mx, A for a.
+
+    The m of mx distinguishes the axis from the part coordinate x.
     """
     return (axis[1:] if len(axis) == 2 and axis[0] == "m" else axis).upper()
 
 
 def carried_pose(cell: Cell, parameters: ProgramParameters) -> Six | None:
-    """Return the pose of the flange's load in a program; None if its origin is known only with the
-    toolpath.
+    """Return the load frame of a program in the flange frame.
+
+    None if the origin depends on the toolpath.
     """
     return six_of(frames_of(cell, parameters)[1]) if isinstance(parameters.origin, str) else None
 
 
 def rows_from(motion: Motion, start: StartParameters) -> Mask:
-    """Return the rows that run when a job resumes at a bead.
+    """Return the motion rows to run when a job resumes at a bead.
 
     Parameters
     ----------
     motion : Motion
         The motion, n rows.
     start : StartParameters
-        Layer and bead to resume at.
+        Layer and bead at which the job resumes.
 
     Returns
     -------
     (n,) array of bool
-        True from the rapids to the bead on, without the retract from the bead before.
+        True from the rapids to that bead on, except for the retract from the previous bead.
 
     Raises
     ------
@@ -392,7 +393,7 @@ def rows_from(motion: Motion, start: StartParameters) -> Mask:
 
 @dataclass(frozen=True)
 class _Blocks:
-    """Makes the blocks of a program from rows of its motion."""
+    """Builds the blocks of a program from motion rows."""
 
     motion: Motion
     cell: Cell
@@ -403,7 +404,7 @@ class _Blocks:
     def build_all(
         self, waits: Sequence[float], returns: Collection[tuple[int, int]]
     ) -> tuple[Block, ...]:
-        """The blocks of the rows that are run; waits and returns as of `build`."""
+        """Return the blocks of the executed rows. `waits` and `returns`: see `build`."""
         groups = _groups(
             self.motion, np.flatnonzero(rows_from(self.motion, self.parameters.start_at))
         )
@@ -432,7 +433,7 @@ class _Blocks:
         return standing(blocks)
 
     def _bead(self, number: int, rows: Integers) -> list[Block]:
-        """Return a bead, switched on and off, from the group of rows `rows`."""
+        """Return the blocks of bead group `number`, including deposit switching."""
         kind = _class_of(self.motion, int(rows[0]))
         runs_by_schedule = split_by_schedule(
             self.motion.phase[rows[1:]], self.process.for_class(kind)
@@ -446,7 +447,7 @@ class _Blocks:
     def _approach(
         self, rows: Integers, returns: Collection[tuple[int, int]], arriving: bool = False
     ) -> list[Block]:
-        """Rapids that lead to a bead; where it returns to a place the torch waits above it."""
+        """Return the rapids to a bead, with a wait for cooling above earlier deposit."""
         cooling = self.process.cooling
         bead_id = int(self.motion.layer[rows[-1]]), int(self.motion.bead[rows[-1]])
         if cooling.below is None or bead_id not in returns:
@@ -463,7 +464,7 @@ class _Blocks:
         ]
 
     def _onto(self, rows: Integers, arriving: bool) -> list[Block]:
-        """Rapids onto a bead, the last one as a linear move where the controller needs one."""
+        """Return the rapids to a bead; the last is a linear move if the controller needs one."""
         if not linear_approach.asked(self.parameters, self.controller):
             return [self._moves(rows, RAPID, arriving)]
         linear_approach.check(
@@ -473,7 +474,7 @@ class _Blocks:
         return [*leading_moves, replace(self._moves(rows[-1:], RAPID), interpolation=LINEAR_MOVE)]
 
     def _moves(self, rows: Integers, kind: str, arriving: bool = False) -> Moves:
-        """Return the moves of the rows; `arriving`: the first one starts from an unknown machine
+        """Return the moves of the rows; `arriving` means that the machine starts from an unknown
         position.
         """
         motion, cell, parameters = self.motion, self.cell, self.parameters
@@ -533,7 +534,7 @@ def _class_of(motion: Motion, row: int) -> str:
 
 
 def _groups(motion: Motion, rows: Integers) -> list[Integers]:
-    """Rows in runs of the same kind, layer and bead."""
+    """Split rows wherever the deposit state, layer or bead changes."""
     new = (
         (np.diff(motion.deposit[rows].astype(int)) != 0)
         | (np.diff(motion.layer[rows]) != 0)
@@ -555,7 +556,7 @@ def _between(between: BetweenLayersParameters, cooling: float) -> list[Block]:
 
 
 def _roles(role: Integers) -> tuple[str, ...]:
-    """The words (n,) of roles; the rows of a bead have the same role."""
+    """Return the role name (n,) of each row; short cut for rows with one role."""
     if (role == role[0]).all():
         return (ROLES[int(role[0])],) * len(role)
     return tuple(ROLES[number] for number in role.tolist())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The blocks of a bead in a program: its schedule, and the switches of the deposit."""
+"""The program blocks of a bead: schedule and deposit switching."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from ..program import Block, Call, DepositOff, DepositOn, Moves, Schedule, Weave
 from ..types import Array, Integers
 
 OUTPUT, ARC, CALL = "output", "arc", "call"
-# rad, or mm of prismatic axes: a move that takes every axis at most this far takes no time for a
-# switch in advance
+# rad, or mm for prismatic axes; moves of at most this size are too short for a switch ahead of a
+# position
 STILL = 2e-5
 
 
@@ -27,14 +27,14 @@ def deposited(
     process: ProcessParameters,
     parameters: ProgramParameters,
 ) -> list[Block]:
-    """Return the blocks of a bead for runs of its moves.
+    """Return the program blocks of a bead.
 
     Parameters
     ----------
     runs : Sequence[tuple[Moves, int or None]]
-        Moves and schedule number of each run; None without a schedule.
+        Moves and schedule number of each section; None without a schedule.
     name : str
-        Name of the bead's class.
+        Bead class.
     process : ProcessParameters
         The process of the job.
     parameters : ProgramParameters
@@ -43,14 +43,13 @@ def deposited(
     Returns
     -------
     list of Block
-        Schedule, deposit on, moves and deposit off, in order.
+        Schedule, deposit on, moves and deposit off.
 
     Raises
     ------
     InputError
-        NO_SCHEDULE if a schedule is missing that other beads have or the arc instruction
-        needs. SCHEDULE if the schedule changes within the bead by other means than an
-        output.
+        NO_SCHEDULE if the bead has no schedule, but other beads have one or the arc instruction
+        needs one. SCHEDULE if the schedule changes within the bead and no output sets it.
     """
     bead_process, by = process.for_class(name), parameters.schedule.by
     moves, numbers = zip(*runs, strict=True)
@@ -76,7 +75,7 @@ def deposited(
         )
     schedule = numbers[0] if by == ARC and not parameters.dry_run else None
     schedule_before, lead = _ahead(numbers[0], parameters), parameters.trigger.lead
-    # waits and instructions at standstill have no lead
+    # waits and instructions at standstill exclude a switch ahead of a position
     on = DepositOn(
         bead_process.lead_on,
         None if moves[0].wire is None else float(moves[0].wire[0]),
@@ -85,34 +84,34 @@ def deposited(
     )
     weave = (
         [Weave(bead_process.weave)] if bead_process.weave else []
-    )  # a dry run has it too: it is motion
+    )  # also in a dry run, because weaving is motion
     blocks: list[Block] = [*schedule_before, on, *weave, moves[0]]
     for run, number in runs[
         1:
-    ]:  # posts may stop between runs, so keep only as many runs as schedules
+    ]:  # posts may stop between sections, so use only one section per schedule
         blocks += [*([] if number is None or parameters.dry_run else [Schedule(number, True)]), run]
     off = DepositOff(bead_process.lead_off, schedule, None if bead_process.lead_off else lead)
     still = [Weave(0)] if weave else []
-    # one that is ahead comes while the last move is still woven
+    # a switch ahead of a position comes while the last move still weaves
     return [*blocks, *still, off] if off.ahead is None else [*blocks, off, *still]
 
 
 def split_by_schedule(
     phase: Integers, bead_process: ProcessParameters
 ) -> list[tuple[slice, int | None]]:
-    """Divide the moves of a bead into stretches with one schedule.
+    """Divide the moves of a bead into sections with one schedule each.
 
     Parameters
     ----------
     phase : (n,) int array
         Phase of each move.
     bead_process : ProcessParameters
-        The process of the bead's class.
+        Process of the bead class.
 
     Returns
     -------
     list of (slice, int or None)
-        Moves and schedule number of each stretch.
+        Moves and schedule number of each section.
     """
     of_phase = {
         MIDDLE: bead_process.schedule,
@@ -128,9 +127,7 @@ def split_by_schedule(
 
 
 def _ahead(schedule: int | None, parameters: ProgramParameters) -> list[Block]:
-    """Return the blocks before a bead that set its schedule, unless the arc instruction contains
-    it.
-    """
+    """Return the blocks that set the schedule before a bead; none if the arc instruction does."""
     if schedule is None or parameters.dry_run or parameters.schedule.by == ARC:
         return []
     if parameters.schedule.by == CALL:
@@ -139,9 +136,9 @@ def _ahead(schedule: int | None, parameters: ProgramParameters) -> list[Block]:
 
 
 def standing(blocks: Sequence[Block]) -> tuple[Block, ...]:
-    """Switch the deposit on at standstill for beads onto which no move leads.
+    """Switch the deposit on at standstill for beads without a preceding move.
 
-    The same applies to a bead at which the program begins: the length of its first move is
+    This includes the bead at which a program begins, because the length of its first move is
     unknown.
 
     Parameters
@@ -152,10 +149,10 @@ def standing(blocks: Sequence[Block]) -> tuple[Block, ...]:
     Returns
     -------
     tuple of Block
-        The blocks, some without a switch ahead of the position.
+        The blocks, with no switch ahead of a position at these beads.
     """
     result: list[Block] = []
-    positions: list[Array] = []  # the last two, and no more
+    positions: list[Array] = []  # the last two positions
     for block in blocks:
         if isinstance(block, Moves) and len(block):
             positions = [*positions, *block.joints[-2:]][-2:]

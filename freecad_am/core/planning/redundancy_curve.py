@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A curve of the free rotation along a path: its immediate effect on the machine, and handles to
-change it.
-"""
+"""A curve of the tool rotation along a path: its effect on the machine, and handles to edit it."""
 
 from __future__ import annotations
 
@@ -30,12 +28,12 @@ Progress = Callable[[float, str], None]
 class Followed:
     """Machine state along a curve at T points of B beads.
 
-    joints: (T, axes) rad, unwrapped along each bead, NaN out of reach. margin: (T,) the share left
-    to the nearest limit, 1 in the middle, less than 0 beyond, -inf out of reach. condition: (T,), 0
-    out of reach. displacement: (B,) eq. 17, NaN out of reach. ratio: (T,) the largest joint speed
-    on the segment that ends at the point, as a share of the axis limit. good: (T,) points without a
-    complaint of the planner. wound: (T,) points past a limit that an axis with other whole turns
-    would keep: it runs out of turns along the bead.
+    phi: (T,) rad. joints: (T, axes) rad or mm, unwrapped along each bead, NaN out of reach. margin:
+    (T,) limit margin, 1 at mid-range, negative beyond a limit, -inf out of reach. condition: (T,),
+    0 out of reach. displacement: (B,) eq. 17, NaN out of reach. ratio: (T,) maximum joint speed on
+    the segment that ends at the point, as a fraction of the axis limit. good: (T,) points that the
+    planner accepts. wound: (T,) points beyond a limit that other whole turns of an axis would keep:
+    the axis exceeds its range by turning along the bead.
     """
 
     phi: Array
@@ -52,9 +50,9 @@ class Followed:
 class Sums:
     """The summary of a curve.
 
-    lost, wound: numbers of points that the planner rejects, and of points with axes out of turns.
-    margin, condition: the least values. ratio: the largest share of a joint speed, at the requested
-    speed. displacement: eq. 17 summed over the beads, NaN out of reach.
+    lost: number of points that the planner rejects. wound: number of points with an axis out of
+    turns. margin, condition: minima. ratio: maximum fraction of a joint speed limit, at the
+    requested speed. displacement: eq. 17 summed over the beads, NaN out of reach.
     """
 
     lost: int
@@ -66,19 +64,19 @@ class Sums:
 
 
 def durations(beads: Sequence[Bead], point_indices: Sequence[Integers] | None = None) -> Array:
-    """Return the time of each segment at travel speed.
+    """Return the duration of each segment at travel speed.
 
     Parameters
     ----------
     beads : sequence of Bead
         The beads.
     point_indices : Sequence[Integers] or None, optional
-        The sampled points of each bead; None for all.
+        Sampled points of each bead; None for all points.
 
     Returns
     -------
     (T,) array
-        Time of the segment that ends at each point, s; 0 at the start of a bead.
+        Duration of the segment that ends at each point, s; 0 at the start of a bead.
     """
     segment_times = []
     for k, bead in enumerate(beads):
@@ -96,20 +94,20 @@ def follow(task: Task, points: Points, thresholds: Array, lasts: Array, phi: Arr
     Parameters
     ----------
     task : Task
-        The plan, with limits and range.
+        The plan, including limits and rotation range.
     points : Points
         T points.
     thresholds : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     lasts : (T,) array
-        Times from `durations`, s.
+        Durations from `durations`, s.
     phi : (T,) array
         Rotations, rad.
 
     Returns
     -------
     Followed
-        Joints, margins, condition and speeds at the points.
+        State at the points.
     """
     joints = task.joints(points, phi)
     condition, margin = task.condition(points, phi, joints), task.given_rows.margin(joints)
@@ -135,7 +133,7 @@ def follow(task: Task, points: Points, thresholds: Array, lasts: Array, phi: Arr
 
 
 def sums(curve: Followed) -> Sums:
-    """The figures of a curve."""
+    """Return the summary of a curve."""
     ratio = curve.ratio[np.isfinite(curve.ratio)]
     return Sums(
         int((~curve.good).sum()),
@@ -147,11 +145,11 @@ def sums(curve: Followed) -> Sums:
     )
 
 
-# ---- handles
+# ---- Handles
 
 
 def fitted(points: Points, values: Array, degree: int) -> Array:
-    """Fit polynomials of the beads' parameters to values.
+    """Fit polynomials of the bead parameter to values.
 
     Parameters
     ----------
@@ -160,18 +158,18 @@ def fitted(points: Points, values: Array, degree: int) -> Array:
     values : (T,) array
         Values at the points.
     degree : int
-        Degree of the polynomials; less for beads with few points.
+        Degree of the polynomials; lower for beads with few points.
 
     Returns
     -------
     (B, degree + 1) array
-        Least-squares coefficients, the constant first.
+        Least-squares coefficients in ascending order.
     """
     result = np.zeros((points.beads, degree + 1))
     low, high = points.ends
     for bead in range(points.beads):
         bead_points, rows = points.only(bead)
-        # about the middle of the bead, so that powers of large angles do not drown the rest
+        # centre and scale the parameter, so that powers of large angles keep their precision
         middle, half = 0.5 * (low[bead] + high[bead]), 0.5 * (high[bead] - low[bead])
         share = np.vander(
             (bead_points.parameter - middle) / half,
@@ -179,7 +177,7 @@ def fitted(points: Points, values: Array, degree: int) -> Array:
             increasing=True,
         )
         solution = np.linalg.lstsq(share, values[rows], rcond=None)[0]
-        # in the parameter itself, by Horner: the polynomials are few and short, and their class is slow
+        # convert to the parameter itself by Horner's scheme; numpy's polynomial class is slow
         for order in range(len(solution) - 1, -1, -1):
             shifted = result[bead] / half
             result[bead] *= -middle / half
@@ -189,7 +187,7 @@ def fitted(points: Points, values: Array, degree: int) -> Array:
 
 
 def handles(task: Task, points: Points, bead: int, degree: int) -> Array:
-    """Return the parameters at which the polynomial of a bead has handles.
+    """Return the parameters of the handles of a bead's polynomial.
 
     Parameters
     ----------
@@ -198,21 +196,21 @@ def handles(task: Task, points: Points, bead: int, degree: int) -> Array:
     points : Points
         The points.
     bead : int
-        Number of the bead.
+        Bead index.
     degree : int
         Degree of the polynomial.
 
     Returns
     -------
     (n,) array
-        One parameter for each freedom of the polynomial.
+        One parameter per degree of freedom of the polynomial.
     """
     bead_points, _ = points.only(bead)
     low, high = (float(end[0]) for end in bead_points.ends)
     count = int(np.abs(refine_state.changes(task, bead_points, degree)[0]).any(axis=0).sum())
     if count == 1:
         return np.array([0.5 * (low + high)])
-    # the end of a bead that joins up is its start
+    # the rotation at the end of such a closed bead equals the start, so the end has no handle
     joined = task.joined and bool(bead_points.closed[0])
     return np.linspace(low, high, count, endpoint=not joined)
 
@@ -220,7 +218,7 @@ def handles(task: Task, points: Points, bead: int, degree: int) -> Array:
 def pull(task: Task, points: Points, bead: int, degree: int, handle: int) -> Array:
     """Return the change of coefficients that moves one handle by 1 rad.
 
-    All other handles stay, and a closed bead stays joined.
+    All other handles stay, and the rotation of a closed bead still returns to its start.
 
     Parameters
     ----------
@@ -229,16 +227,16 @@ def pull(task: Task, points: Points, bead: int, degree: int, handle: int) -> Arr
     points : Points
         The points.
     bead : int
-        Number of the bead.
+        Bead index.
     degree : int
         Degree of the polynomial.
     handle : int
-        Number of the handle among `handles`.
+        Handle index in `handles`.
 
     Returns
     -------
     (degree + 1,) array
-        The change, the constant first.
+        Change of the coefficients in ascending order.
     """
     bead_points, _ = points.only(bead)
     parameters = handles(task, points, bead, degree)
@@ -251,12 +249,12 @@ def pull(task: Task, points: Points, bead: int, degree: int, handle: int) -> Arr
     )
 
 
-# ---- side by side
+# ---- Comparison of methods
 
 
 @dataclass(frozen=True)
 class Compared:
-    """The result of one planning method for the beads, before rapids and added points.
+    """The result of one planning method, before rapids and refinement.
 
     issues: errors and notes. seconds: planning time.
     """
@@ -269,7 +267,7 @@ class Compared:
 
     @property
     def feasible(self) -> bool:
-        """Whether nothing forbids it."""
+        """Whether the result has no errors."""
         return not has_errors(self.issues)
 
 
@@ -289,7 +287,7 @@ def compared(
     bead_ids : Sequence[tuple[int, int]]
         Layer and index of each bead.
     progress : callable
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
@@ -324,7 +322,7 @@ def compared(
 
 
 def sums_of(task: Task, paths: Sequence[BeadPath]) -> Sums:
-    """The figures of planned paths."""
+    """Return the summary of planned paths."""
     beads = [path.bead for path in paths]
     phi, threshold = (
         np.concatenate([getattr(path, name) for path in paths]) for name in ("phi", "threshold")

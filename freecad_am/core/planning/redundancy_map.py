@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The redundancy map: points of a path against a whole turn of the tool, with the machine state in
-each cell.
+"""The redundancy map: machine state over the points of a path and a full turn of tool rotation.
 
-Every cell is rated as the planner rates an independent point: by the closed form of all branches at
-once, with limited axes in the turn nearest to the middle of their range. `curve` shows further
-effects of a curve on the map, such as an axis that runs out of turns along a bead.
+Each cell of the map is an independent point, rated as the planner rates it: by the closed form of
+all branches, with limited axes shifted by whole turns to the middle of their range. Effects along
+a curve, such as an axis that exceeds its range along a bead, are shown by `redundancy_curve`.
 """
 
 from __future__ import annotations
@@ -29,13 +28,14 @@ from .task import UNREACHABLE, LimitRows, Task, append_external
 
 RZ, ROTATION = "rz", "rotation"
 ROWS, MAX_COLUMNS = 181, 300
-MIN_POINTS_PER_BEAD = 12  # points of a bead below which a curve is not readable
+MIN_POINTS_PER_BEAD = 12  # fewer points make the curve of a bead unreadable
 
 
 @dataclass(frozen=True, eq=False)
 class Columns:
-    """Sampled points of a path. bead: (C,) bead of each; point: (C,) point number in the bead;
-    points: the points, each independent.
+    """Sampled points of a path, one per column.
+
+    bead: (C,) bead index. point: (C,) point index in the bead. points: the independent points.
     """
 
     bead: Index
@@ -48,12 +48,12 @@ class Columns:
 
 @dataclass(frozen=True, eq=False)
 class RedundancyMap:
-    """Cells of `values` (R,) rad by columns C. axis: the kind of the values, RZ or ROTATION.
+    """A map of R rows by C columns.
 
-    phi: (R, C) rotation about the tool axis. margin: (8, R, C) for each branch the share left to
-    the nearest limit, 1 in the middle of all ranges, 0 at a limit, -inf out of reach. touching:
-    (C,) whether the nozzle meets the platform or a body, whatever the rotation. outside: (R, C)
-    whether the job forbids the rotation.
+    columns: the points. axis: quantity of the rows, RZ or ROTATION. values: (R,) row values, rad.
+    phi: (R, C) rotation about the tool axis, rad. margin: (8, R, C) limit margin per branch, 1 at
+    mid-range, 0 at a limit, -inf out of reach. touching: (C,) whether the nozzle touches the
+    platform or a body at any rotation. outside: (R, C) whether the job forbids the rotation.
     """
 
     columns: Columns
@@ -69,9 +69,9 @@ class RedundancyMap:
 class Picture:
     """One branch of a map.
 
-    margin, condition: (R, C). threshold: (C,) smallest condition allowed. forbidden: (R, C) cells
-    outside of the allowed rotations or with nozzle contact. arm: (R, C) cells with contact of a
-    robot link, None before this check has run.
+    margin, condition: (R, C). threshold: (C,) required minimum condition. outside: (R, C) cells
+    outside the allowed rotation range. forbidden: (R, C) cells outside this range or with nozzle
+    contact. arm: (R, C) cells with robot link contact; None before this check.
     """
 
     branch: int
@@ -84,35 +84,35 @@ class Picture:
 
     @property
     def hatched(self) -> Mask:
-        """(R, C) cells in which a rotation is not allowed, or nozzle or robot touch something."""
+        """(R, C) cells with a forbidden rotation, nozzle contact or robot contact."""
         return self.forbidden if self.arm is None else self.forbidden | self.arm
 
     @property
     def reachable(self) -> Mask:
-        """(R, C) cells with joint values."""
+        """(R, C) cells within reach."""
         return np.asarray(self.margin > UNREACHABLE)
 
     @property
     def past_limit(self) -> Mask:
-        """(R, C) cells past a limit."""
+        """(R, C) cells beyond a joint limit."""
         return self.reachable & (self.margin < -ROUNDING)
 
     @property
     def singular(self) -> Mask:
-        """(R, C) cells too near to a singularity."""
+        """(R, C) cells too close to a singularity."""
         return self.reachable & (self.threshold - self.condition > ROUNDING)
 
     @property
     def feasible(self) -> Mask:
-        """(R, C) cells in which the planner has nothing to say against a point."""
+        """(R, C) cells without reach, limit, singularity or rotation range errors."""
         return self.reachable & ~self.past_limit & ~self.singular & ~self.outside
 
 
 def columns(beads: Sequence[Bead], cell: Cell, max_columns: int = MAX_COLUMNS) -> Columns:
-    """Return points of the beads, evenly spread, ends included.
+    """Return evenly spaced points of the beads, including their ends.
 
-    If not all beads have room for MIN_POINTS_PER_BEAD points each, an even selection of beads
-    is taken.
+    Take an even selection of beads if `max_columns` does not allow MIN_POINTS_PER_BEAD points for
+    every bead.
 
     Parameters
     ----------
@@ -121,12 +121,12 @@ def columns(beads: Sequence[Bead], cell: Cell, max_columns: int = MAX_COLUMNS) -
     cell : Cell
         The cell.
     max_columns : int, optional
-        Number of points to aim at.
+        Target number of points.
 
     Returns
     -------
     Columns
-        The points, each as a bead of one point.
+        The points, each as a separate bead.
     """
     counts = np.array([len(bead) for bead in beads])
     bead_numbers = list(range(len(beads)))
@@ -165,7 +165,7 @@ def columns(beads: Sequence[Bead], cell: Cell, max_columns: int = MAX_COLUMNS) -
 
 
 def external_of(cell: Cell, beads: Sequence[Bead], point_indices: Sequence[Index]) -> Array | None:
-    """Return the values of the external axes at selected points.
+    """Return the external axis values at selected points.
 
     Parameters
     ----------
@@ -174,7 +174,7 @@ def external_of(cell: Cell, beads: Sequence[Bead], point_indices: Sequence[Index
     beads : sequence of Bead
         The beads.
     point_indices : sequence of Index
-        The selected points of each bead.
+        Indices of the selected points, per bead.
 
     Returns
     -------
@@ -190,7 +190,7 @@ def external_of(cell: Cell, beads: Sequence[Bead], point_indices: Sequence[Index
 
 
 def planned_external(bead: Bead) -> Array:
-    """Return the planned values of the external axes along a bead.
+    """Return the planned external axis values along a bead.
 
     Parameters
     ----------
@@ -202,14 +202,14 @@ def planned_external(bead: Bead) -> Array:
     (n, k) array
         Values, rad or mm.
     """
-    assert bead.external is not None  # beads of a plan with external axes have their values
+    assert bead.external is not None  # a plan with external axes sets them for each bead
     return bead.external
 
 
 def single_points(
     cell: Cell, position: Array, tool: Array, parameter: Array, external: Array | None
 ) -> Points:
-    """Return points that each form a bead of one point.
+    """Return points, each as a separate bead.
 
     Parameters
     ----------
@@ -222,7 +222,7 @@ def single_points(
     parameter : (T,) array
         Bead parameter.
     external : (T, k) array or None
-        Values of the external axes.
+        External axis values.
 
     Returns
     -------
@@ -250,25 +250,25 @@ def redundancy_map(
     bodies: Sequence[Body] = (),
     values: Array | None = None,
 ) -> RedundancyMap:
-    """Return the map of all branches for some columns.
+    """Return the map of all branches for given columns.
 
     Parameters
     ----------
     task : Task
-        The plan, with cell, limits and rotation range.
+        The plan, including cell, limits and rotation range.
     map_columns : Columns
         C points.
     axis : str, optional
-        Kind of the rows, RZ or ROTATION.
+        Quantity of the rows, RZ or ROTATION.
     bodies : sequence of Body, optional
         Obstacles in part coordinates.
     values : (R,) array or None, optional
-        Values of the rows, rad; None for a whole turn.
+        Row values, rad; None for a full turn.
 
     Returns
     -------
     RedundancyMap
-        The map of R rows by C columns.
+        A map of R rows by C columns.
     """
     values = np.linspace(-np.pi, np.pi, ROWS) if values is None else values
     phi = rotation_of(task.cell, map_columns.points.tool, values[:, None], axis)
@@ -290,7 +290,7 @@ def redundancy_map(
 
 
 def picture(task: Task, redundancy: RedundancyMap, branch: int) -> Picture:
-    """Return one branch of a map, with its condition.
+    """Return one branch of a map, including its condition.
 
     Parameters
     ----------
@@ -330,10 +330,10 @@ def arm_touched(
     moment: Index,
     row_stride: int = 1,
 ) -> Mask:
-    """Return the cells of a branch in which a link of the robot touches an obstacle.
+    """Return the cells of a branch in which a robot link touches an obstacle.
 
-    Obstacles are nozzle, platform, bodies and the deposit printed before each column. Cells
-    past a limit, or forbidden for another reason, are not checked.
+    Obstacles are nozzle, platform, bodies and the deposit printed before each column. Cells that
+    are infeasible for another reason are not checked.
 
     Parameters
     ----------
@@ -346,9 +346,9 @@ def arm_touched(
     arm : ArmContact
         The contact check.
     moment : (C,) int array
-        Number of printed points at each column.
+        Number of points printed before each column.
     row_stride : int, optional
-        One of this many rows is checked and represents its neighbours.
+        Check every n-th row; its result also applies to the rows around it.
 
     Returns
     -------
@@ -375,7 +375,7 @@ def arm_touched(
 
 
 def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:
-    """Return the rotations phi for values on the axis of a map.
+    """Convert values on the axis of a map to rotations phi.
 
     Parameters
     ----------
@@ -384,7 +384,7 @@ def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:
     tool : (C, 3) array
         Tool axes in the part frame.
     value : (..., C) array
-        Values on the axis, rad.
+        Axis values, rad.
     axis : str
         RZ or ROTATION.
 
@@ -399,7 +399,7 @@ def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:
     """
     if axis == ROTATION:
         return np.array(np.broadcast_to(value, np.broadcast_shapes(value.shape, (len(tool),))))
-    # eq. 9 and 10 solved for phi, as CellPoses.rz_of_phi has them for RZ
+    # eqs. 9 and 10 solved for phi; CellPoses.rz_of_phi solves them for RZ
     upright = frames.smallest_rotation(tool @ cell.poses.mount[:3, :3], (0.0, 0.0, 1.0))
     sin, cos = np.sin(value), np.cos(value)
     return np.asarray(
@@ -411,7 +411,7 @@ def rotation_of(cell: Cell, tool: Array, value: Array, axis: str) -> Array:
 
 
 def value_of(cell: Cell, tool: Array, phi: Array, axis: str) -> Array:
-    """Return the values on the axis of a map for rotations phi.
+    """Convert rotations phi to values on the axis of a map.
 
     Parameters
     ----------
@@ -427,7 +427,7 @@ def value_of(cell: Cell, tool: Array, phi: Array, axis: str) -> Array:
     Returns
     -------
     (C,) array
-        Values, rad; RZ is in -pi to pi.
+        Axis values, rad; RZ in -pi to pi.
     """
     return phi if axis == ROTATION else cell.poses.rz_of_phi(tool, phi)
 
@@ -467,36 +467,40 @@ def joints_at(task: Task, map_columns: Columns, column: int, phi: float) -> Arra
     map_columns : Columns
         The columns.
     column : int
-        Number of the column.
+        Column index.
     phi : float
         Rotation about the tool axis, rad.
 
     Returns
     -------
     (8, axes) array
-        Joints in the turns that the map uses; NaN out of reach.
+        Joints, shifted by whole turns as in the map; NaN out of reach.
     """
     joints = _joints_of_branches(
         task, map_columns.points.select_points(np.array([column])), np.array([[phi]])
     )[:, 0, 0]
     turns = np.where(task.continuous, 0.0, np.round((task.middle - joints) / TURN))
-    turns[:, task.cell.robot.chain.axes :] = 0.0  # external axes are where they are said to be
+    turns[:, task.cell.robot.chain.axes :] = 0.0  # external axes keep their planned values
     return np.asarray(joints + TURN * turns)
 
 
 def _joints_of_branches(task: Task, points: Points, phi: Array) -> Array:
-    """Return the joints (8, R, C, axes) of all branches at C points with rotations phi (R, C); NaN
-    out of reach.
+    """Return the joints (8, R, C, axes) of all branches at C points for rotations phi (R, C).
+
+    Joints are NaN out of reach.
     """
     arm = task.cell.machine.arm
-    assert arm is not None  # resolve() refuses other machines
+    assert arm is not None  # resolve() rejects other machines
     joints = arm.inverse(points.frames.flange_poses(phi).reshape(-1, 4, 4))[:8]
     joints = joints.reshape(len(joints), *phi.shape, -1)
     return joints if points.external is None else append_external(joints, points.external)
 
 
 def _margin(task: Task, rows: LimitRows, joints: Array) -> Array:
-    """(...) what `rows.margin` gives for joints (..., axes) in the turns that suit limited axes best, axis by axis."""
+    """Return `rows.margin` (...) for joints (..., axes).
+
+    Shift each limited axis by whole turns to the middle of its range first.
+    """
     angle = []
     for axis in range(joints.shape[-1]):
         value = joints[..., axis]
@@ -512,8 +516,10 @@ def _margin(task: Task, rows: LimitRows, joints: Array) -> Array:
 
 
 def _touching(cell: Cell, points: Points, bodies: Sequence[Body]) -> Mask:
-    """(C,) whether the nozzle, which is round about the tool axis, meets the platform or a body at a point; its lowest part
-    is left out, as where toolpaths are kept clear."""
+    """Return at which points (C,) the nozzle touches the platform or a body.
+
+    The nozzle is symmetric about the tool axis. Its lowest part is left out, as in planning.
+    """
     around = list(bodies)
     if cell.platform_diameter > 0.0:
         around.append(disc(cell.platform_diameter, cell.poses.mount))
@@ -529,7 +535,7 @@ def _touching(cell: Cell, points: Points, bodies: Sequence[Body]) -> Mask:
 def across(
     beads: Sequence[Bead], cell: Cell, bead_point: tuple[int, int], axis: int, values: Array
 ) -> Columns:
-    """Return one point of the beads with varied values of an external axis.
+    """Return one bead point at several values of an external axis.
 
     Parameters
     ----------
@@ -538,16 +544,16 @@ def across(
     cell : Cell
         The cell.
     bead_point : tuple[int, int]
-        Number of the bead and of the point in it.
+        Bead index and point index in the bead.
     axis : int
         Index of the external axis.
     values : (C,) array
-        Its values, rad or mm; the other axes keep their planned values.
+        Axis values, rad or mm; the other axes keep their planned values.
 
     Returns
     -------
     Columns
-        One column for each value.
+        One column per value.
     """
     return _columns_with_external(beads, cell, bead_point, (axis,), (values,))
 
@@ -559,7 +565,7 @@ def across_two_axes(
     axes: tuple[int, int],
     values: tuple[Array, Array],
 ) -> Columns:
-    """Return one point of the beads with all pairs of values of two external axes.
+    """Return one bead point at all pairs of values of two external axes.
 
     Parameters
     ----------
@@ -568,23 +574,23 @@ def across_two_axes(
     cell : Cell
         The cell.
     bead_point : tuple[int, int]
-        Number of the bead and of the point in it.
+        Bead index and point index in the bead.
     axes : tuple[int, int]
         Indices of the two external axes.
     values : (C,) array and (R,) array
-        Their values, rad or mm; the other axes keep their planned values.
+        Axis values, rad or mm; the other axes keep their planned values.
 
     Returns
     -------
     Columns
-        R C columns, row after row.
+        R C columns, row by row.
     """
     across, up = np.meshgrid(*values)
     return _columns_with_external(beads, cell, bead_point, axes, (across.ravel(), up.ravel()))
 
 
 def in_rows(picture: Picture, rows: int) -> Picture:
-    """A picture (1, R C) of pairs as one (R, C)."""
+    """Reshape a picture (1, R C) of value pairs to (R, C)."""
     return dataclasses.replace(
         picture,
         margin=picture.margin.reshape(rows, -1),
@@ -603,7 +609,7 @@ def _columns_with_external(
     axes: tuple[int, ...],
     values: tuple[Array, ...],
 ) -> Columns:
-    """One point with external axes elsewhere: each at values (n,)."""
+    """Return one bead point at external axis values (n,)."""
     bead, point = bead_point
     count = len(values[0])
     external = np.tile(planned_external(beads[bead])[point], (count, 1))
@@ -621,7 +627,7 @@ def _columns_with_external(
 
 
 def span(task: Task, bead: Bead, point: int, axis: int, count: int) -> Array:
-    """Return values of an external axis over its range.
+    """Return evenly spaced values over the range of an external axis.
 
     Parameters
     ----------
@@ -630,7 +636,7 @@ def span(task: Task, bead: Bead, point: int, axis: int, count: int) -> Array:
     bead : Bead
         A bead with planned external axes.
     point : int
-        Number of a point in the bead.
+        Point index in the bead.
     axis : int
         Index of the external axis.
     count : int
@@ -639,7 +645,7 @@ def span(task: Task, bead: Bead, point: int, axis: int, count: int) -> Array:
     Returns
     -------
     (count,) array
-        Evenly spaced, rad or mm; a turning axis covers at most a turn about its planned
+        Values, rad or mm; for a revolute axis at most half a turn on either side of the planned
         value.
     """
     machine_axis = task.cell.robot.chain.axes + axis

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The change that makes an infeasible job feasible, found by planning with it; the cell that
-suits a job.
+"""Find a change that makes an infeasible job feasible, or a cell that suits a job, by planning.
 
-Changes are tried in order of cost for the user: the program's own (speed, branch, rotation, lift),
-then the process (directions), then the cell. Each is planned for some of the failed layers, and only
-one that serves there for the whole job. The effort is bounded by points, not by time, so that the
-same job gets the same answer.
+Changes are tried in order of cost to the user: first the program (speed, branch, rotation, lift),
+then the process (directions), then the cell. Each change is planned for some of the failed layers.
+A change that succeeds is then planned for the whole job. A point budget limits the effort, so that
+the same job gets the same answer unless the search exceeds LONGEST_SEARCH.
 """
 
 from __future__ import annotations
@@ -32,16 +31,16 @@ from .other_cells import LAYERS, POINTS, Tried, some_of
 from .plan import Progress
 
 REMEDY, NO_REMEDY = "REMEDY", "NO_REMEDY"
-CHANGES = 16  # that are tried, about
-MAX_POINTS_REPLANNED = 20_000  # points of a job that is planned again as a whole
-MAX_FULL_PLANS = 3  # times that it is
-LONGEST_SEARCH = 60.0  # s on the clock, of a search
+CHANGES = 16  # approximate number of changes to try
+MAX_POINTS_REPLANNED = 20_000  # maximum number of points of a job that is planned again completely
+MAX_FULL_PLANS = 3  # maximum number of complete plans
+LONGEST_SEARCH = 60.0  # s; maximum wall-clock time of a search
 RETRACTS = (50.0, 100.0, 5.0)  # mm
 FULL_TURN = (-math.pi, math.pi)
 
 
 def most_points(toolpath: Toolpath, issues: Sequence[Issue]) -> int:
-    """Return the maximum number of points to plan again in the search for a remedy, 0 for a feasible job."""
+    """Return the maximum number of points that `remedies` may plan; 0 for a feasible job."""
     if not has_errors(list(issues)):
         return 0
     sampled_count = min(POINTS, CHANGES * some_of(toolpath, _failed(issues)).point_count)
@@ -51,7 +50,7 @@ def most_points(toolpath: Toolpath, issues: Sequence[Issue]) -> int:
 
 
 class _Late(Exception):
-    """The search has taken as long as it may."""
+    """The search has exceeded its time limit."""
 
 
 def remedies(
@@ -68,18 +67,18 @@ def remedies(
     job : Tried
         The infeasible job.
     path : JointPath
-        Its joint path.
+        Joint path of the job.
     issues : sequence of Issue
-        Its issues.
+        Issues of the job.
     progress : callable
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
     longest : float, optional
-        Wall-clock time after which the search stops, s.
+        Maximum wall-clock time of the search, s.
 
     Returns
     -------
     list of Issue
-        A note with the change, or with all failed changes; empty for a feasible job.
+        A note with the successful change, or with all failed changes; empty for a feasible job.
     """
     if not has_errors(list(issues)):
         return []
@@ -116,7 +115,7 @@ def _searched(
     progress: Progress,
     attempts: list[str],
 ) -> list[Issue]:
-    """Return the note on the remedy; appends each change to `attempts`."""
+    """Return the note on the remedy, and append each attempted change to `attempts`."""
     failed = _failed(issues)
     points, full_plans_left = POINTS, MAX_FULL_PLANS
     for change in _changes(job, path, issues):
@@ -155,7 +154,7 @@ def _searched(
                 ]
             if not full_plans_left:
                 break
-        except AmError:  # what cannot be asked for is not a remedy
+        except AmError:  # an invalid job is not a remedy
             continue
     if not attempts:
         return []
@@ -172,7 +171,7 @@ def _searched(
 
 
 def _failed(issues: Sequence[Issue]) -> list[int]:
-    """The layers that errors are in."""
+    """Return the layers with errors."""
     return sorted(
         {issue.layer for issue in issues if issue.level == ERROR and issue.layer is not None}
     )
@@ -194,7 +193,7 @@ def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[T
         yield from _slower(job, path)
     if all(code.startswith("RAPID") for code in codes):
         yield from _retracts(job)
-    if free and codes != {external_remedies.NOT_LEVEL}:  # which no turn about the tool mends
+    if free and codes != {external_remedies.NOT_LEVEL}:  # tool rotation does not affect this error
         yield from other_cells.branches(job)
         yield from _rotations(job)
     if job.fixed is not None:
@@ -210,14 +209,17 @@ def _changes(job: Tried, path: JointPath, issues: Sequence[Issue]) -> Iterator[T
 
 
 def _slower(job: Tried, path: JointPath) -> Iterator[Tried]:
-    """As fast as the axes can where they have most to do; features with a speed of their own keep that."""
+    """Yield the job at the maximum speed that all axes allow.
+
+    Features with their own travel speed keep it.
+    """
     toolpath = job.toolpath()
     cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
     speed = job.process.travel_speed * share_of_speed(cell, path.beads)
     if not 0.0 < speed < job.process.travel_speed:
         return
     step = 10.0 ** (math.floor(math.log10(0.99 * speed)) - 1)
-    speed = math.floor(0.99 * speed / step) * step  # two digits
+    speed = math.floor(0.99 * speed / step) * step  # two significant digits
     share = speed / job.process.travel_speed
     layers = []
     for layer in toolpath.layers:
@@ -247,7 +249,7 @@ def _retracts(job: Tried) -> Iterator[Tried]:
 
 
 def _rotations(job: Tried) -> Iterator[Tried]:
-    """More freedom about the tool."""
+    """Yield the job with a larger range of tool rotation, or with a rotation per layer."""
     low, high = job.joints.rotation_range
     if high - low < FULL_TURN[1] - FULL_TURN[0] - 1e-9:
         free = dataclasses.replace(job.joints, rotation_range=FULL_TURN)
@@ -259,15 +261,14 @@ def _rotations(job: Tried) -> Iterator[Tried]:
         yield dataclasses.replace(job, joints=layers, remedy="`joints.method: layer-by-layer`")
 
 
-# ---- The cell that suits a job before it is planned: as it is where the job can be done in it,
-# else another branch, another place, or a positioner under a part on which the torch would lean
-# more than it may
+# ---- A cell that suits a job: the current cell if it is feasible; otherwise another branch or
+# another position, or a positioner if the torch would tilt too far
 
 
 def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) -> CellParameters:
-    """Return the first cell in which some layers of a job can be done.
+    """Return the first cell in which sampled layers of a job are feasible.
 
-    The layers are the first, the middle and the last one, the one that leans most, and
+    These are the first, middle and last layer, the layer with the maximum tilt, and
     `failed_layers`.
 
     Parameters
@@ -275,14 +276,14 @@ def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) 
     job : Tried
         The job.
     progress : callable
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
     failed_layers : iterable of int, optional
-        Layers that failed in the plan of the complete job.
+        Layers that failed in the plan of the whole job.
 
     Returns
     -------
     CellParameters
-        The current cell if it serves or no other cell does.
+        The current cell if it is feasible or if no other cell is.
 
     Raises
     ------
@@ -303,15 +304,13 @@ def suited(job: Tried, progress: Progress, failed_layers: Collection[int] = ()) 
         try:
             if not _errors(change, sample, progress):
                 return change.settings
-        except AmError:  # what cannot be asked for is no cell
+        except AmError:  # skip an invalid cell
             continue
     return job.settings
 
 
 def _cell_changes(job: Tried, errors: set[str]) -> Iterator[Tried]:
-    if (
-        NOT_LEVEL in errors
-    ):  # which neither a rotation about the tool nor another fixed position remedies
+    if NOT_LEVEL in errors:  # neither a tool rotation nor another fixed position helps
         return other_cells.external_axes(job, {NOT_LEVEL})
     return itertools.chain(
         other_cells.clear_of_arm(job, errors),
@@ -326,8 +325,8 @@ def _errors(job: Tried, toolpath: Toolpath, progress: Progress) -> set[str]:
 
 
 def _layers(toolpath: Toolpath, failed: Collection[int]) -> Toolpath:
-    """Return some of its layers, including the one that leans most from the part's axis and the failed
-    ones.
+    """Return the toolpath with sampled layers, including the layer with the maximum tilt from the
+    part axis and the failed layers.
     """
     upright = [
         min((float((bead.tool @ toolpath.frame[:3, 2]).min()) for bead in layer.beads), default=1.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A sample of a toolpath that is planned at once: some of its beads, and some of their points."""
+"""Sample beads and points of a toolpath for a plan that represents the whole toolpath."""
 
 from __future__ import annotations
 
@@ -14,9 +14,11 @@ from ..parameters.joints import GivenPolynomial
 from ..toolpath import Bead, Toolpath
 from ..types import Index
 
-PER_TURN = 16  # points of a turn that are kept, about
-FEWEST_PER_TURN = 5  # where beads of many turns are too few to leave some out: all sides are seen, axes still counted on
-MIN_SEGMENTS = 8  # minimum number of segments kept of a bead that has as many
+PER_TURN = 16  # target number of points kept per turn
+# minimum number of points kept per turn where no more beads can be omitted; enough to see all
+# sides and to unwrap axes
+FEWEST_PER_TURN = 5
+MIN_SEGMENTS = 8  # minimum number of segments kept in a bead, if the bead has as many
 
 Place = tuple[int, int]
 
@@ -25,8 +27,8 @@ Place = tuple[int, int]
 class Sampled:
     """A sample of the beads and points of a toolpath.
 
-    beads, points: one in this number is kept, 1 for all. places: (layer, bead) of each sampled bead
-    in the full toolpath, in print order.
+    beads, points: strides; every n-th bead or point is kept. places: (layer, bead) of each sampled
+    bead in the full toolpath, in print order.
     """
 
     toolpath: Toolpath
@@ -50,7 +52,7 @@ class Sampled:
         Returns
         -------
         tuple of GivenPolynomial
-            The polynomials with the numbers that the beads have in the sample.
+            The polynomials with the bead numbers of the sample.
         """
         sample_ids = {
             bead_id: (layer, bead) for bead_id, (layer, bead, _) in zip(self.places, self.toolpath)
@@ -67,18 +69,18 @@ class Sampled:
 def sample_toolpath(toolpath: Toolpath, max_points: int, together: int = 1) -> Sampled:
     """Sample beads and points of a toolpath.
 
-    The first and last bead are kept, and the ends of each bead; layers keep their numbers,
-    beads do not. The chord error grows with the point spacing. A few beads with very many turns
-    keep more points.
+    The first and last bead are kept, and the ends of every bead. Layers keep their numbers; beads
+    are renumbered. The chord error grows with the point spacing. A few beads with very many turns
+    keep more points than requested.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath.
     max_points : int
-        Number of points to aim at; a smaller toolpath is kept complete.
+        Target number of points; a smaller toolpath is kept complete.
     together : int, optional
-        Number of consecutive beads that are kept as a group.
+        Number of consecutive beads kept as a group.
 
     Returns
     -------
@@ -97,7 +99,7 @@ def sample_toolpath(toolpath: Toolpath, max_points: int, together: int = 1) -> S
     kept_beads = [
         entry for k, entry in enumerate(all_beads[:-1]) if k % (together * beads) < together
     ] + all_beads[-1:]
-    if beads < stride_needed:  # there are no more beads to leave out
+    if beads < stride_needed:  # no more beads can be omitted
         points = max(
             points, _one_in([bead for _, _, bead in kept_beads], max_points, FEWEST_PER_TURN)
         )
@@ -117,15 +119,16 @@ def sample_toolpath(toolpath: Toolpath, max_points: int, together: int = 1) -> S
 
 
 def _one_in(beads: Sequence[Bead], max_points: int, per_turn: int) -> int:
-    """Return the stride that keeps about `max_points` points of beads, but `per_turn` of each turn."""
+    """Return the point stride for about `max_points` points, with at least `per_turn` a turn."""
     total = sum(map(len, beads))
     turns = sum(abs(float(bead.parameter[-1] - bead.parameter[0])) for bead in beads) / TURN
     return max(1, min(math.ceil(total / max_points), int(total / (per_turn * max(turns, 1.0)))))
 
 
 def _select_points(bead: Bead, points: int) -> Index:
-    """Return the numbers of the kept points of a bead: one of `points`, more for a short bead and for
-    turns with few points.
+    """Return the indices of the kept points of a bead.
+
+    The stride is `points`, or smaller in a short bead and in turns with few points.
     """
     last_index = len(bead) - 1
     step = max(1, min(points, last_index // MIN_SEGMENTS))

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The common data of all planning methods: cell, branch, limits, thresholds, and the joints of a
-rotation.
-"""
+"""Common data of all planning methods: cell, branch, limits, thresholds and inverse kinematics."""
 
 from __future__ import annotations
 
@@ -29,7 +27,7 @@ UNREACHABLE = -np.inf
 
 @dataclass(frozen=True, eq=False)
 class LimitRows:
-    """The limits as m rows lower <= matrix q <= upper, without continuous axes. Angles in rad."""
+    """m joint limits lower <= matrix q <= upper, without continuous axes; rad or mm."""
 
     matrix: Array
     lower: Array
@@ -38,7 +36,7 @@ class LimitRows:
 
     @cached_property
     def mean(self) -> Array:
-        """Return the middle of each range.
+        """Return the midpoint of each range.
 
         Returns
         -------
@@ -49,7 +47,7 @@ class LimitRows:
 
     @cached_property
     def half(self) -> Array:
-        """Return half of each range.
+        """Return half the width of each range.
 
         Returns
         -------
@@ -60,11 +58,11 @@ class LimitRows:
 
     @cached_property
     def plain(self) -> bool:
-        """True if every row contains only one axis."""
+        """Whether every row limits a single axis."""
         return bool((np.count_nonzero(self.matrix, axis=1) == 1).all())
 
     def offset(self, joints: Array) -> Array:
-        """Return the distance from the middle as a share of half the range.
+        """Return the offset from mid-range as a fraction of half the range.
 
         Parameters
         ----------
@@ -80,7 +78,7 @@ class LimitRows:
         return share
 
     def margin(self, joints: Array) -> Array:
-        """Return the smallest margin over the rows.
+        """Return the minimum margin over all rows.
 
         Parameters
         ----------
@@ -90,16 +88,16 @@ class LimitRows:
         Returns
         -------
         (...) array
-            1 in the middle, 0 at a limit, negative beyond; -inf for NaN joints.
+            1 at mid-range, 0 at a limit, negative beyond a limit; -inf for NaN joints.
         """
         worst: Array = reduce(
             np.maximum, map(np.abs, self._offsets(joints))
-        )  # sooner than max(axis=-1)
+        )  # faster than max(axis=-1)
         return np.where(np.isnan(worst), UNREACHABLE, 1.0 - worst)
 
     def _offsets(self, joints: Array) -> Iterator[Array]:
-        """Yield the `offset` (...) of each row in turn; a row with only one axis reads only that
-        axis.
+        """Yield the `offset` (...) of each row; if all rows are plain, read only the axis that the
+        row limits.
         """
         if not self.plain:
             yield from np.moveaxis(self.offset(joints), -1, 0)
@@ -113,7 +111,10 @@ class LimitRows:
 
 
 def limit_rows(limits: Limits, reserve: float = 0.0) -> LimitRows:
-    """The rows of a limit set, single axes first, then what couples several; `reserve` (rad) narrower on both sides."""
+    """Return the rows of a limit set: single axes, then coupled axes.
+
+    `reserve` (rad) narrows each range at both ends.
+    """
     axes = len(limits.lower)
     finite = np.isfinite(limits.lower) & np.isfinite(limits.upper)
     return LimitRows(
@@ -130,27 +131,27 @@ def limit_rows(limits: Limits, reserve: float = 0.0) -> LimitRows:
 
 Parts = tuple[
     tuple[Toolpath, Index], ...
-]  # the toolpath of each feature, and its layers in the full toolpath
+]  # toolpath of each feature, and indices of its layers in the full toolpath
 
-# Eq. 17 divides by the stroke. A continuous axis would have no weight and could spin freely, so it
-# gets this stroke: large enough to leave the other axes still on a part of revolution
+# Eq. 17 divides by the stroke. A continuous axis would have zero weight and could rotate without
+# cost. This finite stroke is large enough to keep the other axes still on a part of revolution
 # (docs/decisions).
 CONTINUOUS_STROKE = 1e6 * TURN
 CONDITION_FLOOR = 0.02
 CONDITION_SHARE = 0.25
-# a margin that counts as none: optima lean on limits, which the reserve keeps off the true ones
+# minimum accepted margin: an optimum often lies on a limit of `rows`, RESERVE inside the true limit
 MIN_MARGIN = -1e-6
 
 
 @dataclass(frozen=True)
 class Task:
-    """A cell with one branch and the planning parameters.
+    """A cell, one branch and the planning parameters.
 
-    joined: whether the polynomial of a closed bead must return to its start value apart from whole
-    turns. Parts of revolution do not need this: there a limited axis rewinds between layers. kept:
-    the link clearance check, if requested. lock: the locked one of two rotary axes. chord_error:
-    mm. rules: of the toolpath. parts: the toolpath of each feature, and its layers, which give
-    travel speeds and maximum tilts.
+    joined: whether the rotation polynomial of a closed bead must return to its start value, up to
+    whole turns. Parts of revolution do not need this, because a limited axis rewinds between
+    layers. kept: link clearance check, if requested. lock: the locked rotary axis, if any.
+    chord_error: mm. rules: motion rules of the toolpath. parts: toolpath of each feature with its
+    layers, for travel speeds and maximum tilts.
     """
 
     cell: Cell
@@ -165,26 +166,26 @@ class Task:
 
     @cached_property
     def rows(self) -> LimitRows:
-        """The limits as rows, with the reserve taken off."""
+        """Limit rows, narrowed by RESERVE."""
         return limit_rows(self.cell.limits, RESERVE)
 
     @cached_property
     def given_rows(self) -> LimitRows:
-        """The limits as rows, as they are given."""
+        """Limit rows as given, without RESERVE."""
         return limit_rows(self.cell.limits)
 
     @cached_property
     def continuous(self) -> Mask:
-        """(axes,) bool, axes without limits."""
+        """(axes,) bool, True for axes without limits."""
         return self.cell.limits.continuous
 
     @cached_property
     def unturned(self) -> Mask:
-        """(axes,) bool, axes for which whole turns have no meaning: continuous and prismatic axes."""
+        """(axes,) bool, axes that whole turns do not apply to: continuous and prismatic axes."""
         return np.asarray(self.continuous | self.cell.machine.chain.sliding, dtype=np.bool_)
 
     def rows_of_axis(self, axis: int) -> tuple[float, float]:
-        """Return the limits of one axis with the reserve taken off.
+        """Return the limits of one axis, narrowed by RESERVE.
 
         Parameters
         ----------
@@ -202,7 +203,7 @@ class Task:
 
     @cached_property
     def middle(self) -> Array:
-        """Return the middle of each axis's range.
+        """Return the mid-range value of each axis.
 
         Returns
         -------
@@ -215,14 +216,14 @@ class Task:
 
     @cached_property
     def weights(self) -> Array:
-        """Return the weights of the axes in the displacement.
+        """Return the axis weights in the joint displacement.
 
-        A characteristic length of sliding axes counts as one rad.
+        For prismatic axes, one characteristic length counts as 1 rad.
 
         Returns
         -------
         (axes,) array
-            One over the stroke.
+            1 / stroke; for prismatic axes also divided by the characteristic length.
 
         References
         ----------
@@ -237,14 +238,14 @@ class Task:
         )
 
     def rotation(self, points: Points, value: Array) -> tuple[Array, Array]:
-        """Return the rotation for the variable of the job.
+        """Convert the planning variable to the rotation about the tool axis.
 
         Parameters
         ----------
         points : Points
             T points.
         value : (T,) array
-            The rotation itself, or RZ as in Chalvin 2020, rad.
+            Planning variable: the rotation itself, or RZ as in Chalvin 2020, rad.
 
         Returns
         -------
@@ -260,15 +261,15 @@ class Task:
 
     @property
     def arm(self) -> SerialArm:
-        """The inverse of the robot."""
+        """Inverse kinematics of the robot arm."""
         arm = self.cell.robot.arm
-        assert arm is not None  # resolve() refuses other machines
+        assert arm is not None  # resolve() rejects other machines
         return arm
 
     def raw_joints(self, points: Points, phi: Array, previous: Array | None = None) -> Array:
-        """Return the joints of the branch as the inverse gives them.
+        """Return the joints of the branch without unwrapping.
 
-        Arms with several solutions per configuration follow the solution from point to
+        For arms with several solutions per configuration, follow one solution from point to
         point.
 
         Parameters
@@ -278,7 +279,7 @@ class Task:
         phi : (..., T) array
             Rotations about the tool axis, rad.
         previous : (T, axes) array or None, optional
-            Joints from which such an arm continues; None to follow the beads.
+            Joints from which such an arm continues; None to follow along the beads.
 
         Returns
         -------
@@ -306,7 +307,7 @@ class Task:
         return joints if points.external is None else append_external(joints, points.external)
 
     def _raw_joints_of_all(self, points: Points, phi: Array) -> Array:
-        """The same of one phi (T,) for all points: their poses together would take much memory."""
+        """Return `raw_joints` for one rotation (T,), in batches to limit memory."""
         joints = np.empty((self.cell.machine.chain.axes, len(points))).T
         for rows in in_pieces(len(points)):
             robot_joints = self.arm.inverse_branch(
@@ -320,15 +321,15 @@ class Task:
         return joints
 
     def inverse(self, flange: Array, nearby_joints: Array | None = None) -> Array:
-        """Return the joints of the branch at flange poses.
+        """Return the joints of the branch for flange poses.
 
         Parameters
         ----------
         flange : (N, 4, 4) array
             Flange poses, base frame.
         nearby_joints : (N, axes) array or None, optional
-            Joints near which arms with several solutions per configuration search;
-            external axes keep these values.
+            Start joints for arms with several solutions per configuration; also give the
+            external axis values.
 
         Returns
         -------
@@ -345,11 +346,12 @@ class Task:
         return joints if external is None else append_external(joints, external)
 
     def _robot_joints(self, joints: Array) -> Array:
-        """Return joints (..., axes of the robot) without external axes."""
+        """Return the robot joints (..., robot axes) without external axes."""
         return joints[..., : self.cell.robot.chain.axes]
 
     def joints(self, points: Points, phi: Array) -> Array:
-        """Return the joints unwrapped within each bead, in the turn that suits the limits best.
+        """Return joints unwrapped along each bead, shifted by the whole turns that best fit the
+        limits.
 
         Parameters
         ----------
@@ -367,11 +369,11 @@ class Task:
         if phi.ndim > 1 and not np.isnan(raw.max()):
             return self.in_range(unwrapped_by_turns(raw, points), points)
         joints_in_range = self.in_range(unwrapped(raw, points), points)
-        # sums over the axes follow the order of memory: contiguous for plans row by row
+        # summation over axes depends on memory order; make it contiguous for single plans
         return np.ascontiguousarray(joints_in_range) if phi.ndim == 1 else joints_in_range
 
     def in_range(self, joints: Array, points: Points) -> Array:
-        """Move each limited axis by the whole turns that centre its range in each bead.
+        """Shift each limited axis by whole turns to the middle of its range, bead by bead.
 
         Parameters
         ----------
@@ -383,7 +385,7 @@ class Task:
         Returns
         -------
         (..., T, axes) array
-            The joints; the same array if nothing moves.
+            Shifted joints; the input array if no axis shifts.
         """
         leading_axes = tuple(range(joints.ndim - 1))
         distances = np.maximum(
@@ -391,7 +393,7 @@ class Task:
         )
         axis_ids = np.flatnonzero(
             ~self.unturned & ~(distances <= 0.5 * TURN)
-        )  # most axes stay within half a turn
+        )  # skip axes that stay within half a turn, which are most
         low = np.minimum.reduceat(joints[..., axis_ids], points.first, axis=-2)
         high = np.maximum.reduceat(joints[..., axis_ids], points.first, axis=-2)
         turns = np.round((self.middle[axis_ids] - 0.5 * (low + high)) / TURN) * TURN
@@ -402,9 +404,7 @@ class Task:
         return shifted
 
     def jacobians(self, points: Points, phi: Array, joints: Array) -> Iterator[tuple[slice, Array]]:
-        """Yield the robot's Jacobians for slices of the points.
-
-        The Jacobians of all points together would take much memory.
+        """Yield the robot Jacobians in batches of points, to limit memory.
 
         Parameters
         ----------
@@ -418,7 +418,7 @@ class Task:
         Yields
         ------
         rows : slice
-            The rows of the points.
+            Points of the batch.
         jacobians : (k, 6, 6) array
             Jacobians at the deposition point.
         """
@@ -426,7 +426,7 @@ class Task:
             yield rows, self.jacobian_at(points.frames.of(rows), phi[rows], joints[rows])
 
     def jacobian_at(self, poses: PoseFrames, phi: Array, joints: Array) -> Array:
-        """Return the robot's Jacobian at the deposition point.
+        """Return the robot Jacobian at the deposition point.
 
         Parameters
         ----------
@@ -440,7 +440,7 @@ class Task:
         Returns
         -------
         (N, 6, 6) array
-            Rows of translation (mm) and rotation, base frame.
+            Three rows for translation (mm), three for rotation; base frame.
         """
         return self._jacobian(self._tips_of(poses, phi), joints)
 
@@ -451,9 +451,9 @@ class Task:
         return result
 
     def _tips_of(self, poses: PoseFrames, phi: Array) -> Array:
-        """Return flange poses (N, 4, 4) that give the deposition point and the axis of phi.
+        """Return the flange poses (N, 4, 4) for the deposition point and the rotation axis.
 
-        A fixed torch has a known deposition point, so any pose will do.
+        A stationary torch fixes both, so any pose will do.
         """
         return (
             np.broadcast_to(np.eye(4), (len(phi), 4, 4))
@@ -462,7 +462,7 @@ class Task:
         )
 
     def condition(self, points: Points, phi: Array, joints: Array) -> Array:
-        """Return the condition of the scaled Jacobian at the deposition point.
+        """Return the inverse condition number of the scaled Jacobian at the deposition point.
 
         Parameters
         ----------
@@ -493,7 +493,7 @@ class Task:
         )
 
     def condition_at(self, flange: Array, joints: Array) -> Array:
-        """Return the condition of the scaled Jacobian at flange poses.
+        """Return the inverse condition number of the scaled Jacobian for flange poses.
 
         Parameters
         ----------
@@ -517,12 +517,12 @@ class Task:
             value[rows] = jac.condition(
                 self._jacobian(flange[rows], joints[rows]), self.parameters.characteristic_length
             )
-        # the last bits depend on the memory alignment of the arrays; without them the same job
-        # gives the same bytes
+        # the last bits depend on the memory alignment of arrays; rounding makes the output of a
+        # job reproducible to the byte
         return np.round(value, 12)
 
     def thresholds(self, points: Points) -> Array:
-        """Return the smallest condition allowed at each point.
+        """Return the required minimum inverse condition number at each point.
 
         Parameters
         ----------
@@ -532,8 +532,8 @@ class Task:
         Returns
         -------
         (T,) array
-            The given value, or CONDITION_SHARE of the condition at RZ = 0, at least
-            CONDITION_FLOOR.
+            `min_condition` if it is a number; otherwise CONDITION_SHARE of the value at RZ = 0,
+            at least CONDITION_FLOOR.
 
         References
         ----------
@@ -550,12 +550,12 @@ class Task:
         return np.maximum(CONDITION_SHARE * at_zero, CONDITION_FLOOR)
 
     def rotation_rates(self, poses: PoseFrames, phi: Array, joints: Array) -> tuple[Array, Array]:
-        """Return the joint rates for the rotation about the tool axis.
+        """Return the joint rates with respect to the rotation about the tool axis.
 
         Parameters
         ----------
         poses : PoseFrames
-            Pose frames of N points within reach.
+            Pose frames of N reachable points.
         phi : (N,) array
             Rotations about the tool axis, rad.
         joints : (N, axes) array
@@ -566,7 +566,7 @@ class Task:
         rates : (N, axes) array
             d q / d phi; 0 for external axes.
         matrix : (N, 6, 6) array
-            Jacobians of the robot at the deposition point.
+            Robot Jacobians at the deposition point.
         """
         flange = self._tips_of(poses, phi)
         matrix = self._jacobian(flange, joints)
@@ -582,19 +582,19 @@ class Task:
 
 
 def append_external(joints: Array, external: Array) -> Array:
-    """Append the values of external axes to joints of the robot.
+    """Append external axis values to robot joints.
 
     Parameters
     ----------
     joints : (..., N, axes) array
-        Joints of the robot, rad or mm.
+        Robot joints, rad or mm.
     external : (N, k) array
-        Values of the external axes, rad or mm.
+        External axis values, rad or mm.
 
     Returns
     -------
     (..., N, axes + k) array
-        Joints; all NaN in the external axes where the robot does not reach.
+        Robot and external joints; external axes are NaN where the robot cannot reach.
     """
     values = np.broadcast_to(external, (*joints.shape[:-1], external.shape[-1]))
     is_unreachable = np.isnan(joints).any(axis=-1, keepdims=True)
@@ -602,18 +602,18 @@ def append_external(joints: Array, external: Array) -> Array:
 
 
 def condition_margin(condition: Array, threshold: Array) -> Array:
-    """Return the margin of the condition to its threshold.
+    """Return the relative margin of the inverse condition number above its threshold.
 
     Parameters
     ----------
     condition : (...) array
         sigma_min / sigma_max.
     threshold : (...) array
-        Smallest value allowed.
+        Required minimum.
 
     Returns
     -------
     (...) array
-        1 - threshold / condition: 0 where just kept, towards 1 far from singular.
+        1 - threshold / condition: 0 at the threshold, towards 1 far from singularities.
     """
     return np.asarray(1.0 - threshold / np.maximum(condition, 1e-12))

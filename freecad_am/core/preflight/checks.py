@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The preflight: every promise of a job in the order in which a process engineer reads them."""
+"""Preflight: all promises about a job, in the order in which a process engineer reads them."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from ..types import Array
 from . import clearance
 from .promise import PERCENT, Place, Promise, issue_place, number, select_issues
 
-# ---- The text of a program against the plan, and the checks that only its controller can do
+# ---- Program text compared with the plan, and checks that only the controller can do
 
 TEXT, BETWEEN = (
     "The program moves the tool to the planned points",
@@ -39,8 +39,9 @@ TEXT, BETWEEN = (
 class ReadBack:
     """The result of the read-back.
 
-    ok: no error. at_points, between: mm from the plan. bound: mm that the digits of the text
-    explain. allowed: mm between points. solvers: number of solvers of its kinematics.
+    ok: no error. at_points, between: maximum deviation from the plan, mm. bound: deviation that
+    the digits of the text explain, mm. allowed: maximum deviation between points, mm. solvers:
+    number of independent kinematics solvers.
     """
 
     ok: bool
@@ -52,7 +53,7 @@ class ReadBack:
 
 
 def program_promises(read_back: ReadBack | None, on_controller: Sequence[str]) -> list[Promise]:
-    """The promises about a text; `on_controller`: checks that only the controller can do."""
+    """Return the promises about a program text and the checks that only the controller can do."""
     not_checked = "not checked: only the controller can show it"
     return [*_read_back(read_back), *(Promise(text, not_checked, None) for text in on_controller)]
 
@@ -92,29 +93,29 @@ def _figure(value: float, bound: float) -> tuple[float | None, str, float | None
     return (value, "mm", bound) if math.isfinite(value) else (None, "", None)
 
 
-# ---- The deposit against the part, by the issues and figures of its planning
+# ---- Deposit compared with the part, from the issues and statistics of the plan
 
-MAX_VOLUME_ERROR = 1e-6  # share of the fed volume by which a predicted deposit may differ
+MAX_VOLUME_ERROR = 1e-6  # tolerance of the predicted deposit volume, fraction of the fed volume
 
 
 def layers(
     toolpath: Toolpath, issues: Sequence[Issue], known_distances: Sequence[Array] | None = None
 ) -> Promise:
-    """Return the promise on the distance between layers; families state which distances they allow.
+    """Return the promise about the distance between layers, within the range of the strategy.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath.
     issues : sequence of Issue
-        Issues of its planning; warnings SPACING break the promise.
+        Issues of the plan; SPACING warnings break the promise.
     known_distances : sequence of (n,) array, optional
-        Distances to the layer below, mm, for each layer except the first; measured if None.
+        Distances to the layer below, mm, for each layer except the first; None to measure them.
 
     Returns
     -------
     Promise
-        With the distance farthest from the layer height, mm.
+        With the distance that deviates most from the layer height, mm.
     """
     what = "Layers are one layer height apart"
     how = "distance of each point from the layer below, compared with the range that the strategy allows"
@@ -139,7 +140,7 @@ def layers(
 
 
 def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
-    """Promise on the distance between the beads and the faces or solids of the part."""
+    """Return the promise about the distance of the beads from the faces or solids of the part."""
     what = "The deposit lies on the part"
     if toolpath.checks.on_part is None:
         return Promise(what, "not checked: the part has no faces to compare with", None)
@@ -159,7 +160,7 @@ def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
 
 
 def all_deposited(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
-    """Promise on the volume of the part that is not deposited."""
+    """Return the promise about the missed volume of the part."""
     what = "The whole part is deposited"
     if balance is None or balance.lines:
         return Promise(what, "not checked: the part encloses no volume", None)
@@ -174,7 +175,7 @@ def all_deposited(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
 
 
 def nothing_outside(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
-    """Promise on the volume of beads outside the part."""
+    """Return the promise about the bead volume outside the part."""
     what = "Nothing is deposited outside the part"
     if balance is None or balance.outside is None:
         return Promise(what, "not checked: the part encloses no volume", None)
@@ -188,7 +189,7 @@ def nothing_outside(balance: Balance | None, issues: Sequence[Issue]) -> Promise
 
 
 def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
-    """Promise on the volume of beads that overlap in a layer."""
+    """Return the promise about over-deposition within layers."""
     what = "Over-deposition is small"
     if balance is None or balance.twice is None:
         return Promise(
@@ -214,7 +215,7 @@ def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
 
 
 def beads_supported(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
-    """Return the promise that every bead is supported."""
+    """Return the promise about the support of every bead."""
     what = "Every bead is supported from below"
     if toolpath.checks.unsupported is None:
         return Promise(what, "not checked: the effective bead width is unknown", None)
@@ -227,8 +228,9 @@ def beads_supported(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
 
 
 def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...]:
-    """Promises on the predicted deposit, at the requested speeds, for parts with a machining allowance;
-    empty without a prediction.
+    """Return the promises about the predicted deposit of parts with a machining allowance.
+
+    The prediction uses the requested speeds. Without a prediction the result is empty.
     """
     prediction = toolpath.checks.predicted
     if prediction is None:
@@ -276,7 +278,7 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
 
 
 def wire_feed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
-    """Promise on the wire against the section of the beads, at the speeds at which they are run."""
+    """Return the promise that the wire feed matches bead section and speed."""
     what = "The wire feed matches the volume of the beads"
     features = toolpath.parts
     if process.bead_model != "none" or any(
@@ -314,7 +316,7 @@ def wire_feed(toolpath: Toolpath, process: ProcessParameters) -> Promise:
     )
 
 
-# ---- Payload check of the machine that carries the part
+# ---- Payload of the machine that carries the part
 
 WHAT = "Robot or positioner can carry the part"
 
@@ -326,26 +328,26 @@ def payload_promises(
     process: ProcessParameters,
     issues: Sequence[Issue],
 ) -> list[Promise]:
-    """Return the promise on the load of robot or positioner.
+    """Return the promise about the payload of robot or positioner.
 
     Parameters
     ----------
     motion : Motion
         The motion.
     cell : Cell
-        The cell with its carriers.
+        The cell, including the machines that carry the part.
     toolpath : Toolpath
-        Beads and substrate.
+        The beads and the substrate.
     process : ProcessParameters
-        The density.
+        The process, for the density.
     issues : sequence of Issue
-        Issues of planning; PAYLOAD breaks the promise.
+        Issues of the plan; PAYLOAD errors break the promise.
 
     Returns
     -------
     list of Promise
-        One, with the mass of the part, kg; none if nothing carries the part, or the machine is a
-        five-axis machine.
+        One promise with the mass of the part, kg. Empty if no machine carries the part, and for
+        five-axis machines.
     """
     if not cell.carriers or not cell.machine.free:
         return []
@@ -394,13 +396,13 @@ OF_MOTION = (
 class Evidence:
     """The data of a preflight.
 
-    toolpath: as printed. issues: of all stages. motion: as the program runs it, None without a
-    cell; condition, threshold: (n,) of its rows. arm: contacts of the links, None if not checked;
-    true_shapes: whether every link has a given shape. read: the result of the read-back, None
-    without one. on_controller: checks that only the controller can do. distances: between its
-    layers, see `spacing`, if known. balance: of part and beads, None if unknown. looked: contacts
-    of the nozzle while depositing, None if the job asks for no clearance. rapids: contacts of the
-    nozzle on rapids.
+    toolpath: as printed. issues: from all stages. motion: as the program runs it; None without a
+    cell. condition, threshold: (n,) inverse condition number and its minimum per motion row. arm:
+    link contacts; None if not checked. true_shapes: whether every link has a given shape. read:
+    read-back result; None if no program was read back. on_controller: checks that only the
+    controller can do. distances: layer distances, see `spacing`; None if unknown. balance: volumes
+    of part and beads; None if unknown. looked: nozzle contacts while depositing; None if the job
+    requests no clearance. rapids: nozzle contacts on rapids.
     """
 
     toolpath: Toolpath
@@ -421,7 +423,7 @@ class Evidence:
 
 
 def promises(evidence: Evidence) -> tuple[Promise, ...]:
-    """All promises, those about the deposit first."""
+    """Return all promises, starting with the deposit."""
     issues = evidence.issues
     return (
         lies_on_part(evidence.toolpath, issues),

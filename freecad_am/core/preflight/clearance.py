@@ -21,8 +21,8 @@ from ..strategies.clearance.nozzle_check import Looked
 from ..types import Array
 from .promise import PERCENT, Place, Promise, issue_place, number, row_place, select_issues
 
-ROUNDING = 1e-7  # deg or mm beyond a limit, and share of a speed, that are rounding
-COMPUTED_MM = 1e-6  # mm by which two computations of one pose may differ
+ROUNDING = 1e-7  # tolerance for rounding: deg or mm beyond a limit, or fraction of a speed
+COMPUTED_MM = 1e-6  # mm; maximum difference between two computations of the same pose
 
 
 def promises(
@@ -37,14 +37,14 @@ def promises(
     cell : Cell
         The cell.
     condition, threshold : (n,) array
-        Inverse condition number and the least one allowed; NaN if unknown.
+        Inverse condition number and its required minimum; NaN if unknown.
     digits : float, optional
-        % of the largest speed of an axis that rounded numbers of a text may add.
+        Speed that rounded numbers of a text may add, % of the maximum speed of an axis.
 
     Returns
     -------
     list of Promise
-        Four.
+        Four promises.
     """
     return [
         _limits(motion, cell),
@@ -152,7 +152,9 @@ RAPIDS = ("RAPID_COLLISION", "RAPID_UNREACHABLE", "RAPID_LIMIT", "RAPID_SINGULAR
 
 
 def nozzle(issues: Sequence[Issue], nozzle_check: Looked | None) -> Promise:
-    """Whether the nozzle keeps clear while depositing; not checked if the job asks for no clearance."""
+    """Return the promise that the nozzle stays clear while depositing; not checked if the job
+    requests no clearance.
+    """
     what = "The nozzle stays clear of deposit, part and platform while depositing"
     if nozzle_check is None:
         return Promise(what, "not checked: build_direction.clearance is none", None)
@@ -179,7 +181,7 @@ def nozzle(issues: Sequence[Issue], nozzle_check: Looked | None) -> Promise:
 
 
 def rapids(issues: Sequence[Issue], rapids_check: RapidsLooked) -> Promise:
-    """Whether the nozzle keeps clear on rapids."""
+    """Return the promise that the nozzle stays clear on rapids."""
     collisions = select_issues(issues, RAPIDS)
     how = Text(
         "retracts, travels and approaches simulated again, at {} places {} mm apart, against "
@@ -200,24 +202,24 @@ def rapids(issues: Sequence[Issue], rapids_check: RapidsLooked) -> Promise:
 
 
 def arm(motion: Motion, cell: Cell, touches: ArmTouches | None, true_shapes: bool) -> Promise:
-    """Return the promise that the links of the arm keep clear.
+    """Return the promise that the arm links stay clear.
 
     Parameters
     ----------
     motion : Motion
         The motion.
     cell : Cell
-        The cell, with the clearance of the arm.
+        The cell, including the arm clearance.
     touches : ArmTouches or None
         Contacts; None if not checked.
     true_shapes : bool
-        Whether the shapes are the manufacturer's; links drawn from the kinematics neither keep nor
-        break the promise.
+        Whether the shapes are the manufacturer's. Links drawn from the kinematics leave the
+        promise unchecked.
 
     Returns
     -------
     Promise
-        With the number of points in contact.
+        With the number of motion points in contact.
     """
     what = "The arm stays clear of part, deposit, platform, nozzle and itself"
     if touches is None:
@@ -258,7 +260,7 @@ def external_links(
     true_shapes: bool,
     issues: Sequence[Issue],
 ) -> list[Promise]:
-    """Return the promise that positioner and track keep clear.
+    """Return the promise that positioner and track stay clear.
 
     Parameters
     ----------
@@ -269,15 +271,15 @@ def external_links(
     touches : ArmTouches or None
         Contacts; None if not checked.
     true_shapes : bool
-        Whether the shapes of the robot are the manufacturer's; links drawn from the kinematics
-        neither keep nor break the promise.
+        Whether the robot shapes are the manufacturer's. Links drawn from the kinematics leave
+        the promise unchecked.
     issues : sequence of Issue
-        Issues of planning; contacts of the nozzle with these links break the promise.
+        Issues of the plan; nozzle contacts with positioner or track break the promise.
 
     Returns
     -------
     list of Promise
-        One; none for a cell without external axes.
+        One promise; empty for a cell without external axes.
     """
     if cell.external is None:
         return []
@@ -296,7 +298,7 @@ def external_links(
     rows = np.flatnonzero((touches.link != NONE) & about)
     rows = rows[
         np.argsort((touches.link[rows] <= robot_axes) & (not true_shapes), kind="stable")
-    ]  # the decisive contacts first
+    ]  # contacts that break the promise first
     met, location = "nothing", None
     if len(rows):
         location = row_place(motion, int(rows[0]))

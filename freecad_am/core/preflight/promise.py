@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A promise about a job before its start, how it was checked, and its worst value with its position."""
+"""A promise about a job before it runs: the check, its worst value and where this value occurs."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ PERCENT = 100.0
 
 
 def number(value: float) -> str:
-    """A figure with four digits; what rounding leaves is 0."""
+    """Format a value with four significant digits; rounding residues become 0."""
     if not math.isfinite(value):
         return "∞" if value > 0.0 else "-∞"
     return "0" if abs(value) < 1e-12 else f"{value:.4g}"
 
 
 class Place(NamedTuple):
-    """The location of a worst value, counted from 0; None if it does not apply."""
+    """Location of a worst value, with indices from 0; None for an index that does not apply."""
 
     layer: int
     bead: int | None
@@ -33,10 +33,10 @@ class Place(NamedTuple):
 class Promise:
     """One line of the preflight.
 
-    ok: None if it was not checked; `how` gives the reason. promise: the statement. how: the method
-    of the check. worst: its worst value, in `unit`, None without a figure. bound: the maximum of
-    `worst` in the same unit, or with at_least its minimum. place: location of the worst value; row:
-    its motion row, if it has one.
+    promise: the statement. how: the check method, or the reason for no check. ok: None if not
+    checked. worst: the worst value, in `unit`; None if the check has no value. bound: maximum of
+    `worst`, or its minimum if `at_least`. place: location of `worst`. row: motion row of `worst`,
+    if known.
     """
 
     promise: str
@@ -50,7 +50,7 @@ class Promise:
     row: int | None = None
 
     def as_dict(self) -> dict[str, Any]:
-        """The form used in report.json."""
+        """Return the promise as written to report.json."""
         return {
             "promise": self.promise,
             "how": self.how,
@@ -64,7 +64,7 @@ class Promise:
 
     @property
     def figure(self) -> str:
-        """The worst value with its unit and its bound, '' without one."""
+        """The worst value with its unit and bound; '' if there is no worst value."""
         if self.worst is None:
             return ""
         value, sign = amount(self.worst, self.unit), "≥" if self.at_least else "≤"
@@ -74,21 +74,21 @@ class Promise:
 def amount(value: float, unit: str, formatted: Callable[[float], str] = number) -> str:
     """Return a value with its unit.
 
-    Counts are singular or plural as the language wants, which some languages also have for 0.
+    Counts have translatable texts for 0, 1 and more, because some languages inflect all three.
 
     Parameters
     ----------
     value : float
         The value.
     unit : str
-        Its unit, or 'points' or 'rapids' for counts; may be empty.
+        The unit, or 'points' or 'rapids' for counts; may be empty.
     formatted : callable, optional
-        Text of a number.
+        Formats the value.
 
     Returns
     -------
     str
-        The text; counts can be translated.
+        The value and unit; translatable for counts.
     """
     if unit == "points":
         return Text(
@@ -104,12 +104,12 @@ def amount(value: float, unit: str, formatted: Callable[[float], str] = number) 
 
 
 def row_place(motion: Motion, row: int) -> Place:
-    """The place of a row of a motion."""
+    """Return the location of a motion row."""
     return Place(int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row]))
 
 
 def issue_place(issues: Sequence[Issue]) -> Place | None:
-    """The place of the first issue that has one."""
+    """Return the location of the first issue that has a layer; None if no issue has one."""
     return next(
         (
             Place(issue.layer, issue.bead, issue.point)
@@ -123,20 +123,20 @@ def issue_place(issues: Sequence[Issue]) -> Place | None:
 def select_issues(
     issues: Sequence[Issue], codes: Collection[str], level: str = ERROR
 ) -> list[Issue]:
-    """Return the issues of a level that have one of the codes.
+    """Return the issues of one level whose code is in `codes`.
 
     Parameters
     ----------
     issues : sequence of Issue
         The issues.
     codes : collection of str
-        Codes to select.
+        Issue codes to select.
     level : str, optional
-        The level; errors by default.
+        Issue level; errors by default.
 
     Returns
     -------
     list of Issue
-        In their order.
+        The selected issues, in the order of `issues`.
     """
     return [issue for issue in issues if issue.level == level and issue.code in codes]

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Inverse kinematics of machines with three prismatic and two revolute axes, in any order
+"""Inverse kinematics of machines with three prismatic and two revolute axes in any order
 (Dai 2020, section 3).
 
-The chain runs from the torch to the table (see the machine files), so tables, heads and
-mixed machines are one case. The two revolute axes bring the tool's direction in the part
-to the direction of the torch, whatever prismatic axes are between them; then the
-prismatic axes bring the point to the torch's tip.
+The chain runs from the torch to the table (see the machine files), so table, head and mixed
+machines are one case. The two revolute axes turn the tool direction in the part to the torch
+direction, regardless of prismatic axes between them. The prismatic axes then move the point to the
+torch tip.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from ...types import Array, Mask
 from ..chain import Chain
 from . import rotary_pair
 
-SLIDING, TURNING = 3, 2  # axes
+SLIDING, TURNING = 3, 2  # number of prismatic and revolute axes
 
 
 def is_five_axis(sliding: Mask) -> bool:
-    """Return whether axes are those of a five-axis machine, in any order.
+    """Whether axes are those of a five-axis machine, in any order.
 
     Parameters
     ----------
@@ -39,11 +39,11 @@ def is_five_axis(sliding: Mask) -> bool:
 
 
 class Solutions(NamedTuple):
-    """Axis values (2, n, 5), one row per branch, rad in (-pi, pi] and mm; NaN where no rotation
-    reaches the direction.
+    """Axis values in both branches.
 
-    free (n, 2): whether the first or the second revolute axis may have any value, because the
-    direction is along it. Its value is then 0, and the prismatic axes match that.
+    axes: (2, n, 5) rad in (-pi, pi] and mm; NaN where no rotation reaches the direction. free:
+    (n, 2) whether the first or second revolute axis may have any value, because the direction is
+    along it. Its value is then 0, and the prismatic axes match it.
     """
 
     axes: Array
@@ -72,21 +72,22 @@ class FiveAxis:
         Returns
         -------
         (3,) array
-            Unit vector in the flange frame; tools along it, or against it, leave this
-            joint free.
+            Unit vector in the flange frame. Tool directions along this axis, in either sense,
+            leave the joint free.
         """
         _, second, source, _ = self._pair(np.eye(3), np.array([0.0, 0.0, 1.0]))
         return np.asarray(source @ second)
 
     def turns(self, tools: Array, torch: Array) -> rotary_pair.Turns:
-        """The turns that bring tool directions (n, 3) on the flange to the direction of the torch
-        (3,) in base_link, unit vectors.
+        """Return the rotations that turn tool directions (n, 3) on the flange to the torch.
+
+        torch: (3,) torch direction in base_link. All are unit vectors.
         """
         first_axis, second_axis, source, target = self._pair(tools, torch)
         return rotary_pair.solve_turns(first_axis, second_axis, source, target)
 
     def inverse(self, points: Array, tools: Array, station: Array) -> Solutions:
-        """Return axis values that hold points and tool directions at the torch.
+        """Return the axis values that hold points and tool directions at the torch.
 
         Parameters
         ----------
@@ -95,12 +96,12 @@ class FiveAxis:
         tools : (n, 3) array
             Tool directions in the flange frame, unit vectors.
         station : (4, 4) array
-            The torch's tip in base_link, its Z pointing into the torch.
+            Torch tip in base_link, with Z into the torch.
 
         Returns
         -------
         Solutions
-            Axis values in both branches.
+            Axis values of both branches.
 
         References
         ----------
@@ -114,16 +115,16 @@ class FiveAxis:
     def locked(
         self, axis: int, angle: Array | float, tools: Array, torch: Array
     ) -> rotary_pair.Locked:
-        """Solve with four axes: one revolute axis has a given angle.
+        """Solve for four axes, with a given angle of one revolute axis.
 
-        The other revolute axis brings the tools as near as possible to the torch.
+        The other revolute axis turns the tools as close as possible to the torch.
 
         Parameters
         ----------
         axis : int
             Index of the locked axis, 0 or 1.
         angle : float or (n,) array
-            Its angle, rad.
+            Angle of the locked axis, rad.
         tools : (n, 3) array
             Tool directions in the flange frame, unit vectors.
         torch : (3,) array
@@ -132,7 +133,7 @@ class FiveAxis:
         Returns
         -------
         rotary_pair.Locked
-            Angle of the other axis and residual.
+            Angle of the other axis, and residual.
         """
         first_axis, second_axis, source, target = self._pair(tools, torch)
         lock = rotary_pair.lock_first if axis == 0 else rotary_pair.lock_second
@@ -163,7 +164,7 @@ class FiveAxis:
         )
 
     def place_points(self, turned: Array, points: Array, station: Array) -> Array:
-        """Complete revolute angles by the prismatic axes that bring points to the torch's tip.
+        """Add the prismatic axis values that move points to the torch tip.
 
         Parameters
         ----------
@@ -172,7 +173,7 @@ class FiveAxis:
         points : (n, 3) array
             Points in the flange frame, mm.
         station : (4, 4) array
-            The torch's tip in base_link.
+            Torch tip in base_link.
 
         Returns
         -------
@@ -197,10 +198,11 @@ class FiveAxis:
         return axes
 
     def _pair(self, tools: Array, torch: Array) -> tuple[Array, Array, Array, Array]:
-        """Axes, sources (n, 3) and target (3,) for `rotary_pair`, all in the frame of the first
+        """Return axes, sources (n, 3) and target (3,) for `rotary_pair`, in the frame of the first
         revolute joint.
 
-        With A, B, C the rotations at zero before, between and after the joints, A Rot(d1) B Rot(d2) C tool = torch is
+        Let A, B, C be the rotations at zero before, between and after the joints. Then
+        A Rot(d1) B Rot(d2) C tool = torch is equivalent to
         Rot(d1) Rot(B d2) (B C tool) = A^T torch.
         """
         first_joint, second_joint = self.turning

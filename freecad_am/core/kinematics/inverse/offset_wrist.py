@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Kinematics of arms with an offset wrist, such as FANUC's CRX, Yaskawa's HC10 and ABB's
-GoFa.
+"""Kinematics of arms with an offset wrist, such as FANUC CRX, Yaskawa HC10 and ABB GoFa.
 
-Axes 4 and 5 meet in a point that axis 6 moves. For each angle of axis 6 the triangle of
-shoulder, elbow and that point gives axis 4, for either side of axis 1 and either elbow.
-The remaining condition is the angle between axes 4 and 5, one function of axis 6 whose
-zeros are all solutions, at most 16. `offset_wrist_polynomial` finds them; `offset_wrist_search` finds zeros too
-near to each other for it, `on_axis` those next to axis 1.
+Axes 4 and 5 meet in a point that axis 6 moves. For each angle of axis 6, the triangle of shoulder,
+elbow and that point determines axis 4, for either side of axis 1 and either elbow. The remaining
+condition is the angle between axes 4 and 5. This is a function of axis 6 alone, and its zeros are
+all solutions, at most 16. `offset_wrist_polynomial` finds them. `offset_wrist_search` finds zeros
+that are too close to each other for it, and `exact` those next to axis 1.
 """
 
 from __future__ import annotations
@@ -25,15 +24,14 @@ from . import offset_wrist_polynomial, offset_wrist_search
 from .offset_wrist_search import Zeros
 from .shoulder_loops import TINY, Curves, geometry
 
-# ---- Solutions of arms with an offset wrist whose point of axes 4 and 5 is on axis 1, or next to
-# it
+# ---- Solutions where the point of axes 4 and 5 is on axis 1 or next to it
 
-# shares of the length of the stretched arm: distance from axis 1 below which this applies,
-# distance up to which solutions are taken from here, and distance within which no others are,
-# because their planes lack digits
+# shares of the length of the stretched arm: distance from axis 1 below which this section applies,
+# distance up to which its solutions are used, and distance within which no others are used because
+# their planes are too inaccurate
 PASS_SHARE, SOLVED_SHARE, NOISE_SHARE = 2e-5, 1e-3, 1e-7
 SAME_RAD, SAME_SINE = 1e-7, 1e-3
-MISMATCH = 1e-8  # cosine between axes 4 and 5: a change of sign due to a half turn of the plane is no solution
+MISMATCH = 1e-8  # cosine; a sign change because the plane makes a half turn is no solution
 SAMPLES, ROUNDS = 128, 40
 AXIS_STEP_RAD = 1e-2
 PLANE_SHARE = 1e-13  # of the length of the stretched arm
@@ -54,7 +52,7 @@ def exact(curves: Curves, zeros: Zeros) -> tuple[Zeros, Array]:
     zeros : Zeros
         The zeros.
     plane : (2, k) array
-        Sine and cosine of the arm's plane; NaN where the point determines the plane.
+        Sine and cosine of the arm's plane; NaN where the point itself determines the plane.
     """
     length = curves.upper + curves.fore
     row, angle = _passes(curves, length)
@@ -81,8 +79,8 @@ def exact(curves: Curves, zeros: Zeros) -> tuple[Zeros, Array]:
 def _replaced(
     curves: Curves, zeros: Zeros, solved: Zeros, plane: Array, passing: Index, noise: float
 ) -> Mask:
-    """Return which zeros (k,) at poses `passing` were found exactly, or have an undetermined
-    plane.
+    """Return which zeros (k,) at the poses `passing` are among the exact ones, or are no solutions,
+    or have an undetermined plane.
     """
     is_passing = np.zeros(curves.point.shape[2], dtype=bool)
     is_passing[passing] = True
@@ -110,7 +108,7 @@ def _replaced(
 
 
 def _point(curves: Curves, pose: Index, angle: Array) -> tuple[Array, Array, Array]:
-    """The point of axes 4 and 5 (3, k) and its first two derivatives by the angle of axis 6."""
+    """Return the point of axes 4 and 5 (3, k) and its first two derivatives by axis 6."""
     cos, sin = np.cos(angle), np.sin(angle)
     constant, by_cos, by_sin = curves.point[:, :, pose]
     around: Array = cos * by_cos + sin * by_sin
@@ -118,10 +116,10 @@ def _point(curves: Curves, pose: Index, angle: Array) -> tuple[Array, Array, Arr
 
 
 def _passes(curves: Curves, length: float) -> tuple[Index, Array]:
-    """Poses (k,) and angles of axis 6 (k,) at which the point passes close to axis 1."""
+    """Return poses (k,) and angles of axis 6 (k,) where the point passes close to axis 1."""
     centre, cos, sin = curves.point[:, :2]
-    # the point is on axis 1 if the ellipse maps a unit vector to its centre; the distance is
-    # a lower bound
+    # the point is on axis 1 if the ellipse maps a unit vector to its centre; this distance is a
+    # lower bound
     size = np.abs(cos[0] * sin[1] - cos[1] * sin[0])
     mapped = np.hypot(
         sin[1] * centre[0] - sin[0] * centre[1], cos[0] * centre[1] - cos[1] * centre[0]
@@ -141,7 +139,7 @@ def _passes(curves: Curves, length: float) -> tuple[Index, Array]:
     for _ in range(ROUNDS):
         (x, y, _), (u, v, _), (du, dv, _) = _point(curves, pose, angle)
         curved = u * u + v * v + x * du + y * dv
-        # only the Gauss-Newton part if the whole is not convex
+        # if the sum is not convex, use only its Gauss-Newton part
         curved = np.where(curved > 0.0, curved, u * u + v * v + TINY)
         angle = angle - np.clip((x * u + y * v) / curved, -AXIS_STEP_RAD, AXIS_STEP_RAD)
     x, y, _ = _point(curves, pose, angle)[0]
@@ -152,8 +150,10 @@ def _passes(curves: Curves, length: float) -> tuple[Index, Array]:
 def _solved(
     curves: Curves, length: float, pose: Index, angle: Array, elbow: Array, sense: Array
 ) -> tuple[Zeros, Array]:
-    """Zeros near angles of axis 6 (k,), of an elbow 1 or -1 and one of the two ways 1 or -1 in which axis 5 is met, and sine
-    and cosine (2, k) of the plane."""
+    """Return the zeros near angles of axis 6 (k,), and sine and cosine (2, k) of their planes.
+
+    elbow: 1 or -1. sense: 1 or -1 for the two planes in which axes 4 and 5 are at their angle.
+    """
     ahead, previous = np.zeros(len(pose)), (angle, np.full(len(pose), np.nan))
     for _ in range(ROUNDS):
         (x, y, above), (u, v, _), _ = _point(curves, pose, angle)
@@ -162,7 +162,7 @@ def _solved(
         )
         ahead = x * plane[1] + y * plane[0]
         off, slope = x * plane[0] - y * plane[1], u * plane[0] - v * plane[1]
-        # the plane turns with the angle too: use a secant method once the steps are small enough
+        # the plane turns with the angle too, so use a secant method once the steps are small enough
         moved = angle - previous[0]
         with np.errstate(invalid="ignore", divide="ignore"):
             secant = (off - previous[1]) / moved
@@ -192,8 +192,11 @@ def _plane_of_meeting(
     elbow: Array,
     sense: Array,
 ) -> tuple[Array, Array, Array, Array, Mask]:
-    """Sine and cosine (2, k) of the elbow's bend, axis 4 in the plane (2, k), axis 5 (3, k), sine and cosine (2, k) of the
-    plane in which they meet as they must, and where they can (k,)."""
+    """Return the plane in which axes 4 and 5 are at their angle, and the arm in it.
+
+    These are sine and cosine (2, k) of the elbow's bend, axis 4 in the plane (2, k), axis 5 (3, k),
+    sine and cosine (2, k) of the plane, and whether there is such a plane (k,).
+    """
     forward = ahead - curves.ahead
     squared = forward * forward + above * above
     bend = (squared - (curves.upper**2 + curves.fore**2)) / (2.0 * curves.upper * curves.fore)
@@ -219,27 +222,27 @@ def _plane_of_meeting(
 
 
 CHUNK = 2048
-MAX_SOLUTIONS = 16  # solutions of six revolute joints
-STEP_RAD = 1e-5  # rad of axis 6: step for the slope
+MAX_SOLUTIONS = 16  # of six revolute joints
+STEP_RAD = 1e-5  # step of axis 6 for the slope
 UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
 class OffsetWristArm:
-    """Lengths (mm) and zeros (rad) of the arm of a `chain` seen from a base_link whose Z is axis
-    1.
+    """Lengths (mm) and zeros (rad) of the arm of a `chain` in a base_link whose Z is axis 1.
 
-    Axis 2 is `ahead` of axis 1 and `above` base_link, `upper` and `fore` go from there to
-    axis 3 and to the point where axes 4 and 5 meet, in the arm's plane. `turns` are the
-    angles at all q 0 of plane, upper arm and forearm (rad, from X, and from Z towards the
-    plane's front), `signs` are for axes 1 to 3, `lean` turns the direction from elbow to that
-    point to axis 4. At q 0 that `point` (3,) is in base_link. `flips` says, for each of the
-    four shoulders and elbows, which sense of passing zero has q5 < 0.
+    In the arm's plane, axis 2 is `ahead` of axis 1 and `above` base_link; `upper` is the distance
+    from there to axis 3, `fore` from axis 3 to the point where axes 4 and 5 meet. `turns` are the
+    angles of the plane (from X), the upper arm and the forearm (from Z towards the plane's front)
+    with all joints at 0. `signs` are those of axes 1 to 3. `lean` is the angle from the direction
+    elbow to point to axis 4. `point` (3,) is the point in base_link with all joints at 0. `flips`
+    gives, for each of the four combinations of shoulder and elbow, the sense of passing zero for
+    which q5 < 0.
 
-    Front, back, up and down are as for a spherical wrist, with the point where axes 4 and 5
-    meet for the wrist centre. The singularities of the wrist separate flip and noflip; they
-    need not be where q5 is 0; mostly q5 < 0 is flip. Several solutions may have the same
-    words.
+    Front, back, up and down are defined as for a spherical wrist, with the point where axes 4 and 5
+    meet in place of the wrist centre. Flip and noflip are separated by the singularities of the
+    wrist, which need not be at q5 = 0; q5 is mostly negative for flip. Several solutions may share
+    a configuration.
     """
 
     chain: Chain
@@ -262,7 +265,7 @@ class OffsetWristArm:
 
     @property
     def reach(self) -> float:
-        """From axis 2 to the point of axes 4 and 5 of the stretched arm, mm."""
+        """Distance from axis 2 to the point of axes 4 and 5 of the stretched arm, mm."""
         return self.upper + self.fore
 
     def inverse(self, poses: ArrayLike) -> Array:
@@ -277,13 +280,13 @@ class OffsetWristArm:
         -------
         (16, n, 6) array
             Angles in -pi to pi, rad. The first eight are the least singular solution of
-            each configuration; then the remaining ones. NaN where there are no more.
+            each configuration, the others follow. NaN where there are no more.
         """
         return self.solutions(poses)[0]
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
-        """Joint angles (n, 6) of one configuration, the least singular of several solutions;
-        otherwise as `inverse`.
+        """Return the joint angles (n, 6) of one configuration, of several solutions the least
+        singular; otherwise as `inverse`.
         """
         result: Array = self.inverse(poses)[branch]
         return result
@@ -301,7 +304,7 @@ class OffsetWristArm:
         angles : (16, n, 6) array
             Angles in -pi to pi, rad.
         words : (16, n) int array
-            The configuration of each solution, -1 without a solution.
+            The configuration of each solution, -1 where there is none.
         """
         targets = np.asarray(poses, float)
         result = np.full((MAX_SOLUTIONS, len(targets), 6), np.nan)
@@ -327,8 +330,8 @@ class OffsetWristArm:
         return configurations.reshape(angles.shape[:-1])
 
     def bend(self, q: ArrayLike) -> Array:
-        """Distance (...) of angles `q` (..., 6) from a stretched elbow or wrist: 0 where stretched,
-        1 at a right angle.
+        """Return how far angles `q` (..., 6) are from a stretched elbow or wrist: (...) values, 0
+        where stretched, 1 at a right angle.
         """
         angles = np.asarray(q, float)
         two, three = self._plane(angles)
@@ -336,12 +339,12 @@ class OffsetWristArm:
         return bent
 
     def _plane(self, q: Array) -> tuple[Array, Array]:
-        """The angles (...) of upper arm and forearm from Z towards the plane's front."""
+        """Return the angles (...) of upper arm and forearm from Z towards the plane's front."""
         two = q[..., 1] * self.signs[1] + self.turns[1]
         return two, two - self.turns[1] + self.turns[2] + q[..., 2] * self.signs[2]
 
     def _sides(self, q: Array) -> tuple[Mask, Mask]:
-        """Whether the arm (n,) is at the back, and its elbow on the left of the line to the wrist."""
+        """Return whether the arm is at the back, and its elbow left of the line to the wrist."""
         two, three = self._plane(q)
         back = self.ahead + self.upper * np.sin(two) + self.fore * np.sin(three) < 0.0
         return np.asarray(back), np.asarray(np.sin(three - two) >= 0.0)
@@ -353,7 +356,7 @@ class OffsetWristArm:
         return result
 
     def _curves(self, poses: Array) -> Curves:
-        """The point of axes 4 and 5, and axis 5, for each angle of axis 6."""
+        """Return the point of axes 4 and 5, and axis 5, as functions of axis 6."""
         at_rest = self.chain.frames(np.zeros(6))
         axis, through = at_rest.directions[5], at_rest.origins[5]
         back = frames.inverse(at_rest.flange)
@@ -386,14 +389,16 @@ class OffsetWristArm:
         )
 
     def _solve_piece(self, poses: Array, out: Array, named: Index) -> None:
-        """Write the solutions `out` (16, m, 6) of poses (m, 4, 4), and their words (16, m)."""
+        """Write the solutions of poses (m, 4, 4) to `out` (16, m, 6), their configurations to
+        `named` (16, m).
+        """
         curves = self._curves(poses)
         zeros, plane = exact(curves, offset_wrist_polynomial.zeros(curves))
         if not len(zeros.pose):
             return
         q = self._angles(poses, curves, zeros, plane)
         words = self._words(zeros.side < 0.0, zeros.elbow > 0.0, zeros.slope > 0.0)
-        # the least singular solution of each configuration first, the others after these eight
+        # first the least singular solution of each configuration, after these eight the others
         order = np.lexsort((-np.abs(zeros.slope), words, zeros.pose))
         pose, words = zeros.pose[order], words[order]
         is_first = np.ones(len(order), dtype=bool)
@@ -409,9 +414,9 @@ class OffsetWristArm:
         named[slot[in_range], pose[in_range]] = words[in_range]
 
     def _angles(self, poses: Array, curves: Curves, zeros: Zeros, plane: Array) -> Array:
-        """Return joint angles (k, 6) of zeros, in [-pi, pi].
+        """Return the joint angles (k, 6) of zeros, in [-pi, pi].
 
-        plane: its sine and cosine (2, k), NaN where the point determines it.
+        plane: (2, k) its sine and cosine, NaN where the point determines it.
         """
         at_rest = self.chain.frames(np.zeros(6))
         z = at_rest.directions
@@ -441,14 +446,14 @@ class OffsetWristArm:
 
 
 def _subtract_angle(sine_cosine: Array, angle: float) -> Array:
-    """Return sine and cosine (2, k) of angles, given by sine and cosine, less an angle."""
+    """Return sine and cosine (2, k) of angles minus an angle; the angles as sine and cosine."""
     sine, cosine = sine_cosine
     cos, sin = math.cos(angle), math.sin(angle)
     return np.stack([sine * cos - cosine * sin, cosine * cos + sine * sin])
 
 
 def _rotate_back(axis: Array, by: Array, vectors: Array) -> Array:
-    """Return vectors (3, k) rotated back about an axis (3,) by angles given by sine and cosine
+    """Return vectors (3, k) rotated back about an axis (3,) by angles with sine and cosine `by`
     (2, k).
     """
     across = np.cross(axis, np.eye(3)).T @ vectors
@@ -459,8 +464,11 @@ def _rotate_back(axis: Array, by: Array, vectors: Array) -> Array:
 
 
 def _towards(axis: Array, vector: Array, target: Array) -> Array:
-    """Sine and cosine (2, k), of some length, of the angles about an axis (3,) that bring a vector (3,) to those wanted
-    (3, k)."""
+    """Return sine and cosine (2, k) of the angles about an axis (3,) that turn a vector (3,) to
+    targets (3, k).
+
+    Both are multiplied by the same positive length.
+    """
     across = vector - axis * float(axis @ vector)
     result: Array = np.stack([np.cross(axis, across), across]) @ target
     return result

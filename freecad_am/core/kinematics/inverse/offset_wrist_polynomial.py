@@ -1,32 +1,32 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""All solutions of arms with an offset wrist, from a trigonometric polynomial of the angle
-of axis 6.
+"""Solutions of arms with an offset wrist as zeros of a trigonometric polynomial of the angle of
+axis 6.
 
-Seen from axis 1 at the shoulder's height, with p the point of axes 4 and 5 and d the
-direction of axis 5, both functions of the angle of axis 6: H = x dx + y dy, and R, R^2 =
-x^2 + y^2, is positive in front of axis 1 and negative at the back. Axis 2 is `a` ahead of
-axis 1. In the arm's plane axis 2 sees p at (R - a, z), at a squared distance D; d is (H /
-R, dz) there. The forearm is (C p + T p') / D, where p' is p turned by 90 deg, C = (D +
-fore^2 - upper^2) / (2 fore) and T^2 = D - C^2. Axis 4 is the forearm turned by the lean,
-cosine c and sine s, and has the cosine q with axis 5. With
+Seen from axis 1 at the height of the shoulder, let p = (x, y, z) be the point of axes 4 and 5, and
+d = (dx, dy, dz) the direction of axis 5, both functions of the angle of axis 6. Let H = x dx +
+y dy, and R with R^2 = x^2 + y^2, positive in front of axis 1 and negative at the back. Axis 2 is
+`a` ahead of axis 1. In the arm's plane, p is at (R - a, z) from axis 2, at a squared distance D,
+and d is (H / R, dz). The forearm is (C p + T p') / D, where p' is p rotated by 90 deg, C = (D +
+fore^2 - upper^2) / (2 fore) and T^2 = D - C^2. Axis 4 is the forearm rotated by the lean, whose
+cosine is c and sine s. The cosine between axes 4 and 5 is q. With
 
 S = R (H + z dz) - a H,  N = z H - R^2 dz + a R dz,  X = c S + s N,  Y = c N - s S,  M =
 H^2 + R^2 dz^2
 
-the condition is C X + T Y - q D R = 0. The product for both elbows, divided by D, is
+the condition is C X + T Y - q D R = 0. Its product over both elbows, divided by D, is
 
 g = C^2 M - Y^2 - 2 q R C X + q^2 D R^2.
 
-Out of reach T^2 < 0, where the product is that of a number and its conjugate, so
-positive. Each zero of g is therefore one solution, and its T = (q D R - C X) / Y follows
-without a root, as exact near the stretched arm as elsewhere.
+Out of reach T^2 < 0. There the product is that of a number and its conjugate, and so positive.
+Each zero of g is therefore one solution. Its T = (q D R - C X) / Y needs no square root, and is
+as accurate near the stretched arm as elsewhere.
 
-D and C are of degree 1 in R and in cosine and sine, R^2 and H are of degree 2; so g = A +
-R B, where A is a trigonometric polynomial of degree 4 and B one of degree 3. A^2 - R^2
-B^2, of degree 8, has the zeros in front and at the back, the 16 solutions of six joints.
-Where a, s and q are 0, as for CRX and HC10, B is 0, and each zero of A is a solution in
-front and one at the back. `trigonometric_zeros` isolates them. Where two are too near to
-each other for that, `search` finds the zeros of the pose too.
+D and C are of degree 1 in R and in cosine and sine, R^2 and H are of degree 2. So g = A + R B with
+trigonometric polynomials A of degree 4 and B of degree 3. The zeros of A^2 - R^2 B^2, of degree 8,
+are those in front and at the back: the 16 solutions of six joints. Where a, s and q are 0, as for
+CRX and HC10, B is 0, and each zero of A is one solution in front and one at the back.
+`trigonometric_zeros` isolates the zeros. Where two are too close to each other for that,
+`offset_wrist_search` finds the zeros of the pose too.
 """
 
 from __future__ import annotations
@@ -42,18 +42,21 @@ from . import trigonometric_zeros as trigonometric
 from .offset_wrist_search import SAME_RAD, Zeros
 from .shoulder_loops import EDGE, TINY, Curves, whole_turns
 
-NEWTON, NEWTON_RAD = 12, 5e-10  # error of the flange rotations
-SAME_AS_SEARCHED_RAD = 1e-6  # zeros of the search that are closer to one found here are the same
+NEWTON, NEWTON_RAD = 12, 5e-10  # the flange rotations have this error
+SAME_AS_SEARCHED_RAD = 1e-6  # zeros of the search closer than this to one found here are the same
 TWICE_RAD = 4e-6  # distance to other zeros within which the polynomial only touches zero
-MEETS = 2e-10  # cosine between axes 4 and 5: it is off if a touch belongs to another side or elbow
+MEETS = 2e-10  # cosine between axes 4 and 5; if off by more, the zero is of another side or elbow
 NEAR_AXIS = (
-    3e-4  # share of the length of the stretched arm: closer to axis 1 the search is more accurate
+    3e-4  # share of the length of the stretched arm; closer to axis 1 the search is more accurate
 )
-SQUARE = 1e-13  # sine of the angles that must be square or straight
+SQUARE = 1e-13  # sine of an angle that must be right or straight
 
 
 class _Lengths(NamedTuple):
-    """Upper arm, forearm and `ahead` in the length of the stretched arm; cosine and sine of the lean; `square`."""
+    """Lengths `upper`, `fore` and `ahead` as shares of the length of the stretched arm.
+
+    cos, sin: of the lean. square: cosine between axes 4 and 5.
+    """
 
     upper: float
     fore: float
@@ -64,7 +67,7 @@ class _Lengths(NamedTuple):
 
 
 class _Terms(NamedTuple):
-    """R, D, C, X, Y, g and the slope of g, see the module docstring."""
+    """R, D, C, X, Y, g and the slope of g; see the module docstring."""
 
     radius: Array
     squared: Array
@@ -76,12 +79,12 @@ class _Terms(NamedTuple):
 
 
 def is_even(curves: Curves) -> bool:
-    """Whether solutions in front and at the back have the same angles of axis 6."""
+    """Return whether solutions in front and at the back have the same angles of axis 6."""
     return not curves.ahead and abs(curves.lean[1]) < SQUARE and abs(curves.square) < SQUARE
 
 
 def zeros(curves: Curves) -> Zeros:
-    """All zeros, in no order, as of `search.zeros`."""
+    """Return all zeros, in no particular order, as `offset_wrist_search.zeros` does."""
     length = 1.0 / (curves.upper + curves.fore)
     arm = _Lengths(
         curves.upper * length,
@@ -140,7 +143,7 @@ def zeros(curves: Curves) -> Zeros:
 def _touching(
     arm: _Lengths, curves: Curves, harmonics: Array, number: Index, angle: Array
 ) -> Zeros:
-    """Return solutions where the polynomial touches zero without a sign change and that
+    """Return the solutions where the polynomial touches zero without a change of sign, if they
     reproduce their pose.
     """
     even = is_even(curves)
@@ -160,7 +163,7 @@ def _touching(
 
 
 def _add_zeros(zeros: Zeros, extra: Zeros) -> Zeros:
-    """Return zeros, with additional ones that are not among them, each once."""
+    """Return the zeros, and additional ones that are not among them, each once."""
     for k in range(len(extra.pose)):
         same = (
             (zeros.pose == extra.pose[k])
@@ -179,7 +182,7 @@ def _add_zeros(zeros: Zeros, extra: Zeros) -> Zeros:
 
 
 def _merge_zeros(zeros: Zeros, searched: Zeros, close: Mask) -> Zeros:
-    """Merge zeros found here with zeros of the search at poses (n,) that are `close`, each once."""
+    """Merge zeros found here with those of the search at `close` poses (n,), each once."""
     sure = np.flatnonzero(~close[zeros.pose])
     unsure = np.flatnonzero(close[zeros.pose])
     same = np.ones((len(unsure), len(searched.pose)), dtype=bool)
@@ -222,13 +225,13 @@ def _coefficients(arm: _Lengths, harmonics: Array, even: bool) -> Array:
 
 
 def _halves(arm: _Lengths, point: list[Array], five: list[Array]) -> tuple[Array, Array, Array]:
-    """A, B and R^2, for points and axes 5 by their components."""
+    """Return A, B and R^2, for points and axes 5 given as components."""
     (x, y, z), (five_x, five_y, up) = point, five
     flat = x * x + y * y
     within = x * five_x + y * five_y
     rise = z * within - flat * up
     level = within + z * up
-    # C, X and Y by constant and factor of R
+    # C, X and Y as a constant and a factor of R
     common = (flat + z * z + (arm.ahead**2 + arm.fore**2 - arm.upper**2)) * (0.5 / arm.fore)
     factor = -arm.ahead / arm.fore
     squared = common * common + (factor * factor) * flat
@@ -238,7 +241,7 @@ def _halves(arm: _Lengths, point: list[Array], five: list[Array]) -> tuple[Array
     constant_part = squared * sizes - across * across - flat * by_across * by_across
     by_radius = 2.0 * (factor * common * sizes - across * by_across)
     if arm.square:
-        # terms in q, then terms in its square
+        # terms in q, then those in q^2
         out = arm.sin * rise - (arm.cos * arm.ahead) * within
         by_out = (arm.sin * arm.ahead) * up + arm.cos * level
         constant_part -= (2.0 * arm.square) * flat * (common * by_out + factor * out)
@@ -249,7 +252,7 @@ def _halves(arm: _Lengths, point: list[Array], five: list[Array]) -> tuple[Array
 
 
 def _side(arm: _Lengths, harmonics: Array, low: Array, high: Array) -> Array:
-    """Return 1 where the zero of a step is in front of axis 1, -1 where it is at the back, 0
+    """Return 1 where the zero of a step is in front of axis 1, -1 where it is at the back, and 0
     where this is undecided.
     """
     ends = []
@@ -264,7 +267,7 @@ def _side(arm: _Lengths, harmonics: Array, low: Array, high: Array) -> Array:
 
 
 def _evaluate(harmonics: Array, cos: Array, sin: Array) -> Array:
-    """Point and axis 5 (2, 3, k)."""
+    """Return point and axis 5: (2, 3, k)."""
     result: Array = harmonics[:, 1] * cos
     result += harmonics[:, 2] * sin
     result += harmonics[:, 0]
@@ -272,7 +275,7 @@ def _evaluate(harmonics: Array, cos: Array, sin: Array) -> Array:
 
 
 def _terms(arm: _Lengths, harmonics: Array, angle: Array, side: Array) -> _Terms:
-    """Return the terms for points and axes 5 (2, 3, 3, k) at angles (k,), on a side of axis 1."""
+    """Return the terms at angles (k,) on a side of axis 1; harmonics (2, 3, 3, k)."""
     cos, sin = np.cos(angle), np.sin(angle)
     (x, y, z), (five_x, five_y, up) = _evaluate(harmonics, cos, sin)
     moved = harmonics[:, 2] * cos
@@ -316,8 +319,9 @@ def _terms(arm: _Lengths, harmonics: Array, angle: Array, side: Array) -> _Terms
 def _roots(
     arm: _Lengths, harmonics: Array, side: Array, low: Array, high: Array, first_guess: Array
 ) -> tuple[Array, Mask, Array]:
-    """The zero (k,) in each step, whether it was found, and its distance from axis 1, by Newton's
-    method bounded to the step.
+    """Return the zero of each step, whether it was found, and its distance from axis 1: (k,) each.
+
+    Newton's method is used, kept within the step.
     """
     angle = first_guess.copy()
     step = np.full(len(first_guess), np.inf)
@@ -335,7 +339,7 @@ def _roots(
         if not len(going):
             break
         if 2 * len(going) < len(active):
-            # most have converged: continue with the others
+            # most have converged, so continue with the others only
             active = active[going]
             active_harmonics = active_harmonics[..., going]
             its_side = its_side[going]
@@ -343,12 +347,12 @@ def _roots(
 
 
 def _solutions(arm: _Lengths, harmonics: Array, pose: Index, angle: Array, side: Array) -> Zeros:
-    """The solutions at zeros of the polynomial."""
+    """Return the solutions at zeros of the polynomial."""
     terms = _terms(arm, harmonics, angle, side)
     target = arm.square * terms.squared * terms.radius
     level = terms.common * terms.level
     turn = (target - level) / np.where(terms.across == 0.0, TINY, terms.across)
-    # far from the stretched arm its height in the triangle is the more accurate of the two
+    # far from the stretched arm, the height of the point in the triangle is more accurate
     height = np.sqrt(np.maximum(terms.squared - terms.common * terms.common, 0.0))
     turn = np.where(
         np.abs(terms.radius) * height > np.abs(terms.across), np.copysign(height, turn), turn
@@ -359,7 +363,7 @@ def _solutions(arm: _Lengths, harmonics: Array, pose: Index, angle: Array, side:
 
 
 def _both_sides(front: Zeros) -> Zeros:
-    """Solutions in front of axis 1, and those at the back at the same angles."""
+    """Return the solutions in front of axis 1 and those at the back at the same angles."""
     pose, angle, side, elbow, bent, slope = (
         np.concatenate([column, column], axis=-1) for column in front
     )
@@ -370,19 +374,21 @@ def _both_sides(front: Zeros) -> Zeros:
     return Zeros(pose, angle, side, elbow, bent, slope)
 
 
-# ---- Zeros in spans of axis 6 where the polynomial of an offset wrist is as small as rounding
+# ---- Zeros in spans of axis 6 where the polynomial is as small as the rounding error
 #
-# There the point of axes 4 and 5 passes close to axis 1, or several solutions nearly meet. The
-# polynomial is a product of the conditions of both sides and both elbows, and loses its digits
-# where more than one of them is small. The condition of a single side and elbow keeps them, and
-# is sampled: `search` covers a whole turn and misses features narrow at that scale.
+# There the point of axes 4 and 5 passes close to axis 1, or several solutions nearly coincide. The
+# polynomial is a product of the conditions for both sides and both elbows, and is inaccurate where
+# more than one of them is small. The condition for one side and one elbow stays accurate, and is
+# sampled here, because `offset_wrist_search` covers a whole turn and misses such narrow features.
 
 SAMPLES = 24  # samples of a span, finer where the condition is nearly zero
-SEARCH_LEVEL = 1  # level of the search from which steps are divided: samples of a span are as close as those of its first pieces
+# level of the search from which steps are cut: samples of a span are as close as those of its first
+# pieces
+SEARCH_LEVEL = 1
 
 
 def zeros_without_digits(curves: Curves, pose: Index, low: Array, high: Array) -> Zeros:
-    """Return all zeros that samples of spans show, unordered.
+    """Return all zeros that samples of spans show, in no particular order.
 
     Both sides of axis 1 and both elbows are searched.
 
@@ -406,7 +412,7 @@ def zeros_without_digits(curves: Curves, pose: Index, low: Array, high: Array) -
         np.tile(signs, len(pose)) for signs in ([1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0])
     )
     loops, begin = whole_turns(curves, pose[span], side, elbow)
-    # one more sample at both ends, for adjacent extremes
+    # one more sample at both ends, to find extremes next to them
     share = np.arange(-1, SAMPLES + 2) / SAMPLES
     t = (low[span] - begin)[:, None] + share * (high - low)[span, None]
     samples = offset_wrist_search.find_zeros_along(curves, loops, t, SEARCH_LEVEL)
@@ -416,7 +422,7 @@ def zeros_without_digits(curves: Curves, pose: Index, low: Array, high: Array) -
 
 
 def _merge_spans(pose: Index, low: Array, high: Array) -> tuple[Index, Array, Array]:
-    """Merge spans of a pose that meet."""
+    """Merge spans of the same pose that overlap or touch."""
     order = np.lexsort((low, pose))
     pose, low, high = pose[order], low[order], high[order]
     is_first = np.ones(len(pose), dtype=bool)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""All zeros of one function of axis 6, for many poses of an arm with an offset wrist at
+"""Search for all zeros of one function of axis 6, for many poses of an arm with an offset wrist at
 once.
 
-The function is smooth on closed loops. If the triangle of shoulder, elbow and wrist
-closes at all angles of axis 6, the loops are whole turns, one for each elbow. Otherwise a
-loop goes from the stretched arm with one elbow to the other end, and back with the other
-elbow, along a cosine in which the root at the ends is smooth. Loops are sampled, more
-finely where the arm swings fast, and zeros are searched between samples of different sign
-and where samples nearly touch zero.
+The function is smooth on closed loops. If the triangle of shoulder, elbow and wrist closes at all
+angles of axis 6, there is one loop of a whole turn for each elbow. Otherwise a loop goes from the
+stretched arm to the other end with one elbow, and back with the other elbow. Its parameter enters
+axis 6 by a cosine, which makes the square root at the ends smooth. Loops are sampled, more finely
+where the arm swings fast. Zeros are searched between samples of different sign and where samples
+nearly touch zero.
 """
 
 from __future__ import annotations
@@ -35,20 +35,24 @@ SAMPLES = 36
 # share of a step by which samples are shifted, so that none falls where the arm is stretched or
 # folded: a zero there could have either sign
 SAMPLE_SHIFT = 0.37
-# a step in which the arm swings fast is divided into PIECES, up to LEVELS times
+# a step in which the arm swings fast is cut into PIECES, up to LEVELS times
 PIECES, LEVELS = 8, 6
-# cosine between axes 4 and 5; steps with smaller values at their ends are divided, and so are their
+# cosine between axes 4 and 5; steps with smaller values at both ends are cut, and so are their
 # pieces
 FLAT_VALUES = (0.02, 4e-4)
-SWING = 0.96  # cosine of the largest turn of the arm or axis 4 in a step
+SWING = 0.96  # cosine of the largest turn of the arm or of axis 4 in one step
 ROUNDS, PEAKS = 60, 12  # iterations of the search for a zero, and for an extremum
 TOUCHES = 1e-11  # cosine between axes 4 and 5; a smaller extremum counts as a zero
-SAME_RAD = 1e-7  # closer zeros count as one: rounding separates a double zero by its square root
+SAME_RAD = 1e-7  # closer zeros count as one: rounding splits a double zero by its square root
 
 
 class Zeros(NamedTuple):
-    """Zeros (k,): the pose, the angle of axis 6, side 1 or -1 of axis 1, elbow 1 on the left or -1, sine and cosine of the
-    elbow's bend (2, k), and the slope by the angle."""
+    """Zeros (k,) of the function.
+
+    pose: its number. angle: of axis 6. side: 1 in front of axis 1, -1 behind it. elbow: 1 on the
+    left, otherwise -1. bent: (2, k) sine and cosine of the bend of the elbow. slope: of the
+    function by the angle.
+    """
 
     pose: Index
     angle: Array
@@ -59,7 +63,7 @@ class Zeros(NamedTuple):
 
 
 def zeros(curves: Curves) -> Zeros:
-    """All zeros, unordered."""
+    """Return all zeros, in no particular order."""
     loops = loops_of(curves)
     t = (np.arange(-1, SAMPLES + 2) + SAMPLE_SHIFT) * (2.0 * math.pi / SAMPLES)
     return find_zeros_along(
@@ -79,11 +83,11 @@ def find_zeros_along(
     loops : Loops
         The k loops.
     t : (k, s) array
-        Samples along each loop; the first and last serve for adjacent extremes.
+        Samples along each loop; the first and the last serve only to find extremes next to them.
     level : int
-        How often steps between samples were divided.
+        How often the steps between samples have been cut.
     alike : bool, optional
-        Whether all rows of t are equal.
+        Whether all rows of t are the same.
 
     Returns
     -------
@@ -111,8 +115,8 @@ def find_zeros_along(
 
 
 def _once(zeros: Zeros) -> Index:
-    """Which zeros remain when a zero that was found twice, in a step and in one of its pieces,
-    counts once.
+    """Return which zeros to keep so that those found twice, in a step and in one of its pieces,
+    count once.
     """
     angle = zeros.angle - 2.0 * math.pi * np.round(zeros.angle / (2.0 * math.pi))
     order = np.lexsort((angle, zeros.elbow, zeros.side, zeros.pose))
@@ -136,7 +140,7 @@ def values(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array)
     side : (k,) array
         1 in front of axis 1, -1 behind it.
     elbow : (k,) array
-        1 for the elbow on the left, else -1.
+        1 for the elbow on the left, otherwise -1.
 
     Returns
     -------
@@ -147,7 +151,7 @@ def values(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array)
 
 
 def _bent(curves: Curves, pose: Index, angle: Array, side: Array, elbow: Array) -> Array:
-    """Sine and cosine (2, k) of the elbow's bend."""
+    """Return sine and cosine (2, k) of the bend of the elbow."""
     if curves.ahead:
         squared = shoulder_loops.squared_distance(curves, pose, angle, side)
     else:
@@ -168,8 +172,11 @@ def _evaluate(curves: Curves, loops: Loops, t: Array) -> Spot:
 
 
 def _sampled(curves: Curves, loops: Loops, rows: Index, t: Array, alike: bool) -> Spot:
-    """The arm (m, s) at t (m, s) along loops `rows` (m,); `alike`: all rows of t are. Less exact than `_at` close to
-    where the arm is stretched or folded, where no sample is, and in half the time."""
+    """Return the arm (m, s) at t (m, s) along loops `rows` (m,).
+
+    alike: all rows of t are the same. This takes half the time of `_evaluate`, but is less accurate
+    close to where the arm is stretched or folded, where there are no samples.
+    """
     sample_row = t[:1] if alike else t
     course, rising = np.cos(sample_row), np.where(np.sin(sample_row) >= 0.0, 1.0, -1.0)
     pose, side, elbow, middle, half = (
@@ -187,10 +194,10 @@ def _sampled(curves: Curves, loops: Loops, rows: Index, t: Array, alike: bool) -
 def _steps(
     curves: Curves, loops: Loops, rows: Index, t: Array, level: int, alike: bool = False
 ) -> tuple[Index, Array, Array]:
-    """Return loops (k,) and ends (k,), (k,) of steps with a zero, from samples t (m, s) along
+    """Return the loops (k,) and both ends (k,) of steps with a zero, from samples t (m, s) along
     loops `rows` (m,).
 
-    The first and last samples serve only for adjacent extremes.
+    The first and the last sample serve only to find extremes next to them.
     """
     spot = _sampled(curves, loops, rows, t, alike)
     value = spot.value
@@ -200,7 +207,7 @@ def _steps(
     if level < LEVELS:
         fast = _turn_cosine(spot.cosine, spot.sine) < SWING
         fast |= _turn_cosine(*spot.along) < SWING
-        # steps next to fast ones are uneven too, and a flat function may pass zero more than once
+        # steps next to fast ones are uneven too, and a flat function may cross zero more than once
         fast[:, 1:] |= fast[:, :-1]
         fast[:, :-1] |= fast[:, 1:]
         size = np.abs(value)
@@ -212,7 +219,7 @@ def _steps(
         if len(row):
             share = np.arange(-1, PIECES + 2) / PIECES
             finer = t[row, column][:, None] + share * (t[row, column + 1] - t[row, column])[:, None]
-            finer[:, -2] = t[row, column + 1]  # bit for bit as in the adjacent step
+            finer[:, -2] = t[row, column + 1]  # identical to that of the adjacent step
             steps.append(_steps(curves, loops, rows[row], finer, level + 1))
     change[:, [0, -1]] = False
     row, column = np.nonzero(change)
@@ -221,15 +228,16 @@ def _steps(
 
 
 def _turn_cosine(cosine: Array, sine: Array) -> Array:
-    """Return the cosine (m, s - 1) of the turn between neighbours of directions (m, s)."""
+    """Return the cosine (m, s - 1) of the angle between neighbouring directions (m, s)."""
     return np.asarray(cosine[:, :-1] * cosine[:, 1:] + sine[:, :-1] * sine[:, 1:])
 
 
 def _touching(
     curves: Curves, loops: Loops, rows: Index, t: Array, value: Array
 ) -> list[tuple[Index, Array, Array]]:
-    """Steps around extremes that reach zero between samples of one sign: two with a zero each, or
-    one of zero length.
+    """Return steps around extremes that reach zero between samples of the same sign.
+
+    An extreme gives two steps with one zero each, or one of zero length.
     """
     size = np.abs(value)
     same = (value[:, 1:-1] >= 0.0) == (value[:, :-2] >= 0.0)
@@ -245,7 +253,7 @@ def _touching(
     a, b, c = t[row, column], t[row, column + 1], t[row, column + 2]
     fa, fb, fc = (sign * value[row, column + k] for k in range(3))
     for _ in range(PEAKS):
-        # the least of the parabola through three samples, kept inside
+        # minimum of the parabola through three samples, kept between the outer two
         fall_left, fall_right = (b - a) * (fb - fc), (b - c) * (fb - fa)
         with np.errstate(invalid="ignore", divide="ignore"):
             x = b - 0.5 * ((b - a) * fall_left - (b - c) * fall_right) / (fall_left - fall_right)
@@ -255,7 +263,7 @@ def _touching(
         x, fx = (
             np.where(fb < 0.0, b, x),
             np.where(fb < 0.0, fb, fx),
-        )  # which is already between two zeros
+        )  # b is already between two zeros
         lower, right = fx < fb, x > b
         above = ~lower & (x != b)
         a = np.where(lower & right, b, np.where(above & ~right, x, a))
@@ -272,13 +280,13 @@ def _touching(
 
 
 def _refined(curves: Curves, loops: Loops, low: Array, high: Array) -> Array:
-    """The zero t (k,) in each step, by Chandrupatla's method, which stays in the step."""
+    """Return the zero t (k,) of each step by Chandrupatla's method, which stays in the step."""
     a, b = high.copy(), low.copy()
     fa, fb = _evaluate(curves, loops, a).value, _evaluate(curves, loops, b).value
     c, fc = a.copy(), fa.copy()
     share = np.full(len(a), 0.5)
     best = np.where(np.abs(fa) < np.abs(fb), a, b)
-    # samples are less exact: in a step with one sign at both ends, one end is zero within
+    # samples are less accurate: in a step with the same sign at both ends, one end is zero within
     # their accuracy
     active = np.flatnonzero((a != b) & (fa != 0.0) & (fb != 0.0) & ((fa >= 0.0) != (fb >= 0.0)))
     for _ in range(ROUNDS):
@@ -314,7 +322,7 @@ def _refined(curves: Curves, loops: Loops, low: Array, high: Array) -> Array:
 
 
 def _slope(curves: Curves, loops: Loops, angle: Array, elbow: Array) -> Array:
-    """The slope (k,) of the function by the angle of axis 6."""
+    """Return the slope (k,) of the function by the angle of axis 6."""
     step = 1e-6
     ahead, behind = (
         values(curves, loops.pose, angle + offset, loops.side, elbow) for offset in (step, -step)

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The closed form of a chain of joint frames, recognised from its axes, and the chain of a
-closed form.
+"""Recognition of the closed form of a chain of joint frames, and the chain of a closed form.
 
-Conditions of `spherical_wrist` (Brandstoetter, Angerer, Hofbaur 2014): axis 1 normal to axis 2, axes
-2 and 3 parallel, axis 4 normal to axis 3, axes 4, 5 and 6 through one point, 5 normal to
-both others. They are checked in this order, and the first that fails is the reason for
-having no closed form.
+Conditions of `spherical_wrist` (Brandstoetter, Angerer, Hofbaur 2014): axis 1 is normal to axis 2;
+axes 2 and 3 are parallel; axis 4 is normal to axis 3; axes 4, 5 and 6 meet in one point, and axis 5
+is normal to axes 4 and 6. They are checked in this order. The first violated condition is the
+reason why there is no closed form.
 """
 
 from __future__ import annotations
@@ -21,7 +20,8 @@ from ...types import Array
 from ..chain import Chain, JointFrames
 from .spherical_wrist import OpwArm
 
-# tolerances of directions (rad) and lines (mm), and maximum error of the closed form: those of machine files
+# tolerances of directions (rad) and lines (mm), and maximum error of the closed form, as for
+# machine files
 PARALLEL_TOLERANCE, NEAR_MM = 1e-8, 1e-5
 POSITION, ROTATION = 1e-6, 1e-9
 ROBOT = 6  # number of axes of a robot
@@ -31,10 +31,10 @@ OTHER_GEOMETRY = "correct its geometry, or choose another machine"
 
 
 def rooted(chain: Chain) -> tuple[Chain, Array]:
-    """Return the chain of a robot seen from a base_link whose Z is axis 1.
+    """Return the chain of a robot relative to a base_link whose Z is axis 1.
 
-    A base_link that has its Z on axis 1 already, up or down, stays. Any other one is turned by
-    the smallest rotation and moved to the foot of its origin on the axis.
+    A base_link that already has its Z on axis 1, up or down, stays. Any other base_link is rotated
+    by the smallest rotation and moved to the foot of its origin on the axis.
 
     Parameters
     ----------
@@ -44,9 +44,9 @@ def rooted(chain: Chain) -> tuple[Chain, Array]:
     Returns
     -------
     chain : Chain
-        The chain from the new base_link.
+        The chain relative to the new base_link.
     base : (4, 4) array
-        The previous base_link in the new one.
+        Previous base_link in the new base_link.
     """
     at_rest = chain.frames(np.zeros(chain.axes))
     axis, origin = at_rest.directions[0], at_rest.origins[0]
@@ -65,18 +65,15 @@ def rooted(chain: Chain) -> tuple[Chain, Array]:
 
 
 def track_of(chain: Chain) -> int:
-    """Return the number of axes of a track under a robot with six revolute axes; 0 for any other
-    chain.
-    """
+    """Return the number of track axes below a six-axis robot; 0 for any other chain."""
     return int(chain.axes == ROBOT + 1 and chain.sliding[0] and not chain.sliding[1:].any())
 
 
 def recognise(chain: Chain) -> OpwArm:
     """Return the closed form of a chain, in its own base_link.
 
-    Signs and offsets give c2, c3 > 0, a1 >= 0 and, if that leaves a choice, the smallest
-    turns. Raises InputError NO_CLOSED_FORM with the property of the geometry that prevents
-    it, and by how much.
+    Signs and offsets are chosen for c2, c3 > 0, a1 >= 0 and, if that leaves a choice, the smallest
+    rotations. Raises InputError NO_CLOSED_FORM with the violated condition and its deviation.
     """
     if chain.axes != 6 or chain.sliding.any():
         slides = int(chain.sliding.sum())
@@ -108,8 +105,10 @@ def recognise(chain: Chain) -> OpwArm:
 
 
 def chain_of(arm: OpwArm) -> Chain:
-    """The chain of joint frames of a closed form; its joint frames are parallel to base_link where the angles of `opw`
-    are zero."""
+    """Return the chain of joint frames of a closed form.
+
+    The joint frames are parallel to base_link where the opw angles are zero.
+    """
     steps = np.array(
         [
             (0.0, 0.0, 0.0),
@@ -139,9 +138,7 @@ def chain_of(arm: OpwArm) -> Chain:
 
 
 def _wrist_centre(at_rest: JointFrames) -> Array:
-    """Return the point (3,) where the axes of the wrist meet, after checking the directions of
-    all axes.
-    """
+    """Check the directions of all axes, and return the point (3,) where the wrist axes meet."""
     z, p = at_rest.directions, at_rest.origins
     foot = p[0] - z[0] * float(z[0] @ p[0])
     if np.hypot(z[0, 0], z[0, 1]) > PARALLEL_TOLERANCE or np.linalg.norm(foot) > NEAR_MM:
@@ -166,7 +163,7 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
         raise refused(
             Text("axes 2 and 3 are not parallel, but {:.6g} deg apart", math.degrees(off))
         )
-    # the point of axis 5 next to axis 4, and the distances of both others from it
+    # the point of axis 5 nearest to axis 4, and its distances from axes 4 and 6
     across = p[3] - p[4]
     centre: Array = p[4] + z[4] * float(z[4] @ across)
     for axis in (3, 5):
@@ -185,7 +182,7 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
 
 
 def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
-    """Return the closed form for checked axes, with this wrist centre."""
+    """Return the closed form for checked axes and this wrist centre."""
     z, p, flange = at_rest.directions, at_rest.origins, at_rest.flange
     turn1, sign2, shoulder = _shoulder(z, p)
     x, y, up = frames.about_z(turn1).T
@@ -255,11 +252,11 @@ def _arm(at_rest: JointFrames, centre: Array) -> OpwArm:
 
 
 def _shoulder(z: Array, p: Array) -> tuple[float, int, Array]:
-    """The turn of axis 1 at zero, the sign of axis 2, and the point of axis 2 next to axis 1."""
+    """Return the zero of axis 1, the sign of axis 2, and the point of axis 2 nearest to axis 1."""
     point = p[1] - z[1] * float(z[1] @ p[1])
     point = np.array([point[0], point[1], p[1, 2]])
     sign = 1
-    turn = math.atan2(-z[1, 0], z[1, 1])  # axis 2 is the y of the arm's plane
+    turn = math.atan2(-z[1, 0], z[1, 1])  # axis 2 is the Y of the arm plane
     ahead = float(point[0] * math.cos(turn) + point[1] * math.sin(turn))
     turned = ahead < -NEAR_MM or (
         abs(ahead) <= NEAR_MM
@@ -275,26 +272,26 @@ def _wrapped(angle: float) -> float:
 
 
 def _offset(turn: float) -> float:
-    """The offset of an angle at zero, rad; a half turn is a positive one."""
+    """Return the offset for an angle at zero, rad; a half turn becomes positive."""
     degrees = -clean(math.degrees(turn))
     return math.radians(degrees + 360.0 if degrees <= -180.0 else degrees + 0.0)
 
 
 def clean(value: float) -> float:
-    """Round off the numerical noise of a number."""
+    """Round off numerical noise."""
     rounded = round(value, 9)
     return rounded + 0.0 if abs(rounded - value) < 1e-11 else value
 
 
 def refused(reason: str, remedy: str = "", where: str = "geometry") -> InputError:
-    """Build the error for a machine that cannot be planned.
+    """Return the error for a machine that cannot be planned.
 
     Parameters
     ----------
     reason : str
         Why its kinematics are unsuitable.
     remedy : str, optional
-        Advice; empty for the usual one.
+        Remedy; empty for the default.
     where : str, optional
         Key of the machine file.
 

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Closed-form kinematics of arms whose axes 2, 3 and 4 are parallel, such as those of
-Universal Robots.
+"""Closed-form kinematics of arms with parallel axes 2, 3 and 4, such as Universal Robots arms.
 
-After Hawkins, "Analytic inverse kinematics for the Universal Robots", 2013, for any
-lengths and zeros. The point where axes 5 and 6 meet keeps its distance from the arm's
-plane, which gives axis 1; axis 6 relative to the normal of that plane gives axis 5; axes
-2 to 4 are a triangle. An array holds one component of all poses.
+After Hawkins, "Analytic inverse kinematics for the Universal Robots", 2013, generalised to any
+lengths and zeros. The point where axes 5 and 6 meet has a constant distance from the arm plane,
+which gives axis 1. Axis 6 relative to the normal of this plane gives axis 5. Axes 2 to 4 form a
+triangle. Arrays hold one component of all poses.
 """
 
 from __future__ import annotations
@@ -21,29 +20,27 @@ from ...geometry.frames import TURN
 from ...types import Array, ArrayLike, Index
 
 CHUNK = 2048
-# tolerance for poses that rounding puts just out of reach: beyond a stretched arm (1 - cos^2 of
-# the elbow), and beyond `beside` (mm)
+# tolerances for poses that rounding puts just out of reach: beyond a stretched arm (1 - cos^2 of
+# the elbow), and within `offset` of axis 1 (mm)
 STRETCH, TOUCH = 4e-12, 1e-9
-# added to directions that may vanish: defines an angle there and is lost in rounding elsewhere
+# added to directions that may vanish: defines an angle there; elsewhere rounding absorbs it
 HINT = 1e-150
-PARALLEL = 1e-10  # rad: closer to the normal of the arm's plane, axis 6 does not determine axis 5
+PARALLEL = 1e-10  # rad; closer to the normal of the arm plane, axis 6 does not determine axis 5
 
 
 @dataclass(frozen=True, eq=False)
 class ParallelAxesArm:
-    """Lengths (mm) of the arm, and `signs` and `zeros` (rad) of its joints: theta = sign * q +
-    zero.
+    """An arm with lengths (mm), and `signs` and `zeros` (rad) of its joints.
 
-    At all theta 0 the arm's plane is XZ of base_link, upper arm, forearm and axis 5 point up,
-    axis 6 along Y. Axis 2 is `ahead` and `above`, axes 3 and 4 are `upper` and `fore` further
-    on, and the point where axes 5 and 6 meet is at `wrist` (x, z) from axis 4 and `offset`
-    from the plane of axis 1. `tip` (4, 4) is the flange seen from that point, with X along
-    axis 5 and Z along axis 6.
+    theta = sign * q + zero. If all theta are 0, the arm plane is XZ of base_link; upper arm,
+    forearm and axis 5 point up, and axis 6 is along Y. Axis 2 is at `ahead` and `above`; axes 3 and
+    4 follow at distances `upper` and `fore`. The point where axes 5 and 6 meet is at `wrist` (x, z)
+    from axis 4 and at `offset` from the plane of axis 1. `tip` (4, 4) is the flange relative to
+    this point, with X along axis 5 and Z along axis 6.
 
-    A configuration is front if the point where axes 5 and 6 meet is on the side of axis 1 to
-    which the arm reaches at all q 0; up if the elbow is above the line from shoulder to axis
-    4, as for arms with a spherical wrist; flip if q5 < 0, counted from where axis 6 is
-    parallel to axis 4.
+    A configuration is front if the point where axes 5 and 6 meet is on the side of axis 1 that the
+    arm reaches to with all q 0. It is up if the elbow is above the line from shoulder to axis 4, as
+    for a spherical wrist. It is flip if q5 < 0, measured from where axis 6 is parallel to axis 4.
     """
 
     ahead: float
@@ -60,19 +57,19 @@ class ParallelAxesArm:
 
     @property
     def shoulder(self) -> tuple[float, float]:
-        """Distances of axis 2 ahead of axis 1 and above base_link, mm."""
+        """Distance of axis 2 ahead of axis 1, and its height above base_link, mm."""
         return self.ahead, self.above
 
     @property
     def reach(self) -> float:
-        """From axis 2 to axis 4 of the stretched arm, mm."""
+        """Distance from axis 2 to axis 4 of the stretched arm, mm."""
         return self.upper + self.fore
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Return joint angles in all configurations for flange poses.
+        """Return the joint angles of all configurations for flange poses.
 
-        Where axis 6 is parallel to axis 4, axes 4 and 6 share their turn such that the
-        elbow is square, or as near as possible; where axis 1 is free it takes theta 0.
+        If axis 6 is parallel to axis 4, axes 4 and 6 share their rotation so that the elbow is as
+        close as possible to a right angle. If axis 1 is free, its theta is 0.
 
         Parameters
         ----------
@@ -82,23 +79,22 @@ class ParallelAxesArm:
         Returns
         -------
         (8, n, 6) array
-            Angles in -pi to pi, rad. All six are NaN in a configuration that does not
-            reach.
+            Angles in -pi to pi, rad. All six are NaN for a configuration out of reach.
         """
         return self._solved(poses, tuple(range(8)))
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
-        """Joint angles (n, 6) of one configuration; otherwise as `inverse`."""
+        """Return joint angles (n, 6) of one configuration, see `inverse`."""
         result: Array = self._solved(poses, (branch,))[0]
         return result
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
-        """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
+        """Return all solutions of `inverse`, and their configurations (8, n); -1 out of reach."""
         angles = self.inverse(poses)
         return angles, np.where(np.isnan(angles[..., 0]), -1, np.arange(8)[:, None])
 
     def branch_of(self, q: ArrayLike) -> Index:
-        """The configuration (...) of joint angles `q` (..., 6)."""
+        """Return the configuration index (...) of joint angles `q` (..., 6)."""
         angles = np.asarray(q, float)
         theta = columns(angles * np.array(self.signs, float) + np.array(self.zeros))
         four = theta[1] + theta[2] + theta[3]
@@ -111,8 +107,9 @@ class ParallelAxesArm:
         return result
 
     def bend(self, q: ArrayLike) -> Array:
-        """Distance (...) of angles `q` (..., 6) from a stretched wrist or elbow: 0 where stretched,
-        1 at a right angle.
+        """Return the distance (...) of angles `q` (..., 6) from a stretched wrist or elbow.
+
+        0 if stretched, 1 at a right angle.
         """
         theta = np.asarray(q, float) * np.array(self.signs, float) + np.array(self.zeros)
         bent: Array = np.minimum(np.abs(np.sin(theta[..., 4])), np.abs(np.sin(theta[..., 2])))
@@ -131,7 +128,7 @@ class ParallelAxesArm:
         return result.transpose(0, 2, 1)
 
     def _solve_piece(self, rows: Array, branches: tuple[int, ...], out: Array) -> None:
-        """Write the angles `out` (branches, 6, m) of frames on axis 6 given by their upper three `rows` (3, 4, m)."""
+        """Write the angles (branches, 6, m) of frames on axis 6 to `out`; rows: (3, 4, m)."""
         centre = rows[:, 3]
         squared = (centre[0] + HINT) ** 2 + centre[1] ** 2
         along = squared - self.offset**2
@@ -148,14 +145,14 @@ class ParallelAxesArm:
             sine = (centre[1] * signed - (centre[0] + HINT) * self.offset) / squared
             cosine = ((centre[0] + HINT) * signed + centre[1] * self.offset) / squared
             theta_1 = self._to_machine(0, np.arctan2(sine, cosine))
-            # axis 6 in the arm's frame: ahead, along its normal, up
+            # axis 6 in the arm frame: ahead, along the plane normal, up
             axis_6 = (
                 rows[0, 2] * cosine + rows[1, 2] * sine,
                 rows[1, 2] * cosine - rows[0, 2] * sine,
                 rows[2, 2],
             )
             off = np.hypot(axis_6[0], axis_6[2])
-            # axis 5 is normal to the plane's normal and to axis 6; it is free if these are parallel
+            # axis 5 is normal to the plane normal and to axis 6; it is free if they are parallel
             five_x, five_z = axis_6[2] / off, -axis_6[0] / off
             free = off < PARALLEL
             if free.any():
@@ -168,7 +165,7 @@ class ParallelAxesArm:
             ]
             theta_6 = np.arctan2(-axis_5[1], axis_5[0])
             for turned in (0, 1):
-                # the solution with theta 5 > 0 has this direction of axis 5
+                # this direction of axis 5 belongs to the solution with theta 5 > 0
                 flip = turned if self.signs[4] > 0 else 1 - turned
                 pair = [
                     (down, of_side[2 * down + flip])
@@ -201,13 +198,13 @@ class ParallelAxesArm:
                     angles[:, np.isnan(theta_2) | np.isnan(theta_1)] = np.nan
 
     def _chosen(self, ahead: Array, above: Array) -> tuple[Array, Array]:
-        """The direction (x, z) of a free axis 5 that brings the elbow closest to a right angle."""
+        """Return the direction (x, z) of a free axis 5 that brings the elbow closest to 90 deg."""
         length = math.hypot(*self.wrist)
         distance = np.hypot(ahead, above) + HINT
         elbow_distance = np.clip(
             math.hypot(self.upper, self.fore), np.abs(distance - length), distance + length
         )
-        # from the point of axes 5 and 6 back to axis 4, by the angle at that point towards the shoulder
+        # from the point of axes 5 and 6 back to axis 4, by the angle towards the shoulder there
         cosine = np.clip(
             (distance**2 + length**2 - elbow_distance**2) / (2.0 * distance * max(length, TOUCH)),
             -1.0,
@@ -223,8 +220,8 @@ class ParallelAxesArm:
     def _triangle(self, ahead: Array, above: Array) -> tuple[Array, Array, Array]:
         """Solve the triangle of shoulder, elbow and axis 4.
 
-        Returns the angle at the elbow for the elbow on the left, and axis 4 from the shoulder
-        along the upper arm and across it; NaN where the triangle does not close.
+        Return the elbow angle for an elbow on the left, and axis 4 relative to the shoulder, along
+        and across the upper arm; NaN where the triangle does not close.
         """
         upper, fore = self.upper, self.fore
         squared = ahead * ahead + above * above
@@ -233,13 +230,13 @@ class ParallelAxesArm:
         sine = (squared - (upper - fore) ** 2) * scale * (((upper + fore) ** 2 - squared) * scale)
         unclosed = sine < -STRETCH
         if abs(upper - fore) < TOUCH:
-            unclosed |= squared < TOUCH  # folded back on the shoulder, where axis 2 is free
+            unclosed |= squared < TOUCH  # folded back onto the shoulder, where axis 2 is free
         sine = np.sqrt(np.maximum(sine, 0.0))
         sine[unclosed] = np.nan
         return np.arctan2(sine, cosine), upper + fore * cosine, fore * sine
 
     def _to_machine(self, axis: int, theta: Array) -> Array:
-        """The machine's angle in [-pi, pi] for an angle of the arm."""
+        """Convert angles of the arm to machine angles in [-pi, pi]."""
         angle = theta - self.zeros[axis] if self.zeros[axis] else theta
         turns = np.rint(angle * (1.0 / TURN))
         turns *= TURN

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The inverse kinematics of a chain of joint frames, recognised from its axes."""
+"""Inverse kinematics of a chain of joint frames, chosen by the arrangement of its axes."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from .serial_arm import SerialArm
 
 CHUNK = 2048
 WORDS = 8  # configurations
-STEPS, AGAIN = 16, 4  # maximum number of steps, and steps after which the Jacobian is recomputed
+STEPS, AGAIN = 16, 4  # most Newton steps, and steps after which the Jacobian is recomputed
 START_SHIFT_MM = 5.0  # mm
 TINY = 1e-9
-LENGTH = 500.0  # mm that count as one rad
-CONVERGED = 1e-11  # error as an angle, 5e-9 mm, below which another step is not worth its time
+LENGTH = 500.0  # mm that weigh as much as 1 rad
+CONVERGED = 1e-11  # error as an angle (5e-9 mm) below which another step is not worth its time
 SINGULAR = 2e-10  # rounding error near a singularity
 DAMPING = 1e-14
 
 
 @dataclass(frozen=True, eq=False)
 class CalibratedArm:
-    """The inverse of an arm off its nominal geometry.
+    """Inverse kinematics of an arm that deviates from its nominal geometry.
 
-    `chain` is the real arm, `nominal` the closed form of its nominal geometry. Configurations
-    are those of the closed form for the same angles. Within some millimetres of the stretched
-    arm and some tenths of a degree of the wrist's singularity, solutions that only one of the
-    two has are left out.
+    `chain` is the real arm, `nominal` the closed form of its nominal geometry. The configurations
+    are those that the closed form assigns to the same angles. Within some millimetres of the
+    stretched arm and some tenths of a degree of the wrist singularity, solutions that exist for
+    only one of the two arms are omitted.
     """
 
     nominal: SerialArm
@@ -47,7 +47,7 @@ class CalibratedArm:
 
     @property
     def followed(self) -> bool:
-        """Whether several solutions may have the same words, as in the closed form."""
+        """Whether several solutions may share a configuration, as in the closed form."""
         return self.nominal.followed
 
     @property
@@ -57,7 +57,7 @@ class CalibratedArm:
 
     @property
     def reach(self) -> float:
-        """Distance from axis 2 to the wrist of the stretched arm, mm, from the closed form."""
+        """Distance from axis 2 to the wrist of the stretched arm in mm, from the closed form."""
         return self.nominal.reach
 
     def inverse(self, poses: ArrayLike) -> Array:
@@ -71,13 +71,13 @@ class CalibratedArm:
         Returns
         -------
         (8 or 16, n, 6) array
-            Angles in -pi to pi, rad; as many solutions as the closed form has, NaN out
+            Angles in -pi to pi, rad; as many solutions as the closed form has, NaN where out
             of reach.
         """
         return self.solutions(poses)[0]
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
-        """Joint angles (n, 6) of one configuration; otherwise as `inverse`."""
+        """Return the joint angles (n, 6) of one configuration; otherwise as `inverse`."""
         targets = np.ascontiguousarray(poses, float)
         return self._solve_words(targets, branch)
 
@@ -94,7 +94,7 @@ class CalibratedArm:
         angles : (8 or 16, n, 6) array
             Angles in -pi to pi, rad.
         words : (8 or 16, n) int array
-            The configuration of each solution, -1 without a solution.
+            The configuration of each solution, -1 where there is none.
         """
         targets = np.ascontiguousarray(poses, float)
         if not self.nominal.followed:
@@ -105,21 +105,22 @@ class CalibratedArm:
         return solved, np.where(np.isnan(solved[..., 0]), -1, words)
 
     def branch_of(self, q: ArrayLike) -> Index:
-        """The configuration (...) of joint angles `q` (..., 6)."""
+        """Return the configuration (...) of joint angles `q` (..., 6)."""
         return self.nominal.branch_of(q)
 
     def bend(self, q: ArrayLike) -> Array:
-        """Distance (...) of angles `q` (..., 6) from a stretched wrist or elbow: 0 where stretched,
-        1 at a right angle.
+        """Return how far angles `q` (..., 6) are from a stretched wrist or elbow: (...) values, 0
+        where stretched, 1 at a right angle.
         """
         return self.nominal.bend(q)
 
     def _solve_words(self, poses: Array, words: int) -> Array:
-        """Return the angles (n, 6) with these words for the poses (n, 4, 4); NaN where there is no
-        solution.
+        """Return the angles (n, 6) of one configuration for the poses (n, 4, 4); NaN where there is
+        no solution.
         """
         result = self._from(self.nominal.inverse_branch(poses, words), poses, words)
-        # where the closed form just fails to reach: start from its solution slightly nearer to the shoulder, or farther from axis 1
+        # where the closed form just fails to reach, start from its solution for a point slightly
+        # nearer to the shoulder, or farther from axis 1
         for inwards, outwards in ((START_SHIFT_MM, 0.0), (0.0, START_SHIFT_MM)):
             unsolved = np.flatnonzero(np.isnan(result[:, 0]))
             if not len(unsolved):
@@ -136,8 +137,8 @@ class CalibratedArm:
         return result
 
     def _from(self, start: Array, poses: Array, words: int | Index) -> Array:
-        """Return the angles (n, 6) near `start` (n, 6) for the poses, NaN where none has these
-        words, or words (n,).
+        """Return the solutions (n, 6) for the poses near `start` (n, 6); NaN where there is none
+        in this configuration, or in these configurations (n,).
         """
         result = np.full(start.shape, np.nan)
         reached = np.flatnonzero(np.isfinite(start[:, 0]))
@@ -176,8 +177,10 @@ class CalibratedArm:
         return q
 
     def _inverse_rates(self, q: Array, points: Array) -> Array:
-        """Return matrices (n, 6, 6) from an error of the flange, at (n, 3), to angles, slightly
-        damped to stay finite near singularities.
+        """Return matrices (n, 6, 6) that convert an error of the flange at `points` (n, 3) to
+        angles.
+
+        They are slightly damped, so that they stay finite near singularities.
         """
         rates = np.array(jacobian(self.chain, q, points))
         rates[:, :3] /= LENGTH
@@ -192,7 +195,7 @@ QUARTER = 0.5 * math.pi
 NEARLY_SQUARE = math.radians(
     0.25
 )  # tolerance of a rounded or measured right angle; manufacturers do not tilt axes by so little
-EXACT = 1e-12  # rad; rounding error of a float
+EXACT = 1e-12  # rad; floating-point rounding error
 ROUNDING_MM = (
     0.0,
     0.001,
@@ -204,11 +207,11 @@ MAX_LOST_SHARE = 0.1  # share of poses near singularities that only one of an ar
 
 
 def arm_of(chain: Chain) -> SerialArm:
-    """Return the inverse of a chain seen from a base_link whose Z is axis 1, as
+    """Return the inverse kinematics of a chain in a base_link whose Z is axis 1, as
     `opw_recognition.rooted` returns it.
 
-    Raises InputError NO_CLOSED_FORM with the property of the geometry that prevents it, and
-    by how much.
+    Raises InputError NO_CLOSED_FORM, which names the property of the geometry that prevents it,
+    and the deviation.
     """
     try:
         return _exact(chain)
@@ -228,7 +231,7 @@ def arm_of(chain: Chain) -> SerialArm:
 
 
 def off_square(chain: Chain) -> float:
-    """Return the largest angle (rad) of a frame or an axis of a chain from its nearest right
+    """Return the largest angle (rad) between a frame or an axis of a chain and its nearest right
     angle.
     """
     rows = [*chain.origins[:, :3, :3], chain.flange[:3, :3]]
@@ -243,7 +246,8 @@ def off_square(chain: Chain) -> float:
 def _nearest(chain: Chain) -> SerialArm:
     """Return the closed form of a nearly square chain with rounded lengths.
 
-    Raises InputError NO_CLOSED_FORM of the chain with only its angles squared.
+    If there is none, raises the InputError NO_CLOSED_FORM of the chain whose angles alone are
+    squared.
     """
     reason: InputError | None = None
     for step in ROUNDING_MM:
@@ -258,10 +262,10 @@ def _nearest(chain: Chain) -> SerialArm:
 
 
 def square_up(chain: Chain, step: float = 0.0) -> Chain | None:
-    """Return the chain with nearly square frames and axes made square and lengths rounded to a
-    step (mm).
+    """Return the chain with nearly square frames and axes made square, and lengths rounded to a
+    multiple of `step` (mm).
 
-    It is seen from a base_link whose Z is axis 1. Returns None if nothing changes.
+    Its base_link has axis 1 as Z. Returns None if there is nothing to square.
     """
     if chain.axes != 6 or chain.sliding.any() or off_square(chain) < EXACT:
         return None
@@ -276,8 +280,8 @@ def square_up(chain: Chain, step: float = 0.0) -> Chain | None:
 
 
 def _square_rotation(rotation: Array) -> Array:
-    """Return the rotation (3, 3) of quarter turns near the given one; for other rotations,
-    square their roll, pitch and yaw.
+    """Return the rotation (3, 3) of quarter turns near the given one, or, if none is near, the
+    given one with nearly square roll, pitch and yaw made square.
     """
     nearest = np.round(rotation)
     if _is_rotation(nearest) and _angle(rotation, nearest) < NEARLY_SQUARE:
@@ -308,7 +312,7 @@ def _angle(rotation: Array, reference: Array) -> float:
 
 
 def _exact(chain: Chain) -> SerialArm:
-    """The closed form of an unchanged chain. Raises InputError NO_CLOSED_FORM."""
+    """Return the closed form of the chain as it is. Raises InputError NO_CLOSED_FORM."""
     try:
         return opw_recognition.recognise(chain)
     except InputError as error:
@@ -373,8 +377,10 @@ def parallel_axes(chain: Chain) -> ParallelAxesArm | None:
 
 
 def offset_wrist(chain: Chain) -> OffsetWristArm:
-    """The inverse of a chain of six revolute joints with a wrist that is not spherical.
-    Raises InputError NO_CLOSED_FORM with the violated condition."""
+    """Return the inverse kinematics of a chain of six revolute joints with a non-spherical wrist.
+
+    Raises InputError NO_CLOSED_FORM with the condition that is not met.
+    """
     at_rest = chain.frames(np.zeros(6))
     z, p = at_rest.directions, at_rest.origins
     if not _upright(z, p):
@@ -429,7 +435,7 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
 
 
 def _flips(arm: OffsetWristArm) -> tuple[bool, bool, bool, bool]:
-    """Whether solutions with q5 < 0 mostly pass zero upwards, for each shoulder and elbow."""
+    """Return whether most solutions with q5 < 0 pass zero upwards, for each shoulder and elbow."""
     q = np.random.default_rng(7).uniform(-math.pi, math.pi, (512, 6))
     words = arm.branch_of(q)
     back, elbow_left = words >> 2, (words >> 1 & 1) == words >> 2
@@ -439,10 +445,9 @@ def _flips(arm: OffsetWristArm) -> tuple[bool, bool, bool, bool]:
 
 
 def _agrees(arm: SerialArm, chain: Chain, lost_share: float = 0.0) -> bool:
-    """Return whether the arm reproduces joint angles of the chain, except for a share
-    `lost_share`.
+    """Return whether the arm recovers random joint angles of the chain from their poses.
 
-    This catches wrong signs and zeros.
+    A share `lost_share` of them may be missing. This catches wrong signs and zeros.
     """
     q = np.random.default_rng(6).uniform(-math.pi, math.pi, (32, 6))
     poses = chain.forward(q)
@@ -462,14 +467,15 @@ def _agrees(arm: SerialArm, chain: Chain, lost_share: float = 0.0) -> bool:
 
 
 def _upright(z: Array, p: Array) -> bool:
-    """Whether axis 1 is the Z of base_link."""
+    """Return whether axis 1 is the Z of base_link."""
     foot = p[0] - z[0] * float(z[0] @ p[0])
     return bool(np.hypot(z[0, 0], z[0, 1]) < PARALLEL_TOLERANCE and np.linalg.norm(foot) < NEAR_MM)
 
 
 def _normal(axis: Array, wrist: Array) -> Array:
-    """The normal of the arm's plane along an axis, with the wrist ahead; with the sense of the axis
-    if the wrist is on axis 1.
+    """Return the normal of the arm's plane, parallel to an axis, for which the wrist is ahead.
+
+    If the wrist is on axis 1, the normal points along the axis.
     """
     flat: Array = np.array([axis[0], axis[1], 0.0]) / np.hypot(axis[0], axis[1])
     ahead = float(np.cross(flat, (0.0, 0.0, 1.0)) @ wrist)
@@ -489,7 +495,7 @@ def _square(direction: Array, reference: Array) -> bool:
 
 
 def _meeting(p: Array, z: Array, q: Array, w: Array) -> Array | None:
-    """Return the point (3,) where two lines that are not parallel meet, None if they are skew."""
+    """Return the point (3,) where two non-parallel lines meet; None if they are skew."""
     across = np.cross(z, w)
     size = float(across @ across)
     if size < PARALLEL_TOLERANCE or abs(float((q - p) @ across)) / math.sqrt(size) > NEAR_MM:

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Two revolute axes that bring a direction of the part to another (Dai 2020, section 3).
+"""Two revolute axes that turn one direction to another (Dai 2020, section 3).
 
-Rot(first, q1) Rot(second, q2) source = target, with any two unit axes that are not
-parallel. The components of Rot(second, q2) source = v along both axes are known: v .
-second = source . second and v . first = target . first. The remaining component is across
-both axes, in either sense: two solutions, one where they meet, none where even the best
-is too long. This is solution 1 of the paper for axes of any direction. Solution 2 goes by
-the vertical and turns about X and Z twice, so it exists for every pair of directions, but
-not on two axes.
+Solve Rot(first, q1) Rot(second, q2) source = target for any two unit axes that are not parallel.
+Let v = Rot(second, q2) source. Its components along both axes are known: v . second =
+source . second and v . first = target . first. The remaining component is normal to both axes, with
+either sign. This gives two solutions, one if they coincide, and none if the components along the
+axes are too long. It is solution 1 of the paper, for axes of any direction. Solution 2 goes through
+the vertical and rotates about X and Z twice. It exists for every pair of directions, but needs more
+than two axes.
 """
 
 from __future__ import annotations
@@ -20,16 +20,16 @@ from ...geometry import frames
 from ...geometry.columns import columns
 from ...types import Array, Mask
 
-POLE = 1e-9  # sine of the angle to an axis below which a turn about it is free
-ROUNDING = 1e-12  # a square that is negative by no more than this is zero
+POLE = 1e-9  # sine of the angle to an axis below which the rotation about it is free
+ROUNDING = 1e-12  # tolerance for a square that rounding makes negative
 
 
 class Turns(NamedTuple):
-    """Angles about the first and the second axis, (2, n) rad in (-pi, pi], one row per branch;
-    NaN without a real solution.
+    """Angles about the first and second axis, with one row per branch.
 
-    first_free, second_free: (n,) where a turn about the axis changes nothing, because target
-    or source is along it; the angle is then 0.
+    first_turn, second_turn: (2, n) rad in (-pi, pi]; NaN without a real solution. first_free,
+    second_free: (n,) whether rotation about the axis has no effect, because target or source is
+    along it; the angle is then 0.
     """
 
     first_turn: Array
@@ -39,12 +39,12 @@ class Turns(NamedTuple):
 
 
 def solve_turns(first_axis: Array, second_axis: Array, source: Array, target: Array) -> Turns:
-    """Return the turns about two axes that take directions to others.
+    """Return the rotations about two axes that turn source to target directions.
 
     Parameters
     ----------
     first_axis, second_axis : (3,) array
-        Unit axes with all angles at zero; the second is nearer to the source.
+        Unit axes at zero; the second is nearer to the source.
     source : (n, 3) array
         Unit vectors to turn.
     target : (n, 3) or (3,) array
@@ -53,7 +53,7 @@ def solve_turns(first_axis: Array, second_axis: Array, source: Array, target: Ar
     Returns
     -------
     Turns
-        Angles in both branches.
+        Angles of both branches.
 
     References
     ----------
@@ -79,9 +79,10 @@ def solve_turns(first_axis: Array, second_axis: Array, source: Array, target: Ar
 
 
 class ByVertical(NamedTuple):
-    """gamma, alpha (n,) rad that turn the source to the vertical, Rx(alpha) Rz(gamma) source = Z,
-    and alpha_back, gamma_back (n,) that turn it on to the target, Rz(gamma_back) Rx(alpha_back) Z =
-    target.
+    """Rotations from source to target through the vertical.
+
+    gamma, alpha: (n,) rad, with Rx(alpha) Rz(gamma) source = Z. alpha_back, gamma_back: (n,) rad,
+    with Rz(gamma_back) Rx(alpha_back) Z = target.
     """
 
     gamma: Array
@@ -91,22 +92,22 @@ class ByVertical(NamedTuple):
 
 
 def by_vertical(source: Array, target: Array) -> ByVertical:
-    """Turn a direction to another by way of the vertical.
+    """Turn one direction to another through the vertical.
 
-    Solution 2 of section 3.2 of Dai 2020, corrected (ERRATA): gamma = atan2(X, Y), alpha = acos(Z),
-    and the same way back.
+    Solution 2 of Dai 2020, section 3.2, corrected (ERRATA): gamma = atan2(X, Y), alpha = acos(Z),
+    and the same for the way back.
 
     Parameters
     ----------
     source : (n, 3) array
         Unit vectors to turn.
     target : (n, 3) or (3,) array
-        Unit vectors to turn them to.
+        Unit vectors to reach.
 
     Returns
     -------
     ByVertical
-        Angles to the vertical and on to the target, rad.
+        Angles to the vertical, and from there to the target, rad.
     """
     target = np.broadcast_to(target, source.shape)
     gamma, back = (np.arctan2(v[0], v[1]) for v in (columns(source), columns(target)))
@@ -115,8 +116,9 @@ def by_vertical(source: Array, target: Array) -> ByVertical:
 
 
 class Locked(NamedTuple):
-    """The angle (n,), rad, of the other axis, and the residual angle (n,), rad, between the
-    directions.
+    """Result for a locked axis.
+
+    angle: (n,) of the other axis, rad. residual: (n,) angle between the directions, rad.
     """
 
     angle: Array
@@ -126,7 +128,7 @@ class Locked(NamedTuple):
 def lock_first(
     first_axis: Array, second_axis: Array, angle: Array | float, source: Array, target: Array
 ) -> Locked:
-    """Solve with four axes: the first axis has a given angle.
+    """Solve for the second axis, with a given angle of the first axis.
 
     Parameters
     ----------
@@ -142,7 +144,7 @@ def lock_first(
     Returns
     -------
     Locked
-        Angle of the second axis and residual.
+        Angle of the second axis, and residual.
     """
     target = np.broadcast_to(target, source.shape)
     turned = frames.rotation_about(first_axis, -np.broadcast_to(angle, len(source)))
@@ -152,7 +154,7 @@ def lock_first(
 def lock_second(
     first_axis: Array, second_axis: Array, angle: Array | float, source: Array, target: Array
 ) -> Locked:
-    """Solve with four axes: the second axis has a given angle.
+    """Solve for the first axis, with a given angle of the second axis.
 
     Parameters
     ----------
@@ -168,7 +170,7 @@ def lock_second(
     Returns
     -------
     Locked
-        Angle of the first axis and residual.
+        Angle of the first axis, and residual.
     """
     target = np.broadcast_to(target, source.shape)
     turned = frames.rotation_about(second_axis, np.broadcast_to(angle, len(source)))
@@ -206,9 +208,9 @@ def minimise_residual(
 
     Notes
     -----
-    The other axis compensates a direction except for its angle to that axis. The residual is
-    therefore the difference of these angles: of source and Rot(first, -angle) target to the
-    second axis, or of Rot(second, angle) source and target to the first.
+    The other axis compensates all but the angle between a direction and that axis. The residual is
+    therefore the difference of these angles: of source and Rot(first, -angle) target to the second
+    axis, or of Rot(second, angle) source and target to the first axis.
     """
     target = np.broadcast_to(target, source.shape)
 
@@ -228,7 +230,7 @@ def minimise_residual(
     for steps in (
         361,
         *[21] * 8,
-    ):  # there may be several local minima: search the whole range, then more finely
+    ):  # search the whole range, because there may be several local minima; then refine
         angles = np.linspace(low, high, steps)
         best = float(angles[int(np.argmin(worst(angles) + 1e-9 * np.abs(angles)))])
         width = 2.0 * (high - low) / (steps - 1)
@@ -237,7 +239,10 @@ def minimise_residual(
 
 
 def _heights(vectors: Array, axis: Array, other_axis: Array, angles: Array) -> Array:
-    """(n, k) other . Rot(axis, angle) vector for vectors (n, 3) and angles (k,), by Rodrigues' formula."""
+    """Return other_axis . Rot(axis, angle) vector (n, k) for vectors (n, 3) and angles (k,).
+
+    Rodrigues' formula.
+    """
     along = (vectors @ axis) * float(axis @ other_axis)
     straight, sideways = vectors @ other_axis - along, vectors @ np.cross(other_axis, axis)
     turned: Array = (
@@ -247,7 +252,7 @@ def _heights(vectors: Array, axis: Array, other_axis: Array, angles: Array) -> A
 
 
 def nearest(axis: Array, source: Array, target: Array) -> Locked:
-    """Return the turn about one axis that takes directions as near as possible to others.
+    """Return the rotation about an axis that turns directions as close as possible to targets.
 
     Parameters
     ----------
@@ -261,7 +266,7 @@ def nearest(axis: Array, source: Array, target: Array) -> Locked:
     Returns
     -------
     Locked
-        Angle, 0 where a vector is along the axis, and residual.
+        Angle, 0 if a vector is along the axis, and residual.
     """
     target = np.broadcast_to(target, source.shape)
     free = _on(source, axis) | _on(target, axis)
@@ -277,8 +282,8 @@ def _on(vectors: Array, axis: Array) -> Mask:
 
 
 def _angle(axis: Array, start: Array, end: Array) -> Array:
-    """Return the turn (..., n) about an axis from one vector to the other, by their components
-    across the axis.
+    """Return the rotation (..., n) about an axis between the components of two vectors normal to
+    the axis.
     """
     sine = np.cross(start, end) @ axis
     cosine = (start * end).sum(axis=-1) - (start @ axis) * (end @ axis)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The interface of the inverse kinematics of a serial arm that planning uses, for every kind of
-wrist.
-"""
+"""The interface between planning and the inverse kinematics of serial arms of all wrist types."""
 
 from __future__ import annotations
 
@@ -11,17 +9,18 @@ from ...types import Array, ArrayLike, Index
 
 
 class SerialArm(Protocol):
-    """The inverse of an arm with six revolute joints. Poses are flange poses in base_link, mm;
-    angles serial, rad.
+    """The inverse kinematics of an arm with six revolute joints.
 
-    Configurations follow the words of `spherical_wrist.branch_name`, the first index of `inverse`; each
-    kind of arm defines their meaning.
+    Poses are flange poses in base_link, mm. Angles are serial joint values, rad. The first index of
+    `inverse` is the configuration, named by `spherical_wrist.branch_name`; each type of arm defines
+    the meaning of the names.
     """
 
     @property
     def followed(self) -> bool:
-        """Whether several solutions may have the same words, so that along a bead the previous
-        solution must be followed.
+        """Whether several solutions may share a configuration name.
+
+        Planning then follows one solution along a bead.
         """
 
     @property
@@ -38,10 +37,10 @@ class SerialArm(Protocol):
 
     @property
     def reach(self) -> float:
-        """From axis 2 to the wrist of the stretched arm, mm."""
+        """Distance from axis 2 to the wrist of the stretched arm, mm."""
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Return joint angles of all solutions for flange poses.
+        """Return the joint angles of all solutions for flange poses.
 
         Parameters
         ----------
@@ -51,20 +50,20 @@ class SerialArm(Protocol):
         Returns
         -------
         (configurations, n, 6) array
-            Angles in -pi to pi, rad; NaN out of reach. The first eight follow the
-            words; further ones, for arms that are `followed`, repeat the words of one
-            of the first.
+            Angles in -pi to pi, rad; NaN out of reach. The first eight solutions are the
+            configurations in order. Arms that are `followed` may have more solutions, which
+            share the name of one of the first eight.
         """
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
-        """Return joint angles of one configuration.
+        """Return the joint angles of one configuration.
 
         Parameters
         ----------
         poses : (n, 4, 4) array
             Flange poses in base_link, mm.
         branch : int
-            Index of the configuration.
+            Configuration index.
 
         Returns
         -------
@@ -73,7 +72,7 @@ class SerialArm(Protocol):
         """
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
-        """Return all solutions of `inverse` with their configurations.
+        """Return all solutions of `inverse` and their configurations.
 
         Parameters
         ----------
@@ -85,11 +84,11 @@ class SerialArm(Protocol):
         angles : (configurations, n, 6) array
             Angles in -pi to pi, rad.
         words : (configurations, n) int array
-            The configuration of each solution, -1 without a solution.
+            Configuration index of each solution; -1 without a solution.
         """
 
     def branch_of(self, q: ArrayLike) -> Index:
-        """Return the configuration of joint angles.
+        """Return the configuration index of joint angles.
 
         Parameters
         ----------
@@ -99,11 +98,11 @@ class SerialArm(Protocol):
         Returns
         -------
         (...) array of int
-            Numbers of the configurations, 0 to 7.
+            Configuration indices, 0 to 7.
         """
 
     def bend(self, q: ArrayLike) -> Array:
-        """Return how far the arm is from a stretched elbow or wrist.
+        """Return the distance of the arm from a stretched elbow or wrist.
 
         Parameters
         ----------
@@ -113,5 +112,5 @@ class SerialArm(Protocol):
         Returns
         -------
         (...) array
-            0 where stretched, 1 at a right angle.
+            0 if stretched, 1 at a right angle.
         """

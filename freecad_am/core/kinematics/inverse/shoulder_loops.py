@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ranges of axis 6 where the triangle of shoulder, elbow and wrist closes, for an arm whose
-axis 2 is ahead of axis 1.
+"""Ranges of axis 6 in which the triangle of shoulder, elbow and wrist closes.
 
-The squared distance of the point of axes 4 and 5 from axis 2 contains a root; squared
-once more, the angles at which the arm is stretched or folded are the zeros of a
-trigonometric polynomial of degree 2: eigenvalues of a matrix of four rows.
+For an arm whose axis 2 is ahead of axis 1, the squared distance of the point of axes 4 and 5 from
+axis 2 contains a square root. Squared once more, the angles where the arm is stretched or folded
+are zeros of a trigonometric polynomial of degree 2, found as eigenvalues of a 4 x 4 matrix.
 """
 
 from __future__ import annotations
@@ -25,10 +24,11 @@ TINY = 1e-150
 class Curves:
     """Geometry of n poses, mm.
 
-    `point` (3, 3, n) and `five` (3, 3, n) are constant, cosine and sine parts of the point
-    where axes 4 and 5 meet, from axis 1 at the shoulder's height, and of the direction of
-    axis 5, by components. `lean` is cosine and sine of the turn from the forearm to axis 4,
-    `square` the cosine between axes 4 and 5; axis 2 is `ahead` of axis 1.
+    `point` (3, 3, n) and `five` (3, 3, n) are functions of axis 6: the point where axes 4 and 5
+    meet, relative to axis 1 at the height of the shoulder, and the direction of axis 5. The first
+    index selects the constant, cosine or sine part, the second the component. `lean` holds cosine
+    and sine of the angle from the forearm to axis 4, `square` is the cosine between axes 4 and 5.
+    Axis 2 is `ahead` of axis 1.
     """
 
     point: Array
@@ -41,9 +41,12 @@ class Curves:
 
 
 class Spot(NamedTuple):
-    """The arm for given angles of axis 6 (k,): sine and cosine of the plane, the point ahead and above in it, and the
-    direction from elbow to point; axis 5 by its components; `value`: the function whose zeros are
-    solutions; `along` (2, k): axis 4."""
+    """The arm at given angles of axis 6 (k,).
+
+    sine, cosine: of the plane. ahead, above: the point in the plane. fore_ahead, fore_above: the
+    direction from elbow to point. five: components of axis 5. value: the function whose zeros are
+    the solutions. along: (2, k) axis 4.
+    """
 
     sine: Array
     cosine: Array
@@ -57,7 +60,7 @@ class Spot(NamedTuple):
 
 
 class Plane(NamedTuple):
-    """The values of `Spot` that do not depend on the elbow; `five` by its components."""
+    """The values of `Spot` that do not depend on the elbow; `five` holds the components."""
 
     sine: Array
     cosine: Array
@@ -80,18 +83,18 @@ def geometry(curves: Curves, pose: Index, angle: Array, side: Array, bent: Array
     side : (k,) array
         1 in front of axis 1, -1 behind it.
     bent : (2, k) array
-        Sine and cosine of the elbow's bend.
+        Sine and cosine of the bend of the elbow.
 
     Returns
     -------
     Spot
-        Arm and function value.
+        The arm and the value of the function.
     """
     return spot_of(curves, plane_of(curves, pose, angle, side), bent)
 
 
 def plane_of(curves: Curves, pose: Index, angle: Array, side: Array) -> Plane:
-    """Return the arm at angles of axis 6 without its elbow.
+    """Return the arm without its elbow at angles of axis 6.
 
     Parameters
     ----------
@@ -107,7 +110,7 @@ def plane_of(curves: Curves, pose: Index, angle: Array, side: Array) -> Plane:
     Returns
     -------
     Plane
-        Plane of the arm and point in it.
+        The plane of the arm, and the point in it.
     """
     cos, sin = np.cos(angle), np.sin(angle)
     x, y, above = (
@@ -124,7 +127,7 @@ def plane_of(curves: Curves, pose: Index, angle: Array, side: Array) -> Plane:
 
 
 def spot_of(curves: Curves, plane: Plane, bent: Array | tuple[Array, Array]) -> Spot:
-    """Complete the arm in its plane by the elbow.
+    """Return the arm in its plane, with the elbow.
 
     Parameters
     ----------
@@ -133,15 +136,15 @@ def spot_of(curves: Curves, plane: Plane, bent: Array | tuple[Array, Array]) -> 
     plane : Plane
         The arm without its elbow.
     bent : (2, k) array
-        Sine and cosine of the elbow's bend.
+        Sine and cosine of the bend of the elbow.
 
     Returns
     -------
     Spot
-        Arm and function value.
+        The arm and the value of the function.
     """
     sine, cosine, ahead, above, five = plane
-    # the forearm from the point: the direction to the shoulder, rotated by the angle of the
+    # direction of the forearm at the point: that to the shoulder, rotated by the angle of the
     # triangle
     squared = ahead * ahead + above * above + TINY
     common = (curves.fore + curves.upper * bent[1]) / squared
@@ -158,7 +161,7 @@ def spot_of(curves: Curves, plane: Plane, bent: Array | tuple[Array, Array]) -> 
 
 NEWTON = 3
 LONGEST_STEP_RAD = 1e-3
-ENDS = 1e-12  # share of the squared length; a position this close to stretched or folded is an end
+ENDS = 1e-12  # share of the squared length; largest error at a stretched or folded end
 SHORTEST_RAD = 1e-12
 
 
@@ -175,15 +178,15 @@ def spans(curves: Curves, side: float) -> tuple[Index, Array, Array, Mask, Mask,
     Returns
     -------
     pose : (k,) int array
-        Pose of each span.
+        The pose of each span.
     begin, end : (k,) array
         Its ends, rad.
     stretched : (k,) bool array
-        Whether the arm is stretched at the beginning, else folded.
+        Whether the arm is stretched at the beginning, otherwise folded.
     folded : (k,) bool array
-        Whether the arm is folded at the end, else stretched.
+        Whether the arm is folded at the end, otherwise stretched.
     full_circles : (m,) int array
-        Poses that are reached at all angles.
+        Poses that are reached at all angles of axis 6.
     """
     lengths: Array = np.array(
         [(curves.upper + curves.fore) ** 2, (curves.upper - curves.fore) ** 2]
@@ -249,8 +252,8 @@ def squared_distance(curves: Curves, pose: Index, angle: Array, side: float | Ar
 def _length_difference(
     curves: Curves, pose: Index, angle: Array, side: float, lengths: Array
 ) -> tuple[Array, Array]:
-    """Return the difference (...) of the squared distance from the nearer of both squared
-    lengths, and its slope.
+    """Return how much the squared distance differs from the nearer of the two squared lengths, and
+    its slope: (...) each.
     """
     cos, sin = np.cos(angle), np.sin(angle)
     harmonics = [
@@ -275,7 +278,7 @@ def _length_difference(
 
 
 def difference(curves: Curves, pose: Index, angle: Array, half: Array, side: Array) -> Array:
-    """Return the change of the squared distance between two angles without loss of digits.
+    """Return the change of the squared distance between two angles without cancellation.
 
     Parameters
     ----------
@@ -293,11 +296,11 @@ def difference(curves: Curves, pose: Index, angle: Array, half: Array, side: Arr
     Returns
     -------
     (k,) array
-        Squared distance at the second angle less that at the first, mm2.
+        Squared distance at the second angle minus that at the first, mm2.
     """
     far_angle = angle + 2.0 * half
     constant, cos, sin = (curves.point[harmonic][:, pose] for harmonic in range(3))
-    # of cosine and sine between both angles
+    # changes of cosine and sine between the two angles
     by_cos = -2.0 * np.sin(half) * np.sin(angle + half)
     by_sin = 2.0 * np.sin(half) * np.cos(angle + half)
     squares = 2.0 * ((constant * cos).sum(axis=0) * by_cos + (constant * sin).sum(axis=0) * by_sin)
@@ -316,12 +319,13 @@ def _closes(squared: Array, lengths: Array) -> Mask:
 
 
 def _angles(curves: Curves, squared: float) -> Array:
-    """The angles (n, 4) in [0, 2 pi) at which the squared distance may be `squared`, on either
-    side; some are no solutions.
+    """Return the angles (n, 4) in [0, 2 pi) at which the squared distance may be `squared`, on
+    either side; some of them are not solutions.
     """
     constant, cos, sin = curves.point
     mean = (constant**2).sum(axis=0) + 0.5 * ((cos**2).sum(axis=0) + (sin**2).sum(axis=0))
-    # (p p + k)^2 - (2 a)^2 (p p - z z), by constant, cosine, sine, cosine and sine of twice the angle
+    # (p p + k)^2 - (2 a)^2 (p p - z z): constant, factors of cosine and sine of the angle, and of
+    # twice the angle
     linear = np.stack([2.0 * (constant * cos).sum(axis=0), 2.0 * (constant * sin).sum(axis=0)])
     shifted, twice = mean + curves.ahead**2 - squared, 4.0 * curves.ahead**2
     squared_terms = _square(shifted, *linear)
@@ -354,8 +358,8 @@ def _angles(curves: Curves, squared: float) -> Array:
 
 
 def _square(constant: Array, cos: Array, sin: Array) -> Array:
-    """Return the square (5, n) of constant + cos c + sin s, as constant, cosine and sine, and
-    cosine and sine of twice the angle.
+    """Return the square (5, n) of constant + cos c + sin s: the constant and the factors of cosine
+    and sine of the angle and of twice the angle.
     """
     return np.stack(
         [
@@ -368,21 +372,21 @@ def _square(constant: Array, cos: Array, sin: Array) -> Array:
     )
 
 
-EDGE = 1e-12  # cosine of axis 6: error by which rounding may put a stretched arm out of reach
+EDGE = 1e-12  # error of a cosine of axis 6: rounding may put a stretched arm out of reach by it
 
 
 class Loops(NamedTuple):
     """Loops (k,) of axis 6.
 
-    pose and side; `elbow` 1 or -1 for whole turns, 0 for others. The angle of axis 6 is
-    middle - half cos t, or middle + t for whole turns. `near_angle`, `far_angle`: the angles,
-    from where the point is farthest out, at which the arm is stretched and folded;
-    `stretched`, `folded`: whether it ever is. `mean`, `swing`: mean and half the difference
-    of squared distances from the shoulder.
+    Each has a pose and a side. `elbow` is 1 or -1 for whole turns, 0 for others. The angle of
+    axis 6 is middle - half cos t, or middle + t for whole turns. `near_angle` and `far_angle` are
+    the angles where the arm is stretched and where it is folded, counted from the angle where the
+    point is farthest out. `stretched` and `folded` say whether it ever is. `mean` and `swing` are
+    mean and half the range of the squared distance from the shoulder.
 
-    For an arm whose axis 2 is ahead of axis 1, `near_angle` and `far_angle` are the angles at
-    both ends, `stretched` and `folded` whether it is stretched at the first and folded at the
-    last, `mean` and `swing` 0.
+    For an arm whose axis 2 is ahead of axis 1, `near_angle` and `far_angle` are the angles at both
+    ends, `stretched` and `folded` say whether it is stretched at the first end and folded at the
+    last, and `mean` and `swing` are 0.
     """
 
     pose: Index
@@ -398,7 +402,7 @@ class Loops(NamedTuple):
     swing: Array
 
     def select(self, rows: Index) -> Loops:
-        """Return selected loops.
+        """Return the loops with the given numbers.
 
         Parameters
         ----------
@@ -408,7 +412,7 @@ class Loops(NamedTuple):
         Returns
         -------
         Loops
-            Their rows.
+            The selected loops.
         """
         columns: tuple[Any, ...] = self
         return Loops(*(column[rows] for column in columns))
@@ -461,14 +465,14 @@ def whole_turns(curves: Curves, pose: Index, side: Array, elbow: Array) -> tuple
     side : (k,) array
         1 in front of axis 1, -1 behind it.
     elbow : (k,) array
-        1 for the elbow on the left, else -1.
+        1 for the elbow on the left, otherwise -1.
 
     Returns
     -------
     loops : Loops
-        Loops as if the arm reached its point everywhere.
+        Loops for an arm that reaches its point at every angle.
     begin : (k,) array
-        Angles of axis 6 at which they begin, rad.
+        Angles of axis 6 where they begin, rad.
     """
     none = np.zeros(len(pose))
     mean, swing, out = (
@@ -478,7 +482,10 @@ def whole_turns(curves: Curves, pose: Index, side: Array, elbow: Array) -> tuple
 
 
 def _distances(curves: Curves) -> tuple[Array, Array, Array]:
-    """Mean and half the difference (n,) of squared distances from the shoulder, and the angle of the farthest."""
+    """Return mean and half the range (n,) of the squared distance from the shoulder.
+
+    The third result is the angle of axis 6 at which it is largest.
+    """
     constant, cos, sin = curves.point
     radius = 0.5 * ((cos * cos).sum(axis=0) + (sin * sin).sum(axis=0))
     mean = (constant * constant).sum(axis=0) + radius
@@ -517,7 +524,7 @@ def _offset_loops(curves: Curves) -> Loops:
 
 
 def angle_along(curves: Curves, loops: Loops, t: Array) -> tuple[Array, Array]:
-    """Return the angle of axis 6 and the elbow's bend along loops.
+    """Return the angle of axis 6 and the bend of the elbow along loops.
 
     Parameters
     ----------
@@ -533,7 +540,7 @@ def angle_along(curves: Curves, loops: Loops, t: Array) -> tuple[Array, Array]:
     angle : (k,) array
         Angle of axis 6, rad.
     bent : (2, k) array
-        Sine and cosine of the elbow's bend, exact to the last digits where the arm is
+        Sine and cosine of the bend of the elbow, accurate to the last digits where the arm is
         stretched or folded.
     """
     full_circle = loops.elbow != 0.0
@@ -560,7 +567,8 @@ def angle_along(curves: Curves, loops: Loops, t: Array) -> tuple[Array, Array]:
     scale = 1.0 / (2.0 * curves.upper * curves.fore)
     squared = loops.mean + loops.swing * np.cos(from_out)
     begin, end = np.sin(half * course), np.sin(half * cosine_half * cosine_half)
-    # squared distances to where the arm is stretched, and to where it is folded: differences of cosines as products
+    # change of the squared distance to where the arm is stretched, and to where it is folded, with
+    # differences of cosines as products
     factor = np.where(loops.folded, np.sin(0.5 * (from_out + loops.near_angle)), end)
     to_stretched = np.where(
         loops.stretched,
@@ -580,8 +588,10 @@ def angle_along(curves: Curves, loops: Loops, t: Array) -> tuple[Array, Array]:
 def _bent_from_end(
     curves: Curves, loops: Loops, angle: Array, elbow: Array, end: tuple[Array, Array, Array]
 ) -> Array:
-    """Sine and cosine (2, k) of the elbow's bend, exact near the end of a span: its angle, half the way since, and whether
-    the arm is stretched there."""
+    """Return sine and cosine (2, k) of the bend of the elbow, accurate near the ends of a span.
+
+    end: angle of the end, half the angle from there, and whether the arm is stretched there.
+    """
     ends, since, stretched = end
     longest, shortest = (curves.upper + curves.fore) ** 2, (curves.upper - curves.fore) ** 2
     squared = squared_distance(curves, loops.pose, angle, loops.side)

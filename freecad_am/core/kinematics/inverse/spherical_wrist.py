@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Closed-form kinematics of six-axis arms with parallel axes 2 and 3 and a spherical wrist, over arrays of poses.
+"""Closed-form kinematics of six-axis arms with parallel axes 2 and 3 and a spherical wrist.
 
-Geometry and parameters: Brandstoetter, Angerer, Hofbaur, "An analytical solution of the inverse kinematics
-problem of industrial serial manipulators with an ortho-parallel basis and a spherical wrist", 2014.
+Geometry and parameters: Brandstoetter, Angerer, Hofbaur, "An analytical solution of the inverse
+kinematics problem of industrial serial manipulators with an ortho-parallel basis and a spherical
+wrist", 2014. All functions work on arrays of poses.
 """
 
 from __future__ import annotations
@@ -18,13 +19,13 @@ import numpy as np
 from ...geometry.columns import columns
 from ...types import Array, ArrayLike, Index, Mask
 
-# ---- The inverse of an arm with a spherical wrist, as in `opw`: the arithmetic
+# ---- Arithmetic of the inverse
 
 CHUNK = 4096
-# tolerance for poses that rounding puts just out of reach: beyond a stretched arm (1 - cos^2 of
-# the elbow), and beyond b (mm)
+# tolerances for poses that rounding puts just out of reach: beyond a stretched arm (1 - cos^2 of
+# the elbow), and within b of axis 1 (mm)
 STRETCH, TOUCH = 4e-12, 1e-9
-# added to directions that may vanish: gives the angle 0 there and is lost in rounding elsewhere
+# added to directions that may vanish: the angle is then 0; elsewhere rounding absorbs it
 HINT = 1e-150
 
 
@@ -48,7 +49,8 @@ def solve(arm: OpwArm, poses: ArrayLike, branches: tuple[int, ...]) -> Array:
     poses = np.asarray(poses, float)
     count = len(poses)
     by_component = np.moveaxis(poses[:, :3, :], 0, -1)
-    # angles are stored by joint, with (n, 6) as a view: code that works joint by joint finds them contiguous
+    # angles are stored by joint, with an (n, 6) view, so they are contiguous for code that works
+    # joint by joint
     result = np.empty((len(branches), 6, count))
     with np.errstate(invalid="ignore", divide="ignore"):
         for start in range(0, count, CHUNK):
@@ -58,8 +60,11 @@ def solve(arm: OpwArm, poses: ArrayLike, branches: tuple[int, ...]) -> Array:
 
 
 class _Side(NamedTuple):
-    """One shoulder over m poses: the arm's plane as `sine`, `cosine` of its angle about Z, and in it the wrist
-    centre from axis 2: `ahead` along the plane's X, `above` along Z. Lengths in mm."""
+    """One shoulder solution for m poses.
+
+    sine, cosine: of the angle of the arm plane about Z. ahead, above: wrist centre relative to
+    axis 2, along X of the arm plane and along Z, mm.
+    """
 
     sine: Array
     cosine: Array
@@ -68,11 +73,13 @@ class _Side(NamedTuple):
 
 
 class _Triangle(NamedTuple):
-    """Shoulder, elbow and wrist centre of one side, for the elbow on the left of the way to the wrist centre.
+    """Shoulder, elbow and wrist centre of one side, for an elbow left of the line to the wrist
+    centre.
 
-    `bend` is the angle between upper arm and forearm, (`along`, `across`) the wrist centre from the shoulder,
-    along the upper arm and across it. Axis 4 is (ahead, above) times the first of `common` + `turn` plus (above,
-    -ahead) times the second. For the elbow on the right, `bend`, `across` and `turn` change their sign.
+    bend: angle between upper arm and forearm. along, across: wrist centre relative to the shoulder,
+    along and across the upper arm. The direction of axis 4 is (ahead, above) times
+    `common[0] + turn[0]` plus (above, -ahead) times `common[1] + turn[1]`. For an elbow on the
+    right, `bend`, `across` and `turn` change sign.
     """
 
     bend: Array
@@ -83,7 +90,7 @@ class _Triangle(NamedTuple):
 
 
 def _solve_piece(arm: OpwArm, rows: Array, branches: tuple[int, ...], out: Array) -> None:
-    """Write the angles `out` (branches, 6, m) of poses given by their upper three `rows` (3, 4, m)."""
+    """Write the angles (branches, 6, m) of poses to `out`; rows: (3, 4, m) of the poses."""
     centre = rows[:, 3] - arm.c4 * rows[:, 2]
     distance = _distance(arm, centre)
     for back in (0, 1):
@@ -99,14 +106,14 @@ def _solve_piece(arm: OpwArm, rows: Array, branches: tuple[int, ...], out: Array
         flange = _about_axis_1(side, rows)
         for down in (0, 1):
             pair = (slots.get(2 * down), slots.get(2 * down + 1))
-            # the wrist solution with opw's q5 >= 0; the sign decides whether that is a flip
+            # solve for q5 >= 0 in opw angles; the sign of axis 5 decides whether this is the flip
             plain, flipped = pair if arm.signs[4] > 0 else pair[::-1]
             angles = flipped if plain is None else plain
             if angles is None:
                 continue
             angles[0] = base
-            # with the direction of q1 to the right, a wrist centre at the back has
-            # the upper elbow on the right
+            # viewed with q1 pointing right, a wrist centre at the back has its upper elbow on the
+            # right
             direction = _arm(arm, side, triangle, elbow_left=back == down, angles=angles)
             _wrist(arm, rows[2], flange, direction, angles)
             if flipped is not None:
@@ -114,8 +121,8 @@ def _solve_piece(arm: OpwArm, rows: Array, branches: tuple[int, ...], out: Array
 
 
 def _distance(arm: OpwArm, centre: Array) -> tuple[Array, Array]:
-    """Return the squared distance of the wrist centre from axis 1, and its distance along the
-    arm's plane; NaN within b. mm.
+    """Return the squared distance of the wrist centre from axis 1, mm^2, and its distance along the
+    arm plane, mm; the latter is NaN within b of axis 1.
     """
     centre[0] += HINT
     squared = centre[0] * centre[0]
@@ -131,7 +138,9 @@ def _distance(arm: OpwArm, centre: Array) -> tuple[Array, Array]:
 
 
 def _side(arm: OpwArm, centre: Array, distance: tuple[Array, Array], back: int) -> _Side:
-    """The shoulder `back` or not: the wrist centre is at (+-along, b) in the frame turned with axis 1."""
+    """Return the front or `back` shoulder: the wrist centre is at (+-along, b) in the frame of
+    axis 1.
+    """
     squared, along = distance
     signed = -along if back else along
     if arm.b == 0.0:
@@ -145,27 +154,28 @@ def _side(arm: OpwArm, centre: Array, distance: tuple[Array, Array], back: int) 
 
 
 def _triangle(arm: OpwArm, side: _Side) -> tuple[_Triangle, Mask | None]:
-    """The triangle of a side, and the poses at which it does not close; None if it always closes."""
+    """Return the triangle of a side, and the poses where it does not close; None if all close."""
     upper, fore = arm.c2, arm.forearm
     squared = side.ahead * side.ahead
     squared += side.above * side.above
     scale = 1.0 / (2.0 * upper * fore)
     cosine = squared - (upper**2 + fore**2)
     cosine *= scale
-    # 1 - cosine^2 as a product keeps the digits of an arm that is nearly stretched or folded
+    # 1 - cosine^2 as a product keeps precision for an arm that is nearly stretched or folded
     sine = squared - (upper - fore) ** 2
     sine *= scale
     sine *= (upper + fore) ** 2 * scale - scale * squared
     unclosed = sine < -STRETCH
     if abs(upper - fore) < TOUCH:
-        # folded back on the shoulder, where axis 2 is free and the arm has no direction
+        # folded back onto the shoulder: axis 2 is free, and the direction of the arm is undefined
         unclosed |= squared < TOUCH
     np.maximum(sine, 0.0, out=sine)
     any_lost = unclosed.any()
     if any_lost:
         sine[unclosed] = np.nan
     np.sqrt(sine, out=sine)
-    # elbow to wrist centre = common * (ahead, above) + turn * (above, -ahead); then turned from there to axis 4
+    # elbow to wrist centre = common * (ahead, above) + turn * (above, -ahead), then rotated to the
+    # direction of axis 4
     over = 1.0 / squared
     common = over * (0.5 * (fore**2 - upper**2))
     common += 0.5
@@ -186,7 +196,7 @@ def _triangle(arm: OpwArm, side: _Side) -> tuple[_Triangle, Mask | None]:
 def _arm(
     arm: OpwArm, side: _Side, triangle: _Triangle, elbow_left: bool, angles: Array
 ) -> tuple[Array, Array]:
-    """Write axes 2 and 3 of one elbow; give sine and cosine of the angle of axis 4 from the vertical."""
+    """Write axes 2 and 3 of one elbow; return sine and cosine of the angle of axis 4 from Z."""
     inclined = math.atan2(arm.a2, arm.c3)
     ahead, above = side.ahead, side.above
     along_ahead, along_above = ahead * triangle.along, above * triangle.along
@@ -214,7 +224,7 @@ def _arm(
 
 
 def _about_axis_1(side: _Side, rows: Array) -> tuple[Array, Array]:
-    """X and Y components (3, m) of the flange's axes in the frame turned with axis 1."""
+    """Return X and Y components (3, m) of the flange axes in the frame of axis 1."""
     along = rows[0, :3] * side.cosine
     along += rows[1, :3] * side.sine
     across = rows[1, :3] * side.cosine
@@ -229,10 +239,10 @@ def _wrist(
     direction: tuple[Array, Array],
     angles: Array,
 ) -> None:
-    """Write axes 4 to 6 with opw's q5 >= 0."""
+    """Write axes 4 to 6 for q5 >= 0 in opw angles."""
     sine, cosine = direction
     along, across = flange
-    # the flange's axes along the forearm's X; the forearm's Y is the Y of the arm's plane
+    # flange axes along the forearm X; the forearm Y is the Y of the arm plane
     forearm = along * cosine
     forearm -= height[:3] * sine
     x, y = forearm[2], across[2]
@@ -244,7 +254,7 @@ def _wrist(
     on = along[2] * sine
     on += height[2] * cosine
     np.arctan2(off, on, out=angles[4])
-    # axis 6 with the axis 4 just found
+    # axis 6 for the axis 4 above
     sixth = across[:2] * x
     sixth -= forearm[:2] * y
     np.arctan2(sixth[0], sixth[1], out=angles[5])
@@ -253,12 +263,12 @@ def _wrist(
 
 
 def _flip(arm: OpwArm, angles: Array, flipped: Array) -> None:
-    """Write the other wrist solution of `angles`; both may be the same array."""
+    """Write the other wrist solution of `angles`; both arrays may be the same."""
     if flipped is not angles:
         flipped[:3] = angles[:3]
     np.negative(angles[4], out=flipped[4])
     if arm.offsets[4]:
-        # both are equally far from the stretched wrist
+        # both solutions are equally far from the stretched wrist
         flipped[4] += 2.0 * arm.signs[4] * arm.offsets[4]
         flipped[4] -= 2.0 * math.pi * np.rint(flipped[4] * (0.5 / math.pi))
     _half_turn(angles[3], flipped[3])
@@ -266,14 +276,14 @@ def _flip(arm: OpwArm, angles: Array, flipped: Array) -> None:
 
 
 def _half_turn(angle: Array, out: Array) -> None:
-    """Write the angle half a turn away that is in [-pi, pi] too."""
+    """Write the angle half a turn away that also lies in [-pi, pi]."""
     np.subtract(angle, np.copysign(math.pi, angle), out=out)
 
 
 def _to_machine(
     arm: OpwArm, axis: int, angle: Array, low: float = -math.pi, width: float = 2.0 * math.pi
 ) -> None:
-    """From opw's angle, in [low, low + width], to the machine's in [-pi, pi], in place."""
+    """Convert opw angles in [low, low + width] to machine angles in [-pi, pi], in place."""
     sign, shift = arm.signs[axis], arm.offsets[axis]
     if shift and abs(abs(shift) - math.pi) < 1e-12 and width > math.pi:
         _half_turn(angle, angle)
@@ -293,8 +303,9 @@ BRANCHES = tuple(itertools.product(SHOULDERS, ELBOWS, WRISTS))
 
 
 def branch_index(words: Sequence[str]) -> int:
-    """The index 4 back + 2 down + flip of a branch, given by its three words; raises ValueError for
-    other words.
+    """Return the index 4 back + 2 down + flip of a branch given by three words.
+
+    Raises ValueError for unknown words.
     """
     return BRANCHES.index((words[0], words[1], words[2]))
 
@@ -305,7 +316,7 @@ def branch_name(index: int) -> tuple[str, str, str]:
     Parameters
     ----------
     index : int
-        Index of the branch, 4 back + 2 down + flip.
+        Branch index, 4 back + 2 down + flip.
 
     Returns
     -------
@@ -317,14 +328,15 @@ def branch_name(index: int) -> tuple[str, str, str]:
 
 @dataclass(frozen=True, eq=False)
 class OpwArm:
-    """The seven lengths (mm), `offsets` (rad) and `signs` of an arm: q_opw = q * sign - offset.
+    """An arm with the seven lengths (mm), `offsets` (rad) and `signs` of opw.
 
-    All poses are poses of the flange in base_link, mm. Joint angles are the serial ones, rad.
+    q_opw = q * sign - offset. Poses are flange poses in base_link, mm. Joint angles are serial,
+    rad.
 
-    A branch is front if the wrist centre is on the side of axis 1 to which q1 points; up if
-    the elbow is above the line from shoulder to wrist centre, that is on its left, seen in
-    the arm's plane with the wrist centre's side of axis 1 to the right; flip if q5 < 0,
-    counted from the stretched wrist.
+    A branch is front if the wrist centre is on the side of axis 1 that q1 points to. It is up if
+    the elbow is above the line from shoulder to wrist centre, that is, left of the line if the arm
+    plane is viewed with the wrist centre to the right of axis 1. It is flip if q5 < 0, measured
+    from the stretched wrist.
     """
 
     a1: float
@@ -337,21 +349,21 @@ class OpwArm:
     offsets: tuple[float, ...]
     signs: tuple[int, ...]
 
-    followed = False  # words distinguish all solutions
+    followed = False  # configuration names are unique
 
     @property
     def shoulder(self) -> tuple[float, float]:
-        """Distances of axis 2 ahead of axis 1 and above base_link, mm."""
+        """Distance of axis 2 ahead of axis 1, and its height above base_link, mm."""
         return self.a1, self.c1
 
     @property
     def reach(self) -> float:
-        """From axis 2 to the wrist centre of the stretched arm, mm."""
+        """Distance from axis 2 to the wrist centre of the stretched arm, mm."""
         return self.c2 + self.forearm
 
     @property
     def forearm(self) -> float:
-        """Distance from the elbow to the wrist centre."""
+        """Distance from the elbow to the wrist centre, mm."""
         return math.hypot(self.a2, self.c3)
 
     def forward(self, q: ArrayLike) -> Array:
@@ -373,7 +385,7 @@ class OpwArm:
         s23, c23 = np.sin(turned[1] + turned[2]), np.cos(turned[1] + turned[2])
         reach = self.a1 + self.c2 * s2 + self.a2 * c23 + self.c3 * s23
         height = self.c1 + self.c2 * c2 - self.a2 * s23 + self.c3 * c23
-        # the flange's axes in the forearm's frame, then about the elbow, then about axis 1
+        # flange axes in the forearm frame, then rotated about the elbow and about axis 1
         wrist = (
             (c4 * c5 * c6 - s4 * s6, -c4 * c5 * s6 - s4 * c6, c4 * s5),
             (s4 * c5 * c6 + c4 * s6, -s4 * c5 * s6 + c4 * c6, s4 * s5),
@@ -394,11 +406,10 @@ class OpwArm:
         return result
 
     def inverse(self, poses: ArrayLike) -> Array:
-        """Return joint angles of all branches for flange poses.
+        """Return the joint angles of all branches for flange poses.
 
-        At the singularity of the wrist (stretched) axis 4 takes the angle of opw zero and
-        axis 6 the rest; with the wrist centre on axis 1, axis 1 takes it. Forward
-        kinematics reproduces the pose to about 1e-9 mm.
+        At a wrist singularity, opw axis 4 is 0 and axis 6 takes the whole rotation. With the wrist
+        centre on axis 1, opw axis 1 is 0. Forward kinematics reproduces the pose to about 1e-9 mm.
 
         Parameters
         ----------
@@ -408,19 +419,20 @@ class OpwArm:
         Returns
         -------
         (8, n, 6) array
-            Angles in -pi to pi, rad. The first index follows `branch_name`. All six
-            angles of a branch that does not reach a pose are NaN.
+            Angles in -pi to pi, rad, in the order of `branch_name`. A branch that does not
+            reach a pose has six NaN.
         """
         return solve(self, poses, tuple(range(8)))
 
     def inverse_branch(self, poses: ArrayLike, branch: int) -> Array:
-        """Joint angles (n, 6) of one branch (an index of `branch_name`); otherwise as `inverse`."""
+        """Return joint angles (n, 6) of one branch (an index of `branch_name`), see `inverse`."""
         result: Array = solve(self, poses, (branch,))[0]
         return result
 
     def bend(self, q: ArrayLike) -> Array:
-        """Distance (...) of angles `q` (..., 6) from a stretched wrist or elbow: 0 where stretched,
-        1 at a right angle.
+        """Return the distance (...) of angles `q` (..., 6) from a stretched wrist or elbow.
+
+        0 if stretched, 1 at a right angle.
         """
         turned = np.asarray(q, float) * np.array(self.signs, float) - np.array(self.offsets)
         bent: Array = np.minimum(
@@ -430,12 +442,12 @@ class OpwArm:
         return bent
 
     def solutions(self, poses: ArrayLike) -> tuple[Array, Index]:
-        """All of `inverse`, and the configuration (8, n) of each, -1 where it does not reach."""
+        """Return all solutions of `inverse`, and their configurations (8, n); -1 out of reach."""
         angles = self.inverse(poses)
         return angles, np.where(np.isnan(angles[..., 0]), -1, np.arange(8)[:, None])
 
     def branch_of(self, q: ArrayLike) -> Index:
-        """The branch index (...) of joint angles `q` (..., 6)."""
+        """Return the branch index (...) of joint angles `q` (..., 6)."""
         angles = np.asarray(q, float)
         turned = columns(angles * np.array(self.signs, float) - np.array(self.offsets))
         forearm = turned[2] + math.atan2(self.a2, self.c3)

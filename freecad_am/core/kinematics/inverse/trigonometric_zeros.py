@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The zeros of many trigonometric polynomials of one degree at once, each isolated from all
+"""Zeros of many trigonometric polynomials of the same degree at once, each isolated from all
 others.
 
-In a step of h the cubic with a polynomial's values and slopes at both ends is off by at
-most h^4 / 384 of the maximum of the fourth derivative, its slope by sqrt(3) h^3 / 216 of
-the same, and cubic and slope are between the smallest and largest of their Bernstein
-coefficients. So a step has no zero if all coefficients have one sign and are larger than
-the bound, and at most one if the same holds for the coefficients of the slope. Undecided
+The polynomial is approximated in a step of h by the cubic with the same values and slopes at both
+ends. The error of the cubic is at most h^4 / 384 of the maximum of the fourth derivative, that of
+its slope sqrt(3) h^3 / 216 of the same. The cubic and its slope lie between the smallest and the
+largest of their Bernstein coefficients. So a step has no zero if all coefficients have the same
+sign and are larger than the error, and at most one if the same is true of the slope. Undecided
 steps are cut into pieces.
 """
 
@@ -21,34 +21,33 @@ import numpy as np
 from ...geometry.frames import TURN
 from ...types import Array, Index, Mask
 
-STEPS = {4: 32, 8: 48}  # of a turn, by degree
+STEPS = {4: 32, 8: 48}  # per turn, by degree
 PIECES, LEVELS = (
     4,
     {4: 10, 8: 7},
-)  # into which undecided steps are cut, and how often: for the higher degree while it decides
+)  # pieces of an undecided step, and how often it is cut; for degree 8 as long as that decides
 SURE_LEVELS = (
     7  # levels: zeros that only later levels separate are so close that they have few digits
 )
 VALUE_SHARE, SLOPE_SHARE = 1.0 / 384.0, math.sqrt(3.0) / 216.0
-# of the sum of all coefficients, by degree: error of a value, and maximum of an extreme that is a double zero
-# error of a value due to rounding of the pose; the higher degree is a difference of products
+# shares of the sum of all coefficients, by degree: error of a value due to rounding of the pose,
+# and largest extreme that counts as a double zero; the higher degree is a difference of products
 ROUNDING, TOUCHING = {4: 5e-17, 8: 4e-15}, {4: 1e-13, 8: 1e-13}
 EXTREME_STEPS, MAX_STEP_RAD = (
     8,
     1e-4,
 )  # steps to an extreme that is next to zero, and rad of one at most
-UNTOLD = 2.0  # multiple of that error within which an extreme may be zero
-DROWNED = 8.0  # multiple of that error below which rounding hides the values and slopes of a step
+UNTOLD = 2.0  # multiple of the rounding error within which an extreme may be zero
+DROWNED = 8.0  # multiple of the rounding error below which it hides the values and slopes of a step
 
 
 class Parted(NamedTuple):
-    """Steps (k,) with one zero: the polynomial's number, the ends, and an estimate of the zero
-    between them.
+    """Steps (k,) with one zero: number of the polynomial, both ends, and an estimate of the zero.
 
-    close: polynomials (n,) with zeros too near to each other to separate. touching: number
-    and angle (m,) of such zeros, from the bend of the polynomial where it touches zero to the
-    last digits. drowned: number and ends (s,) of steps throughout which it is as small as
-    rounding.
+    close: polynomials (n,) with zeros too close to each other to separate. touching: number and
+    angle (m,) of such zeros, located by the bend of the polynomial where it touches zero, to the
+    last digits. drowned: number and ends (s,) of steps throughout which the polynomial is as small
+    as the rounding error.
     """
 
     number: Index
@@ -61,7 +60,10 @@ class Parted(NamedTuple):
 
 
 class _Steps(NamedTuple):
-    """Steps (k,): number of the polynomial and begin; values and slopes (2, k) at both ends, slopes by a third of a step."""
+    """Steps (k,): number of the polynomial and begin; values and slopes (2, k) at both ends.
+
+    The slopes are multiplied by a third of the step.
+    """
 
     number: Index
     begin: Array
@@ -103,7 +105,7 @@ def harmonics(degree: int, angle: Array, derivative: int = 0) -> Array:
         The constant, the cosines, the sines.
     """
     order = np.arange(degree + 1)[:, None]
-    # a derivative turns by a quarter and multiplies
+    # a derivative shifts the phase by a quarter turn and multiplies by the order
     turned = order * angle + 0.5 * math.pi * derivative
     rows: Array = (
         np.concatenate([np.cos(turned), np.sin(turned)[1:]])
@@ -114,8 +116,8 @@ def harmonics(degree: int, angle: Array, derivative: int = 0) -> Array:
 
 @cache
 def _grid(degree: int) -> Array:
-    """Return the matrix for the values, then the slopes times a third of a step, at the ends of
-    all steps of a turn.
+    """Return the matrix for the values, followed by the slopes times a third of a step, at the ends
+    of all steps of a turn.
     """
     step_ends = np.append(angles(STEPS[degree]), 0.0)
     slopes = harmonics(degree, step_ends, 1) * (TURN / STEPS[degree] / 3.0)
@@ -177,11 +179,11 @@ def isolate_zeros(coefficients: Array) -> Parted:
 def _touching(
     coefficients: Array, number: Index, angle: Array, max_value: Array, rounding: Array
 ) -> tuple[Index, Array]:
-    """Return number and angle (m,) of the zeros next to angles (k,) with an extreme no farther
-    from zero than `max_value`.
+    """Return number and angle (m,) of the zeros next to angles (k,) with an extreme of at most
+    `max_value`.
 
-    The zero is where a parabola there is zero, or the extreme itself if it is zero within
-    rounding. Extremes just beyond zero count too.
+    The zeros are those of the parabola through the extreme, or the extreme itself if it is zero
+    within rounding or does not reach zero.
     """
     own_coefficients, degree = coefficients[:, number], len(coefficients) // 2
 
@@ -195,7 +197,7 @@ def _touching(
             derivative(1) / np.where(bend == 0.0, 1.0, bend), -MAX_STEP_RAD, MAX_STEP_RAD
         )
     value, bend, noise = derivative(0), derivative(2), UNTOLD * rounding[number]
-    # up to the distance at which the steps separate both zeros
+    # up to the distance at which the steps separate two zeros
     through = (value * bend < 0.0) & (np.abs(value) < 0.5 * MAX_STEP_RAD**2 * np.abs(bend))
     valid = np.flatnonzero(((np.abs(value) <= max_value[number]) | through) & (bend != 0.0))
     number, angle, value, bend, noise = (
@@ -206,7 +208,7 @@ def _touching(
         noise[valid],
     )
     unsure = np.sqrt(2.0 * noise / np.abs(bend))
-    # the same zero, found from several steps
+    # the same zero may be found from several steps
     order = np.lexsort((angle, number))
     number, angle, value, bend, noise, unsure = (
         column[order] for column in (number, angle, value, bend, noise, unsure)
@@ -222,7 +224,7 @@ def _touching(
 
 
 def _first(coefficients: Array, width: float, fourth: Array, touching: Array) -> _Steps:
-    """The steps of a whole turn that may have a zero."""
+    """Return the steps of a whole turn that may have a zero."""
     degree = len(coefficients) // 2
     values, slopes = (_grid(degree) @ coefficients).reshape(2, STEPS[degree] + 1, -1)
     possible = np.flatnonzero(
@@ -248,7 +250,11 @@ def _value_bound(fourth: Array, touching: Array, width: float) -> Array:
 def _may_be_zero(
     begin_value: Array, end_value: Array, rise: Array, end_slope: Array, off: Array
 ) -> Mask:
-    """Whether the coefficients of the cubic are not all of one sign and farther from zero than `off`; values and slopes."""
+    """Return whether a cubic may come within `off` of zero: its Bernstein coefficients are not all
+    beyond `off` on the same side.
+
+    It is given by its values and slopes at both ends.
+    """
     second, third = begin_value + rise, end_value - end_slope
     lowest = np.minimum(np.minimum(begin_value, end_value), np.minimum(second, third))
     highest = np.maximum(np.maximum(begin_value, end_value), np.maximum(second, third))
@@ -268,8 +274,8 @@ def _some(steps: _Steps, rows: Index | Mask) -> _Steps:
 def _single_or_open(
     steps: _Steps, fourth: Array, rounding: Array, width: float
 ) -> tuple[_Steps, _Steps]:
-    """Return, of steps that may have a zero, the steps with exactly one, and the undecided
-    steps.
+    """Return the steps with exactly one zero, and the undecided steps, of steps that may have a
+    zero.
     """
     number, _, (begin_value, end_value), (rise, end_slope) = steps
     off = SLOPE_SHARE / 3.0 * width**4 * fourth[number] + 3.0 * rounding[number]
@@ -282,8 +288,8 @@ def _single_or_open(
 
 
 def _is_drowned(steps: _Steps, rounding: Array) -> Mask:
-    """Return steps throughout which the cubic is as small as rounding: pieces would not decide
-    more.
+    """Return whether the cubic is as small as rounding throughout a step, so that cutting it
+    would not help.
     """
     begin_value, end_value = np.abs(steps.value)
     rise, end_slope = np.abs(steps.slope)
@@ -294,7 +300,11 @@ def _is_drowned(steps: _Steps, rounding: Array) -> Mask:
 
 
 def _cut(waves: Array, steps: _Steps, width: float) -> _Steps:
-    """The pieces, of `width` each, of steps; polynomials as real parts of sums (degree + 1, n) of powers of e^i angle."""
+    """Return the pieces, `width` long, of steps.
+
+    The polynomials are the real parts of sums of powers of e^(i angle), with coefficients waves
+    (degree + 1, n).
+    """
     inner = np.arange(1, PIECES) * width
     turn = np.exp(1j * (steps.begin + inner[:, None]))
     of_step = waves[:, steps.number]
@@ -307,7 +317,7 @@ def _cut(waves: Array, steps: _Steps, width: float) -> _Steps:
         value += wave
     slope *= turn
     values, slopes = np.empty((2, PIECES + 1, len(steps.number)))
-    # bit for bit equal at the ends of adjacent steps
+    # identical at the ends of adjacent steps
     values[0], values[-1] = steps.value
     slopes[0], slopes[-1] = steps.slope / PIECES
     values[1:-1], slopes[1:-1] = value.real, slope.imag * (-width / 3.0)
@@ -321,7 +331,10 @@ def _cut(waves: Array, steps: _Steps, width: float) -> _Steps:
 
 
 def _places(steps: _Steps, width: float) -> tuple[Index, Array, Array, Array]:
-    """Number, ends and about the zero (k,) of steps with one: the cubic of the angle over the value, kept in the step."""
+    """Return number, both ends and approximate zero (k,) of steps with one zero.
+
+    The zero is that of the cubic that gives the angle as a function of the value, kept in the step.
+    """
     begin_value, end_value = steps.value
     change = end_value - begin_value
     share = -begin_value / change
@@ -331,6 +344,6 @@ def _places(steps: _Steps, width: float) -> tuple[Index, Array, Array, Array]:
         along = share * (
             share * (3.0 - 2.0 * share) + remainder * (remainder * begin_share - share * end_share)
         )
-    # a slope near zero at an end is useless here: use straight lines instead
+    # a slope near zero at an end is useless here; use a straight line instead
     along = np.where((begin_share < 4.0) & (end_share < 4.0), np.clip(along, 0.0, 1.0), share)
     return steps.number, steps.begin, steps.begin + width, steps.begin + along * width

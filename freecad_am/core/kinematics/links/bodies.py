@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Bodies of the links of a mechanism: boxes and cylinders of its file, or shape files."""
+"""Bodies of the links of a mechanism: boxes and cylinders from its machine file, or shape files."""
 
 from __future__ import annotations
 
@@ -20,9 +20,10 @@ FORMATS = (".step", ".stp", ".iges", ".igs", ".brep", ".stl", ".obj")
 
 @dataclass(frozen=True, eq=False)
 class LinkShape:
-    """A file of a link. `pose` (4, 4) places its content in the frame of the link's joint, mm;
-    `scale` is the size of a file unit in mm; `colour` 0..1 each. `where` names file and key in
-    messages.
+    """A shape file of a link.
+
+    pose: (4, 4) of the content in the link frame, mm. scale: size of a file unit, mm. colour: red,
+    green and blue from 0 to 1. where: file and key, for messages.
     """
 
     path: Path
@@ -33,26 +34,26 @@ class LinkShape:
 
 
 def link_shapes(top: Node, joints: tuple[str, ...]) -> tuple[LinkShape | None, ...]:
-    """Return the shape files of a machine's links.
+    """Return the shape files of the links of a machine.
 
-    Whether the files exist is checked when they are drawn: planning does not need them.
+    Planning does not need the files, so drawing checks whether they exist.
 
     Parameters
     ----------
     top : Node
         Content of the machine file.
     joints : tuple of str
-        Names of the joints.
+        Joint names.
 
     Returns
     -------
     tuple[LinkShape or None, ...]
-        Shapes (axes + 1), base first; None for links without a shape.
+        Shapes (axes + 1), base first; None for a link without a shape.
 
     Raises
     ------
     InputError
-        BAD_MACHINE for a wrong link, format or value.
+        BAD_MACHINE for an invalid link, format or value.
     """
     links = (BASE, *joints)
     if not top.has("shapes"):
@@ -62,7 +63,7 @@ def link_shapes(top: Node, joints: tuple[str, ...]) -> tuple[LinkShape | None, .
 
 
 def shape_of(node: Node) -> LinkShape:
-    """The shape that an entry of a machine file names. Raises InputError 'BAD_MACHINE' as `link_shapes` does."""
+    """Return the shape of a machine file entry. Raises InputError BAD_MACHINE as `link_shapes`."""
     node.only("file", "origin", "rpy", "scale", "colour")
     path = Path(node["file"].text())
     if path.suffix.lower() not in FORMATS:
@@ -94,8 +95,9 @@ Pieces = tuple[LinkShape | Solid, ...]
 
 @dataclass(frozen=True, eq=False)
 class Primitive(Solid):
-    """A box or cylinder (`kind`) of a machine file with its `size`, mm, and the pose (4, 4) of its
-    middle.
+    """A box or cylinder (`kind`) of a machine file.
+
+    size: mm. pose: (4, 4) of its centre.
     """
 
     kind: str = ""
@@ -103,7 +105,7 @@ class Primitive(Solid):
     pose: Array | None = None
 
     def move(self, pose: Array) -> Primitive:
-        """Return the piece moved by a pose (4, 4)."""
+        """Return the primitive moved by a pose (4, 4)."""
         solid = super().move(pose)
         new_pose = pose if self.pose is None else pose @ self.pose
         return replace(self, points=solid.points, normals=solid.normals, pose=new_pose)
@@ -112,26 +114,26 @@ class Primitive(Solid):
 def link_bodies(
     top: Node, joints: tuple[str, ...], shapes: tuple[LinkShape | None, ...]
 ) -> tuple[Pieces, ...]:
-    """Return the bodies of a machine's links.
+    """Return the bodies of the links of a machine.
 
     Parameters
     ----------
     top : Node
         Content of the machine file.
     joints : tuple of str
-        Names of the joints.
+        Joint names.
     shapes : tuple[LinkShape or None, ...]
-        Shape files (axes + 1), used if the file has no `bodies`.
+        Shape files (axes + 1), used if the machine file has no `bodies`.
 
     Returns
     -------
     tuple of Pieces
-        Bodies (axes + 1), base first, each in the frame of its link; empty without either.
+        Bodies (axes + 1) in their link frames, base first; empty for a link without a body.
 
     Raises
     ------
     InputError
-        BAD_MACHINE for a wrong link or value.
+        BAD_MACHINE for an invalid link or value.
     """
     links = (BASE, *joints)
     if not top.has("bodies"):
@@ -161,14 +163,14 @@ def _piece(node: Node, is_last: bool) -> LinkShape | Solid:
 
 
 def box(size: Array, tone: str = BODY) -> Primitive:
-    """Return a box about the origin.
+    """Return a box centred at the origin.
 
     Parameters
     ----------
     size : (3,) array
         Lengths along x, y and z, mm.
     tone : str, optional
-        Kind of surface.
+        Surface tone.
 
     Returns
     -------
@@ -182,14 +184,14 @@ def box(size: Array, tone: str = BODY) -> Primitive:
 
 
 def cylinder(size: Array, tone: str = BODY) -> Primitive:
-    """Return a cylinder along Z about the origin, as a prism that contains it.
+    """Return a cylinder along Z centred at the origin, as a prism that contains it.
 
     Parameters
     ----------
     size : (2,) array
         Diameter and length, mm.
     tone : str, optional
-        Kind of surface.
+        Surface tone.
 
     Returns
     -------

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Collisions of the arm, and of the platform, with objects in the cell, whether or not
-planning kept clearances.
+"""Collisions of arm and platform with objects in the cell, with or without planned clearances.
 
-Links as drawn, less `PENETRATION`, show near objects. Links without a manufacturer's
-shape are drawn from the kinematics only, and the cylinders around a true shape are wider
-than it; so an error needs the core of a link, `CORE` of its radius, inside an object. The
-core follows the line that a link has to follow: from the elbow on, where axes meet at
-angles; before it, links of parallel axes may be beside that line. A hollow, forked or
-bent forearm does not follow all of that line: of 186 built-in robots, the manufacturer's
-range of the wrist lets the flanges of 13 pass through the line itself, of 19 through a
-third of the drawn width, of 23, including the default robot, through half. Where the
-flange passes through the core, the core proves nothing. An object in the inner half of a
-link, `DEEP`, may be in the link.
+Links as drawn, reduced by `PENETRATION`, show which objects are near. Links without a
+manufacturer's shape are drawn from the kinematics only, and the cylinders around a true shape are
+wider than the shape. An error therefore requires the core of a link, `CORE` of its radius, to be
+inside an object. The core follows the line that the link must follow. This holds from the elbow on,
+where axes meet at angles; links of parallel axes before the elbow may be beside their line. A
+hollow, forked or bent forearm does not follow all of its line. The manufacturer's wrist range lets
+the flange pass through the line itself on 13 of 186 built-in robots, through a third of the drawn
+width on 19, and through half of this width on 23, including the default robot. If the flange passes
+through the core, the core proves nothing. An object in the inner half of a link, `DEEP`, may be
+inside the link.
 """
 
 from __future__ import annotations
@@ -35,16 +34,16 @@ from .contact import PLATFORM, ArmContact, Touches
 from .robot import flange_radius
 from .self_collision import NONE, Solid, place_cylinder, round_solid
 
-PENETRATION = 0.5  # mm; faces are triangles, and a shallower overlap is contact, not collision
-CORE = 1.0 / 3.0  # share of the radius of a link
-DEEP = 0.5  # share of the radius of a link
-CERTAIN = 4  # the first link from the elbow on, which follows its drawn line
-PLATFORM_DEPTH = 5.0  # minimum thickness of a fixed platform, mm
-FACE = 0.1  # mm, thickness of the face of a flange
+PENETRATION = 0.5  # mm; shallower overlap of triangulated faces is contact, not collision
+CORE = 1.0 / 3.0  # fraction of the link radius
+DEEP = 0.5  # fraction of the link radius
+CERTAIN = 4  # first link that follows its drawn line, from the elbow on
+PLATFORM_DEPTH = 5.0  # mm; minimum thickness of a fixed platform
+FACE = 0.1  # mm; thickness of a flange face
 WRIST_STEP = np.radians(
     2.0
-)  # step of the positions at which a flange is tested against the forearm
-NOZZLE_AFTER = 2  # the number of the nozzle in `ArmContact.links`, after the axes
+)  # step of the wrist positions at which the flange is tested against the forearm
+NOZZLE_AFTER = 2  # index of the nozzle in `ArmContact.links`, relative to the last axis
 
 Cylinders = Sequence[Sequence[Cylinder]]
 
@@ -53,9 +52,9 @@ Cylinders = Sequence[Sequence[Cylinder]]
 class Collision:
     """A link, or the platform, inside an object.
 
-    rows: (n,) the joint vectors of the collision, rising, empty for the platform, which is
-    inside it all the time. sure: whether the core of the link is inside and the link surely
-    is where its core is. deep: whether the inner half of the drawn link is inside.
+    rows: (n,) joint vectors of the collision, ascending; empty for the platform, which is always
+    inside. sure: whether the core of the link is inside and surely belongs to the link. deep:
+    whether the inner half of the drawn link is inside.
     """
 
     link: str
@@ -81,23 +80,23 @@ def arm_collisions(
     cell : Cell
         The cell.
     cylinders : Cylinders
-        Cylinders for each link, base first.
+        Cylinders of each link, base first.
     bodies : sequence of Body
         Bodies in part coordinates.
     deposit : Obstacles or None
-        The deposit in part coordinates; None without one.
+        Deposit in part coordinates; None without a deposit.
     joints : (k, axes) array
         Joints, rad or mm.
     moment : (k,) int array
-        Number of points of the deposit present.
+        Number of deposit points printed.
     true_shapes : sequence of bool, optional
-        Whether the exact shape of each link is known; by default it is not.
+        Whether the exact shape of each link is known; False by default.
 
     Returns
     -------
     list of Collision
-        One entry for each link and object: certain collisions if there are
-        any, else doubtful ones; deep collisions first.
+        One entry per link and object: the certain collisions, or the doubtful ones if there are
+        none; deep collisions first.
     """
     drawn = _contact(cell, cylinders, bodies, deposit, 1.0)
     touching = drawn.touches(joints, moment)
@@ -139,10 +138,10 @@ def arm_collisions(
 
 
 def platform_collisions(cell: Cell, bodies: Sequence[Body]) -> list[Collision]:
-    """Return the bodies that reach into the platform: the plate below its plane, down to the
-    flange if a robot carries it.
+    """Return the bodies that extend into the platform.
 
-    Deposit below the plane is rejected before beads are planned.
+    The platform is the plate below its plane, down to the flange if a robot carries it. Deposit
+    below the plane is rejected before beads are planned.
     """
     plate = plate_of(cell)
     if plate is None:
@@ -160,8 +159,9 @@ def platform_collisions(cell: Cell, bodies: Sequence[Body]) -> list[Collision]:
 
 
 def plate_of(cell: Cell) -> Solid | None:
-    """Return the platform in its own frame, reduced by the allowed penetration; None without
-    one.
+    """Return the platform in its own frame, reduced by the allowed penetration.
+
+    None if there is no platform.
     """
     radius = 0.5 * cell.platform_diameter - PENETRATION
     if radius <= 0.0:
@@ -179,7 +179,7 @@ def _contact(
     deposit: Obstacles | None,
     share: float,
 ) -> ArmContact:
-    """Return the contact test for links with a share of their radius."""
+    """Return the contact test for links with a fraction of their radius."""
     inner = [[_inner(cylinder, share) for cylinder in link] for link in cylinders]
     return ArmContact(cell, inner, bodies, deposit, -PENETRATION, holders=True)
 
@@ -189,9 +189,7 @@ def _inner(cylinder: Cylinder, share: float) -> Cylinder:
 
 
 def _pairs(touches: Touches, rows: Index) -> list[tuple[int, int, Index]]:
-    """Return each pair of touching link and object, by their numbers, with the rows at which
-    they touch.
-    """
+    """Return each touching pair as link index, object index and the rows of contact."""
     link, what = touches.link, touches.what
     pairs = sorted({pair for pair in zip(link.tolist(), what.tolist()) if pair[0] != NONE})
     return [
@@ -201,9 +199,9 @@ def _pairs(touches: Touches, rows: Index) -> list[tuple[int, int, Index]]:
 
 
 def _is_proof(contact: ArmContact, link: int, true_shapes: Sequence[bool]) -> bool:
-    """Return whether a core inside an object proves that the link is.
+    """Whether a core inside an object proves that its link is inside.
 
-    Part, torch and external links are known only by cylinders around them; nozzles exactly.
+    Part, torch and external links are known only by enclosing cylinders; nozzles are known exactly.
     """
     axes = contact.cell.robot.chain.axes
     if link > axes:
@@ -214,18 +212,19 @@ def _is_proof(contact: ArmContact, link: int, true_shapes: Sequence[bool]) -> bo
 
 
 def _is_known(contact: ArmContact, what: int, proofs: Sequence[bool]) -> bool:
-    """Return whether a touched object is certainly where it is modelled: links of the robot if
-    their cores are proofs.
+    """Whether a touched object is certainly where it is modelled.
+
+    A robot link is, if its core is a proof.
     """
     link_number = what - len(contact.groups)
     return link_number < 0 or proofs[link_number]
 
 
 def flange_passes(robot: Machine, forearm: Sequence[Solid]) -> bool:
-    """Return whether the manufacturer's range of the last axis but one lets the flange face pass
-    through the link before it.
+    """Whether the flange face can pass through the link before the last axis but one, within the
+    manufacturer's range of this axis.
 
-    forearm: the solids of that link in its frame.
+    forearm: solids of that link in its frame.
     """
     chain, wrist = robot.chain, robot.chain.axes - 2
     limits = robot.limit_sets.get(MAKER, next(iter(robot.limit_sets.values())))

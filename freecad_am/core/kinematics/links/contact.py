@@ -1,31 +1,30 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contacts of a robot's links with nozzle, platform, bodies, obstacles and earlier deposit;
-and of nozzle or part with obstacles.
+"""Contacts of robot links with nozzle, platform, bodies, obstacles and earlier deposit.
 
-Links are cylinders around their drawn shape; bodies are their triangles and, if closed,
-their inside; beads have their width and height. So if no contact is reported there is
-none, as far as links are as drawn. The load of the flange is not tested against the last
-two links, which hold it and can hardly move against it, nor are fixed objects tested
-against the base. A moving part is complete from the beginning: cylinders around its
-bodies and beads. The nozzle is tested exactly against bodies, without clearance: it
-deposits next to them. The holder of the nozzle is tested if `cell.nozzle.shape` shows it.
-The links of positioner and track move with their axes: robot, nozzle and torch are tested
-against them, and they against obstacles. These pairs are left out:
+Contacts of nozzle or part with obstacles are included.
 
-- objects on the floor against each other, including the base of a robot without a track:
+Links are cylinders around their drawn shape. Bodies are their triangles and, if closed, their
+inside. Beads have their width and height. So no contact is missed, as far as the links are as
+drawn. The flange load is not tested against the last two links, which hold it and hardly move
+relative to it. Fixed objects are not tested against the base. A moving part counts as complete from
+the start: cylinders around its bodies and beads. The nozzle is tested exactly against bodies,
+without clearance, because it deposits next to them. The nozzle holder is tested if
+`cell.nozzle.shape` describes it. Links of positioner and track move with their axes. They are
+tested against robot, nozzle, torch and obstacles. These pairs are omitted:
+
+- objects on the floor against each other, including the base of a robot without a track, because
 they never move;
 
-- base and link 1 against the carriage, to which the base is fixed and on which link 1
-turns; and the base against the rail, along which it slides. Link 1 is tested against the
-rail, which it turns and slides past;
+- base and link 1 against the carriage, which the base is fixed to and link 1 rotates on; and the
+base against the rail, which it slides along. Link 1 is tested against the rail;
 
 - the part against the last two links below it. It is tested against the other links of a
-positioner, carriage and rail, if one of both moves;
+positioner, carriage and rail, if either moves;
 
 - links of positioners against each other, which their own stops keep apart.
 
-Links of the robot against each other: `own`. The floor is tested if it is an obstacle,
-cables and hoses if the file of the torch has them.
+Robot links against each other: `own_links`. The floor is tested if it is an obstacle, cables and
+hoses if the torch file includes them.
 """
 
 from __future__ import annotations
@@ -56,7 +55,7 @@ SIDES = 24
 
 
 def nozzle_body(nozzle: NozzleParameters) -> Body:
-    """The nozzle in the frame of its tip, a many-sided cone about the round one."""
+    """Return the nozzle in its tip frame, as a polygonal cone around the round one."""
     angle = np.linspace(0.0, 2.0 * np.pi, SIDES, endpoint=False)
     ring = np.stack([np.cos(angle), np.sin(angle)], axis=1) / np.cos(np.pi / SIDES)
     tip, length = 0.5 * nozzle.diameter, nozzle.length
@@ -83,23 +82,22 @@ def nozzle_body(nozzle: NozzleParameters) -> Body:
 
 BASE, PLATFORM, DEPOSIT, PART, TORCH = "base", "platform", "deposit", "part", "torch"
 WORLD = "world"
-OWN_PREFIX = "link "  # before the axis of a link, as it is touched
-LINKS_MORE = 4  # number of `links` besides the axes, before the external links
-PIECE = 4096  # joint vectors in one batch
+OWN_PREFIX = "link "  # precedes the axis name of a touched link
+LINKS_MORE = 4  # number of entries of `links` besides the axes and before the external links
+PIECE = 4096  # joint vectors per batch
 LINK_PIECE, SHARE = (
     50.0,
     0.01,
-)  # longest edge of a triangle against which links are tested, mm, and as a share of the body's size
-SLICES = 8  # cylinders about a deposit that moves
+)  # maximum triangle edge in link tests: mm, or fraction of the body size if larger
+SLICES = 8  # number of cylinders around a moving deposit
 
 
 @dataclass(frozen=True, eq=False)
 class Touches:
     """Contacts for k joint vectors.
 
-    what: (k,) number in `ArmContact.names` of the first object that a link touches. link:
-    (k,) number in `ArmContact.links` of the touching link nearest to the base, 0. NONE in
-    both without contact.
+    what: (k,) index in `ArmContact.names` of the first object touched. link: (k,) index in
+    `ArmContact.links` of the touching link nearest to the base. Both are NONE without contact.
     """
 
     link: Index
@@ -107,14 +105,16 @@ class Touches:
 
     @property
     def any(self) -> Mask:
-        """Whether there is a contact, (k,)."""
+        """Whether each joint vector has a contact, (k,)."""
         return np.asarray(self.link != NONE)
 
 
 @dataclass(frozen=True, eq=False)
 class Group:
-    """An object tested against links (numbers), within a ball, as seen from the part, the nozzle
-    or the world.
+    """An object and the indices of the links tested against it.
+
+    centre, radius: enclosing ball. seen_from: frame of the object: part, nozzle, world or an
+    external link.
     """
 
     scene: Scene
@@ -128,15 +128,14 @@ class Group:
 class ArmContact:
     """A robot in its cell.
 
-    cylinders: of each link of the robot (axes + 1), in the frame of the link, base first.
-    bodies, deposit: in part coordinates. clearance: mm, nearer links touch; negative allows
-    that penetration. holders: the last two links are also tested against the part they carry,
+    cylinders: of each robot link (axes + 1) in the link frame, base first. bodies, deposit: in part
+    coordinates. clearance: mm; closer links count as touching; a negative value allows this
+    penetration. holders: whether to test the last two links also against the part that they carry,
     except its platform.
 
-    names: the objects that can be touched, at the end the links of the robot. links: the
-    touching links: base, axes, then part, nozzle and torch, and the external links. groups:
-    the objects; solids: of each of `links`, in its frame; balls: centre and radius of a ball
-    around these.
+    names: objects that can be touched, ending with the robot links. links: touching links: base,
+    axes, part, nozzle, torch and external links. groups: the objects. solids: of each of `links` in
+    its frame. balls: centre and radius of a ball around the solids of each link.
     """
 
     cell: Cell
@@ -229,7 +228,7 @@ class ArmContact:
 
     @cached_property
     def own_links(self) -> OwnLinks:
-        """The links against each other."""
+        """The robot links, tested against each other."""
         return OwnLinks.of(self.cell.robot.chain, self.cell.limits, self.cylinders, self.clearance)
 
     @property
@@ -237,25 +236,26 @@ class ArmContact:
         return self.cell.torch_stands
 
     def _links(self, carried: bool) -> range:
-        """Return the links tested against carried objects, or against fixed ones."""
+        """Return the links tested against carried or against fixed objects."""
         axes = self.cell.robot.chain.axes
         return range(axes - 1) if carried else range(1, axes + 1)
 
     @property
     def _holders(self) -> list[int]:
-        """The links that carry the part, if they are tested against it."""
+        """The links that carry the part, if they are tested against the part."""
         axes = self.cell.robot.chain.axes
         return [axes - 1, axes] if self.holders and self._carries_part else []
 
     @property
     def _torch(self) -> list[int]:
-        """The number of the torch, if there is one."""
+        """The link index of the torch, if there is one."""
         return [] if self.cell.shapes.torch is None else [self.cell.robot.chain.axes + 3]
 
     @property
     def _movers(self) -> list[int]:
-        """The links that move in the world: with a track the base too, and part or nozzle with its
-        torch.
+        """The links that move in the world.
+
+        These include the base on a track, and the part, or the nozzle and its torch.
         """
         axes, cell = self.cell.robot.chain.axes, self.cell
         on_track = cell.external is not None and cell.external.slides is not None
@@ -275,8 +275,9 @@ class ArmContact:
     def _against(self, external_link: ExternalLink) -> list[int]:
         """Return the links tested against an external link.
 
-        The robot's links at least two joints away if it carries these, or that move relative to
-        it; nozzle and torch; and the part, except against the last two links below it.
+        If the external link carries the robot, these include robot links at least two joints away;
+        otherwise robot links that move relative to the external link. Nozzle and torch are
+        included, and the part except against the last two links below the part.
         """
         axes, on_robot = self.cell.robot.chain.axes, external_link.carries == ROBOT
         on_track = self.cell.external is not None and self.cell.external.slides is not None
@@ -289,9 +290,7 @@ class ArmContact:
         return [*range(first_link, axes + 1), *part_links, axes + 2, *self._torch, *track]
 
     def _track(self, moves: bool) -> list[int]:
-        """Return the links of a track that move against moving, or against fixed, objects of the
-        world.
-        """
+        """Return the track links tested against moving or against fixed objects of the world."""
         first_external = self.cell.robot.chain.axes + LINKS_MORE
         return [
             first_external + k
@@ -300,7 +299,7 @@ class ArmContact:
         ]
 
     def _part_cylinders(self, around: Sequence[Body]) -> list[Cylinder]:
-        """Return cylinders around the part and its platform, if it may meet obstacles."""
+        """Return cylinders around the part and its platform, if they may touch obstacles."""
         if (
             not (self.cell.shapes.obstacles or self.cell.shapes.external_links)
             or not self.cell.part_moves
@@ -318,9 +317,9 @@ class ArmContact:
         return part_cylinders
 
     def touches(self, joints: ArrayLike, moment: Index | None = None) -> Touches:
-        """Return the contacts of the links with joints (k, axes); NaN touches nothing.
+        """Return the link contacts for joints (k, axes); NaN joints have no contact.
 
-        moment: (k,) number of points of the deposit present, by default all.
+        moment: (k,) number of deposit points printed; all by default.
         """
         values = np.asarray(joints, float)
         count = len(values)
@@ -333,7 +332,7 @@ class ArmContact:
         return Touches(link, what)
 
     def link_frames(self, joints: Array) -> tuple[Array, dict[str, Array]]:
-        """Return the frames of links and objects, seen from the start of the machine's chain.
+        """Return the frames of links and objects in the first frame of the machine chain.
 
         Parameters
         ----------
@@ -400,12 +399,12 @@ class ArmContact:
 
 
 def _meets(group: Group, solids: Sequence[Solid], link_frame: Array, moment: Index) -> Mask:
-    """Return whether (k,) solids of a link, with its frames (k, 4, 4), meet a group."""
+    """Return which link frames (k, 4, 4) make the solids of a link touch a group, (k,)."""
     met = np.zeros(len(link_frame), dtype=bool)
     for solid in solids:
         tip = frames.transform_point(link_frame, solid.tip)
         axis = frames.rotate_vector(link_frame, solid.axis)
-        # only solids near the ball are tested exactly
+        # test only solids near the ball exactly
         low, high = float(np.min(solid.solid.low)), solid.solid.high
         off = tip - group.centre
         along = np.minimum(np.maximum(-dots(off, axis), low), high)
@@ -419,7 +418,7 @@ def _meets(group: Group, solids: Sequence[Solid], link_frame: Array, moment: Ind
 
 
 def _nozzle_solid(cell: Cell) -> Solid:
-    """Return the nozzle in the frame of its tip, as tested against bodies next to its deposit."""
+    """Return the nozzle in its tip frame, as tested against bodies next to its deposit."""
     nozzle = cell.nozzle
     solid = depositing(
         0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, 0.0
@@ -428,9 +427,7 @@ def _nozzle_solid(cell: Cell) -> Solid:
 
 
 def _slices(corners: Array) -> list[Cylinder]:
-    """Return cylinders around the hulls of corners (m, c, 3), grouped along their longest
-    extent.
-    """
+    """Return cylinders around the hulls of corners (m, c, 3), grouped along the longest extent."""
     middle = corners.mean(axis=1)
     order = np.argsort(middle[:, int(np.ptp(middle, axis=0).argmax())], kind="stable")
     return [
@@ -439,7 +436,7 @@ def _slices(corners: Array) -> list[Cylinder]:
     ]
 
 
-# the tip's Z points out of a carried nozzle, the Z of the deposition point into a fixed one
+# the tip Z points out of a carried nozzle; the Z of the deposition point points into a fixed one
 _TURNED = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
@@ -449,13 +446,13 @@ def _group_of_body(body: Body, links: Sequence[int], seen_from: str = PART) -> G
     return Group(scene, links, centre, radius, seen_from)
 
 
-FIRST_ROWS = 8  # joint vectors tested first: their result excludes most of the others
+FIRST_ROWS = 8  # joint vectors to test first; the result excludes most others
 
 
 def min_distance(contact: ArmContact, joints: ArrayLike, moment: Index, reach: float) -> float:
-    """Return the smallest distance between links, or a carried part, and the tested objects.
+    """Return the minimum distance of links, or of a carried part, from the tested objects.
 
-    The nozzle, which deposits next to bodies, does not count; the contact's own clearance is
+    The nozzle is excluded, because it deposits next to bodies. The clearance of `contact` is
     subtracted.
 
     Parameters
@@ -463,17 +460,17 @@ def min_distance(contact: ArmContact, joints: ArrayLike, moment: Index, reach: f
     contact : ArmContact
         The contact check.
     joints : (k, axes) array
-        Joints, rad or mm; rows with NaN do not count.
+        Joints, rad or mm; rows with NaN are ignored.
     moment : (k,) int array
-        Number of points of the deposit present.
+        Number of deposit points printed.
     reach : float
-        Largest distance of interest, mm.
+        Maximum distance of interest, mm.
 
     Returns
     -------
     float
-        A lower bound of the distance, mm, at most `reach`; 0 on contact, also of links with
-        each other.
+        Lower bound of the distance, mm, at most `reach`; 0 on contact, including contact between
+        links.
     """
     values = np.asarray(joints, float)
     finite = np.isfinite(values).all(axis=1)
@@ -509,10 +506,9 @@ def min_distance(contact: ArmContact, joints: ArrayLike, moment: Index, reach: f
 
 
 def _bound(group: Group, solid: Solid, frame: Array, link: Array) -> Array:
-    """Return lower bounds (k,) mm of the distance of a solid of a link, with frames `link` (k,
-    4, 4), from a group.
+    """Return lower bounds (k,) of the distance of a solid from a group, mm.
 
-    Computed from balls around both.
+    They follow from the balls around both. frame, link: (k, 4, 4) of group and link.
     """
     centre = frame[:, :3, :3] @ group.centre + frame[:, :3, 3]
     offset = link[:, :3, :3] @ solid.centre + link[:, :3, 3] - centre
@@ -520,7 +516,7 @@ def _bound(group: Group, solid: Solid, frame: Array, link: Array) -> Array:
 
 
 def _distance(group: Group, solid: Solid, link_frame: Array, moment: Index, reach: float) -> float:
-    """Return the smallest distance, mm, of a solid whose link has the frames (k, 4, 4)."""
+    """Return the minimum distance of a solid over link frames (k, 4, 4), mm."""
     turn = link_frame[:, :3, :3]
     tip, axis = turn @ solid.tip + link_frame[:, :3, 3], turn @ solid.axis
     return float(group.scene.distance(solid.solid, tip, axis, moment, reach).min())

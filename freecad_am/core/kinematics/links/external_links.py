@@ -24,11 +24,9 @@ Mesh = tuple[Array, Integers]
 
 
 def robot_cylinders(chain: Chain, shapes: Sequence[Mesh | None] = ()) -> list[list[Cylinder]]:
-    """Return the cylinders of each link (axes + 1) of a robot, base first, in the frame of the
-    link.
+    """Return the cylinders of each robot link (axes + 1) in the link frame, base first.
 
-    shapes: points (n, 3) and triangles (m, 3) of links that are not drawn plain, in the same
-    frames.
+    shapes: points (n, 3) and triangles (m, 3) of links with a known shape, in the link frames.
     """
     plain = [solid_cylinders(link) for link in robot_links.solids(chain)]
     return [
@@ -38,24 +36,24 @@ def robot_cylinders(chain: Chain, shapes: Sequence[Mesh | None] = ()) -> list[li
 
 
 def solid_cylinders(link: Sequence[Solid]) -> list[Cylinder]:
-    """The cylinders that hold the solids of a link, in the same frame."""
+    """Return cylinders that enclose the solids of a link, in the same frame."""
     points = [solid.points for solid in link]
     return drop_redundant([enclosing_cylinder(solid_points) for solid_points in points], points)
 
 
 Read = Callable[[LinkShape], Mesh | None]
-EDGE = 50.0  # mm, longest edge of a triangle against which nozzles are tested
+EDGE = 50.0  # mm; maximum triangle edge in nozzle tests
 STANDS = -1  # value of `axis` for a link fixed to the floor
 
 
 @dataclass(frozen=True, eq=False)
 class ExternalLink:
-    """A link of a mechanism: `body`, named as in messages, and the cylinders around it, in its
-    frame.
+    """A link of a mechanism.
 
-    machine: the id of the mechanism. mechanism, link: its index among all, and the index of
-    the link, 0 for its base. axis: the external axis that moves it last, STANDS if none does.
-    carries: `part` or `robot`. axes_after: number of axes between it and its load.
+    machine: id of the mechanism. mechanism: its index. link: index of the link, 0 for the base.
+    axis: the last external axis that moves the link; STANDS if none does. carries: `part` or
+    `robot`. axes_after: number of axes between the link and the load. body: named as in messages.
+    cylinders: enclose the body, in its frame.
     """
 
     machine: str
@@ -69,12 +67,12 @@ class ExternalLink:
 
     @cached_property
     def solid(self) -> Bodies:
-        """The body as tested against nozzles."""
+        """The body for tests against nozzles."""
         return build_bodies([self.body], self.body.vertices, 0.0, EDGE)
 
     @property
     def name(self) -> str:
-        """Name in messages."""
+        """The name in messages."""
         return self.body.name
 
 
@@ -88,16 +86,16 @@ def external_links(
     Parameters
     ----------
     external : ExternalAxes or None
-        The external axes; None without any.
+        The external axes; None without external axes.
     read_shape : Read or None, optional
-        Returns the triangles of a shape file in the frame of the link, None without any.
+        Returns the triangles of a shape file in the link frame; None if there are none.
     known_links : sequence of ExternalLink, optional
-        Links that are not read again.
+        Links that are already loaded.
 
     Returns
     -------
     tuple of ExternalLink
-        The links, mechanism by mechanism.
+        The links, grouped by mechanism.
     """
     if external is None:
         return ()
@@ -137,7 +135,7 @@ def external_links(
 
 
 def titles_without_shape(external: ExternalAxes, links: Sequence[ExternalLink]) -> list[str]:
-    """Return the titles of mechanisms without known shape; links: the known ones."""
+    """Return the titles of mechanisms without known shape; links: the known links."""
     described = {link.mechanism for link in links}
     return [
         link.machine.title
@@ -147,7 +145,7 @@ def titles_without_shape(external: ExternalAxes, links: Sequence[ExternalLink]) 
 
 
 def _axis(external: ExternalAxes, number: int, link: int) -> int:
-    """Return the index of the external axis that moves a link of a mechanism last."""
+    """Return the index of the last external axis that moves a link."""
     mechanism = external.mechanisms[number]
     if link:
         return int(mechanism.values[link - 1])
@@ -157,7 +155,7 @@ def _axis(external: ExternalAxes, number: int, link: int) -> int:
 
 
 def _after(external: ExternalAxes, number: int, link: int) -> int:
-    """Return the number of axes between a link of a mechanism and its final load."""
+    """Return the number of axes between a link and the load."""
     above = [mechanism for mechanism in external.mechanisms if mechanism.under == number]
     count = external.mechanisms[number].machine.chain.axes - link
     return count + sum(mechanism.machine.chain.axes for mechanism in above)
@@ -166,8 +164,9 @@ def _after(external: ExternalAxes, number: int, link: int) -> int:
 def _merge_pieces(
     shapes: Pieces, read_shape: Read | None
 ) -> tuple[Body, tuple[Cylinder, ...]] | None:
-    """Return the shapes of a link as one unnamed body, and the cylinders around them; None
-    without any.
+    """Return the shapes of a link as one unnamed body, and the enclosing cylinders.
+
+    None if there are no shapes.
     """
     meshes = [mesh for mesh in (_mesh(shape, read_shape) for shape in shapes) if mesh is not None]
     if not meshes:

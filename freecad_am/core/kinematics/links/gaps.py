@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Clearance of links from the objects tested against them, and its rate while the joints
-move.
+"""Gaps between links and the objects tested against them, and their rates during joint motion.
 
-A gap is 0 where contact begins in the sense of `ArmContact`. Where two solids overlap it
-is negative: their penetration along the direction in which a reduced link is nearest.
-That is exact where a flat face or the side of a link is met, and never smaller where
-edges are.
+A gap is 0 where contact begins as defined by `ArmContact`. Where two solids overlap it is negative:
+the penetration along the direction in which a reduced link is nearest. This is exact for contact at
+a flat face or the side of a link, and an upper bound at edges.
 """
 
 from __future__ import annotations
@@ -27,17 +25,17 @@ from .self_collision import Solid, place_cylinder
 OFF_RADIUS, OFF_END = (
     0.9,
     0.4,
-)  # shares by which the radius, and the length at each end, of a reduced link are smaller
-SHARES = (0.2, 1.0)  # fractions of these shares, tried in turn
-MIN_DEPTH = 1e-3  # mm; minimum depth by which two touching solids intersect
+)  # relative reduction of the radius, and of the length at each end, of a reduced link
+SHARES = (0.2, 1.0)  # fractions of these reductions to try in turn
+MIN_DEPTH = 1e-3  # mm; minimum penetration of two touching solids
 
 
 @dataclass(frozen=True)
 class Pair:
-    """A link, by its number, and its counterpart: a group, or another link by its number.
+    """A link and its counterpart.
 
-    moved: number of joints of the robot, from its base on, that move the link and the
-    counterpart.
+    link: index. against: a group, or the index of another link. moved: number of robot joints,
+    starting at the base, that move the link and the counterpart.
     """
 
     link: int
@@ -47,19 +45,19 @@ class Pair:
 
 @dataclass(frozen=True)
 class Gaps:
-    """Links of a robot in its cell, tested up to `reach` mm."""
+    """The gaps of the links of a robot in its cell, up to `reach` mm."""
 
     contact: ArmContact
     reach: float
 
     @cached_property
     def pairs(self) -> tuple[Pair, ...]:
-        """Return all pairs of links and objects that can touch.
+        """Return all pairs of links and objects that may touch.
 
         Returns
         -------
         tuple of Pair
-            Links against groups of objects, then links against links.
+            Links against groups, then links against links.
         """
         of_group = [
             Pair(link, group, (self._moving_joints(link), self._moved_group(group)))
@@ -86,25 +84,25 @@ class Gaps:
     def gaps_and_rates(
         self, joints: Array, rates: Array, moment: Index, is_requested: Mask
     ) -> tuple[Array, Array]:
-        """Return the gaps of pairs and their rates while the joints move.
+        """Return the gaps of pairs and their rates during joint motion.
 
         Parameters
         ----------
         joints : (k, axes) array
             Joints, rad or mm.
         rates : (k, axes) array
-            Their rates, per unit of a parameter.
+            Joint rates, per unit of a parameter.
         moment : (k,) int array
-            Number of points of the deposit present.
+            Number of deposit points printed.
         is_requested : (p, k) bool array
             Pairs to compute.
 
         Returns
         -------
         gap : (p, k) array
-            Gaps, mm; `reach` for pairs not requested or farther away.
+            Gaps, mm; `reach` for pairs that are not requested or farther apart.
         rate : (p, k) array
-            Their rates, mm per unit; 0 for such pairs.
+            Rates, mm per unit; 0 for these pairs.
         """
         links, seen_from = self.contact.link_frames(joints)
         axes = self.contact.cell.machine.chain.frames(joints)
@@ -142,7 +140,7 @@ class Gaps:
         return self.contact.cell.machine.chain.sliding
 
     def _near(self, pair: Pair, links: Array, seen_from: dict[str, Array], rows: Index) -> Mask:
-        """Return whether (k,) balls around both are within reach."""
+        """Return in which frames (k,) the enclosing balls are within reach."""
         if isinstance(pair.against, Group):
             frame = seen_from[pair.against.seen_from][rows]
             other_ball = (pair.against.centre, pair.against.radius)
@@ -164,9 +162,7 @@ class Gaps:
     def _from_group(
         self, pair: Pair, link: Array, frame: Array, moment: Index
     ) -> tuple[Array, Array, Array]:
-        """Return gaps (k,), directions (k, 3) in which they open and the positions (k, 3) of the
-        link where they are.
-        """
+        """Return gaps (k,), and their opening directions and positions on the link (k, 3)."""
         assert isinstance(pair.against, Group)
         link_frame = frames.inverse(frame) @ link[:, pair.link]
         solid_gaps = [
@@ -220,11 +216,10 @@ class Gaps:
 def _penetration_gap(
     group: Group, solid: Frustum, share: float, tip: Array, axis: Array, moment: Index
 ) -> tuple[Array, Array, Array]:
-    """Return, for solids (k,) that meet a group, the gaps of the solids along the directions of
-    `Scene.nearest`.
+    """Return the penetration of solids (k,) that touch a group, as negative gaps.
 
-    Those directions are for reduced solids, smaller by a share of the allowed reduction. The
-    gap is 0 where the reduced solid meets the group too.
+    The directions are those of `Scene.nearest` for solids reduced by a fraction `share` of the
+    allowed reduction. The gap is 0 where the reduced solid also touches the group.
     """
     thin = share * OFF_RADIUS * (solid.radius + solid.slope * float(np.min(solid.low)))
     short = share * OFF_END * (solid.high - float(np.min(solid.low)))
@@ -245,7 +240,7 @@ def _penetration_gap(
 
 
 def _smallest_gap(candidates: Sequence[tuple[Array, Array, Array]]) -> tuple[Array, Array, Array]:
-    """Return, of several gaps (k,), directions and positions (k, 3), those of the smallest gap."""
+    """Return the smallest of several gaps (k,), with its direction and position (k, 3)."""
     best = np.argmin([gap for gap, _, _ in candidates], axis=0)
     row = np.arange(len(candidates[0][0]))
     gap, normal, position = (np.stack(columns)[best, row] for columns in zip(*candidates))
@@ -260,8 +255,9 @@ def _rotate(turn: Array, vectors: Array) -> Array:
 def _velocity(
     directions: Array, origins: Array, position: Array, rates: Array, moved: int, sliding: Mask
 ) -> Array:
-    """Return the velocities (k, 3) of positions (k, 3) moved by the first `moved` joints, with
-    axes at (k, axes, 3).
+    """Return velocities (k, 3) of positions (k, 3) that the first `moved` joints move.
+
+    directions, origins: (k, axes, 3) of the joint axes.
     """
     total = np.zeros_like(position)
     for joint in range(moved):

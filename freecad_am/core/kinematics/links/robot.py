@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The links of a robot from its kinematic chain only: plain solids along its axes.
+"""Robot links drawn from the kinematic chain only, as plain solids along its axes.
 
-Along each axis there is a run between the common perpendiculars with the previous and the
-next axis. Long runs are tubes, such as column and forearm; axes without one are drums,
-such as shoulder and elbow.
+The run of an axis lies between the common perpendiculars with the previous and the next axis. Long
+runs become tubes, such as column and forearm. Axes without a run become drums, such as shoulder and
+elbow.
 """
 
 from __future__ import annotations
@@ -17,26 +17,28 @@ from ...types import Array
 from ..chain import Chain
 from .solids import BRIGHT, DARK, Solid, capsule, cylinder, revolve, strut
 
-# radii of the first and the last joint as shares of the arm's whole length, tapering between; the last such that flanges of
-# robots from 0.7 to 3 m are about as wide as the plates of ISO 9409-1 are: 40 to 125 mm
+# radii of the first and last joint as fractions of the arm length, with a taper between; THIN makes
+# the flanges of robots from 0.7 to 3 m about as wide as ISO 9409-1 plates (40 to 125 mm)
 THICK, THIN = 0.068, 0.016
 FLANGE = 1.045  # radius of the flange, relative to the last joint
-# half the length of a drum, in radii
+# half the length of a drum, relative to its radius
 DRUM = 0.85
-# runs shorter than this share of the arm are ignored
+# fraction of the arm length below which a run is ignored
 LEAST_SHARE = 0.03
-# share of a run that belongs to the previous link
+# fraction of a run that belongs to the previous link
 STILL = 0.45
-_NONE = 1e-6  # shorter runs are not drawn
-# tolerance of parallel axes, rad
+_NONE = 1e-6  # fraction of the arm length below which a link is not drawn
+# rad; tolerance for parallel axes
 _PARALLEL = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
-    """Per axis of a chain at zero: unit `directions`, the point at which the previous link meets it
-    (`enter`) and the point at which its link leaves it (`leave`), all (axes, 3) in base_link;
-    the `flange` point and `size`, the total length, mm.
+    """The axes of a chain at zero, in base_link, mm.
+
+    directions: (axes, 3) unit vectors. enter: (axes, 3) points where the previous link meets each
+    axis. leave: (axes, 3) points where the link of each axis leaves it. flange: (3,) flange point.
+    size: total length of the arm.
     """
 
     directions: Array
@@ -46,13 +48,14 @@ class Skeleton:
     size: float
 
     def radius(self, axis: int) -> float:
-        """Return the radius of the joint of an axis, mm."""
+        """Return the joint radius of an axis, mm."""
         share = axis / max(1, len(self.directions) - 1)
         return float(self.size * THICK * (THIN / THICK) ** share)
 
     def run(self, axis: int) -> float:
-        """Return the length of the run along an axis, mm; 0 if it is short, except for the last one,
-        which ends at the flange.
+        """Return the length of the run along an axis, mm.
+
+        A short run counts as 0, except for the last one, which ends at the flange.
         """
         length = float(np.linalg.norm(self.leave[axis] - self.enter[axis]))
         short = LEAST_SHARE if axis + 1 < len(self.directions) else _NONE
@@ -60,7 +63,7 @@ class Skeleton:
 
 
 def skeleton(chain: Chain) -> Skeleton:
-    """The skeleton of a chain of turning joints."""
+    """Return the skeleton of a chain of revolute joints."""
     at_zero = chain.frames(np.zeros(chain.axes))
     directions, origins, flange = at_zero.directions, at_zero.origins, at_zero.flange[:3, 3]
     enter, leave = np.empty((chain.axes, 3)), np.empty((chain.axes, 3))
@@ -78,8 +81,9 @@ def skeleton(chain: Chain) -> Skeleton:
 
 
 def solids(chain: Chain) -> list[list[Solid]]:
-    """Return the solids of each link (axes + 1), base first, in the frame of the link, which
-    turns with its joint.
+    """Return the solids of each link (axes + 1), base first.
+
+    They are given in the link frames, which move with the joints.
     """
     bones = skeleton(chain)
     solids_of_links: list[list[Solid]] = [[] for _ in range(chain.axes + 1)]
@@ -103,7 +107,7 @@ def _base(bones: Skeleton, base: list[Solid]) -> None:
 
 
 def _joint(bones: Skeleton, axis: int, previous_link: list[Solid], link: list[Solid]) -> None:
-    """Add the joint of an axis: its housing to the previous link, its rotor to its own link."""
+    """Add the joint of an axis: its housing to the previous link, its rotor to the axis's link."""
     start, direction, radius = bones.enter[axis], bones.directions[axis], bones.radius(axis)
     run = bones.run(axis)
     if not run and axis + 1 == len(bones.directions):
@@ -190,20 +194,21 @@ def _flange(bones: Skeleton, last_link: list[Solid]) -> None:
 
 
 def flange_radius(chain: Chain) -> float:
-    """The radius, mm, of the drawn flange."""
+    """Return the radius of the drawn flange, mm."""
     return FLANGE * skeleton(chain).radius(chain.axes - 1)
 
 
 def _project_onto_axis(point: Array, origin: Array, direction: Array) -> Array:
-    """Return the point of an axis nearest to another point."""
+    """Return the point of an axis nearest to a given point."""
     return np.asarray(origin + ((point - origin) @ direction) * direction)
 
 
 def _feet(
     origin_a: Array, direction_a: Array, origin_b: Array, direction_b: Array, through: Array
 ) -> tuple[Array, Array]:
-    """Return the feet of the common perpendicular of two axes; for parallel axes the one through
-    the point `through`.
+    """Return the feet of the common perpendicular of two axes.
+
+    For parallel axes, use the perpendicular through the point `through`.
     """
     normal = np.cross(direction_a, direction_b)
     square = float(normal @ normal)

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Links of a robot against each other.
+"""Collisions between links of a robot.
 
-Three kinds of pairs are left out: links connected by a joint; base and upper arm, and the
-flange and the link two before it, which the stops of one axis keep apart, however plump
-both are drawn; and pairs that are too near in more than half of all positions within the
-limits, as the links of a wrist are for a clearance wider than the wrist. Nothing else is
-left out.
+Three kinds of pairs are omitted:
+
+- links that a joint connects;
+
+- base and upper arm, and flange and the link two before it, because the stops of one axis keep them
+apart however thick they are drawn;
+
+- links that are too close in more than half of all positions within the limits, such as wrist links
+with a clearance larger than the wrist.
 """
 
 from __future__ import annotations
@@ -33,8 +37,9 @@ NONE = -1  # no link
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """A solid of revolution, a link or a piece of one: tip and unit axis (3,) in the frame of
-    the link, and the ball around it.
+    """A solid of revolution that models a link or a piece of it.
+
+    tip, axis: (3,) point and unit axis in the link frame. centre, radius: enclosing ball.
     """
 
     solid: Frustum
@@ -69,9 +74,9 @@ def about_link(link: Sequence[Solid]) -> tuple[Array, float]:
     Returns
     -------
     centre : (3,) array
-        In the frame of the link, mm.
+        Centre in the link frame, mm.
     radius : float
-        0 without solids, mm.
+        Radius, mm; 0 without solids.
     """
     if not link:
         return np.zeros(3), 0.0
@@ -82,7 +87,7 @@ def about_link(link: Sequence[Solid]) -> tuple[Array, float]:
 
 
 def ball(points: Array) -> tuple[Array, float]:
-    """Return a ball about points, centred in their bounding box.
+    """Return a ball around points, centred in their bounding box.
 
     Parameters
     ----------
@@ -103,15 +108,17 @@ def ball(points: Array) -> tuple[Array, float]:
 POSITIONS, LEFT_OUT = (
     128,
     0.5,
-)  # positions that decide which pairs are left out, and the share at which they are still tested
-SAMPLE_STRIDE = 4  # stride of the positions tested first
-REMEMBERED = 8  # robots with cached pairs: a job needs them while planning, for its rapids, and in the final check
+)  # positions that decide which pairs to omit, and the maximum contact fraction of a tested pair
+SAMPLE_STRIDE = 4  # stride of the positions to test first
+REMEMBERED = 8  # robots with cached pairs: planning, rapids and final check of a job need them
 
 
 @dataclass(frozen=True, eq=False)
 class OwnLinks:
-    """solids: of each link, base first, in its frame. balls: centre and radius of a ball around
-    these. gap: mm, nearer links touch. pairs: tested links (outer, inner).
+    """The robot links for tests against each other.
+
+    solids: of each link in its frame, base first. balls: centre and radius of a ball around each
+    link. gap: mm; closer links count as touching. pairs: tested links (outer, inner).
     """
 
     solids: tuple[tuple[Solid, ...], ...]
@@ -130,31 +137,31 @@ class OwnLinks:
         chain : Chain
             The chain of the robot.
         limits : Limits
-            Its limits; the first ones are the robot's own.
+            Limits; those of the robot come first.
         cylinders : sequence of sequence of Cylinder
-            Cylinders (axes + 1) in the frame of each link.
+            Cylinders (axes + 1) in the link frames.
         clearance : float
-            Distance to keep between links, mm.
+            Required distance between links, mm.
 
         Returns
         -------
         OwnLinks
-            The links.
+            The links and the pairs to test.
         """
         return _find_pairs(_Asked(chain, limits, cylinders, clearance))
 
     def touches(self, links: Array) -> tuple[Index, Index]:
-        """Return the touching pair of links nearest to the base.
+        """Return the touching link pair nearest to the base.
 
         Parameters
         ----------
         links : (k, links, 4, 4) array
-            Frames, the robot's own first, from the base on.
+            Link frames, robot links first, starting at the base.
 
         Returns
         -------
         outer, inner : (k,) int array
-            The two links; NONE without contact.
+            Indices of both links; NONE without contact.
         """
         outer, inner = np.full((2, len(links)), NONE, dtype=np.int64)
         middles = self._middles(links)
@@ -173,21 +180,21 @@ class OwnLinks:
     def often(
         self, pair: tuple[int, int], links: Array, middles: Sequence[Array], share: float
     ) -> bool:
-        """Return whether two links touch with more than a share of the frames.
+        """Whether two links touch in more than a fraction of the frames.
 
-        Most pairs are near in fewer frames, by their balls or the axes of their cylinders,
-        so no exact test is needed.
+        For most pairs, the balls or the cylinder axes are close in fewer frames, so no exact test
+        is needed.
 
         Parameters
         ----------
         pair : tuple[int, int]
-            The two links.
+            Indices of both links.
         links : (k, links, 4, 4) array
-            Frames of all links.
+            Link frames.
         middles : sequence of (k, 3) array
-            Middles of the balls of each link.
+            Ball centres of each link.
         share : float
-            The share.
+            Fraction of the frames.
 
         Returns
         -------
@@ -202,19 +209,20 @@ class OwnLinks:
         return len(rows) > max_count
 
     def _middles(self, links: Array) -> list[Array]:
-        """Positions (k, 3) of the middles of the balls of each link."""
+        """Return the ball centres (k, 3) of each link."""
         return [
             frames.transform_point(links[:, k], middle) for k, (middle, _) in enumerate(self.balls)
         ]
 
     def _near(self, outer: int, inner: int, middles: Sequence[Array]) -> Index:
-        """Return the frames with which the balls of two links are nearer than the links may be."""
+        """Return the frames in which the balls of two links are closer than `gap`."""
         separation = lengths(middles[outer] - middles[inner])
         return np.flatnonzero(separation - self.balls[outer][1] - self.balls[inner][1] < self.gap)
 
     def _close(self, outer: int, inner: int, a: Array, b: Array) -> Mask:
-        """Return whether (k,) axes of cylinders of two links, with frames (k, 4, 4) of each, are as
-        near as their radii.
+        """Return in which frames (k,) cylinder axes of two links are closer than radii and gap.
+
+        a, b: (k, 4, 4) link frames.
         """
         close = np.zeros(len(a), dtype=bool)
         inner_cylinders = [
@@ -231,7 +239,7 @@ class OwnLinks:
         return close
 
     def _touch(self, outer: int, inner: int, a: Array, b: Array) -> Mask:
-        """Return whether (k,) two links touch, with frames (k, 4, 4) of each."""
+        """Return in which frames (k,) two links touch; a, b: (k, 4, 4) link frames."""
         touch = np.zeros(len(a), dtype=bool)
         inner_cylinders = [
             place_cylinder(inner_cylinder, b) for inner_cylinder in self.solids[inner]
@@ -250,7 +258,7 @@ class OwnLinks:
 
 @dataclass(frozen=True, eq=False)
 class _Asked(ByNumbers):
-    """The inputs that determine the links of a robot, as a cache key."""
+    """The inputs that determine the link pairs of a robot, as a cache key."""
 
     chain: Chain
     limits: Limits
@@ -276,7 +284,7 @@ def _find_pairs(query: _Asked) -> OwnLinks:
     links = query.chain.links(positions(query.limits, query.chain.axes))
     if not len(links):
         return OwnLinks(solids, untested.balls, gap, tuple(all_pairs))
-    # for most pairs a few positions show that they are far below that share
+    # for most pairs, a few positions show that they are far below this fraction
     middles = untested._middles(links)
     sampled_middles = [middle[::SAMPLE_STRIDE] for middle in middles]
     usual = {
@@ -291,12 +299,12 @@ def _find_pairs(query: _Asked) -> OwnLinks:
 
 
 def positions(limits: Limits, axes: int) -> Array:
-    """Return joints spread evenly over the limits of the first axes, always the same.
+    """Return joints spread evenly and deterministically over the limits of the first axes.
 
     Parameters
     ----------
     limits : Limits
-        The limits; continuous axes cover one turn.
+        Limits; continuous axes cover one turn.
     axes : int
         Number of axes.
 
@@ -316,14 +324,14 @@ def positions(limits: Limits, axes: int) -> Array:
 
 
 def place_cylinder(solid: Solid, frame: Array) -> PlacedCylinders:
-    """Place the cylinder of a solid.
+    """Place the cylinder of a solid at link poses.
 
     Parameters
     ----------
     solid : Solid
-        The solid, in the frame of its link.
+        The solid in its link frame.
     frame : (k, 4, 4) array
-        Poses of the link, mm.
+        Link poses, mm.
 
     Returns
     -------

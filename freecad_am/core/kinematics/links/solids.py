@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plain solids as triangles with normals: revolved about an axis, cylinders between two
-discs, boxes. Only for drawing.
-"""
+"""Plain solids as triangles with normals, only for drawing: revolved solids, cylinders, boxes."""
 
 from __future__ import annotations
 
@@ -18,8 +16,10 @@ SIDES = 40
 
 @dataclass(frozen=True, eq=False)
 class Solid:
-    """points, normals: (n, 3) mm and outward unit vectors; triangles: (m, 3) indices; tone: its
-    kind of surface.
+    """A triangulated solid.
+
+    points, normals: (n, 3) mm and outward unit vectors. triangles: (m, 3) indices. tone: surface
+    tone.
     """
 
     points: Array
@@ -38,7 +38,7 @@ class Solid:
         Returns
         -------
         Solid
-            Of the same kind.
+            Moved solid with the same tone.
         """
         turn = pose[:3, :3].T
         return Solid(
@@ -51,24 +51,24 @@ def revolve(
 ) -> Solid:
     """Return a solid of revolution.
 
-    Each stretch of the outline has its own normals, so edges stay sharp.
+    Each segment of the outline has its own normals, so edges stay sharp.
 
     Parameters
     ----------
     outline : (k, 2) array
-        Radius in mm and position on the axis, 0 at its start and 1 at its end; along the
-        outside from start to end.
+        Radius in mm, and position on the axis from 0 at its start to 1 at its end, along the
+        outside.
     start, end : (3,) array
         Ends of the axis, mm.
     tone : str, optional
-        Kind of surface.
+        Surface tone.
     sides : int, optional
-        Number of facets around.
+        Number of facets around the axis.
 
     Returns
     -------
     Solid
-        Triangles with normals.
+        The solid.
     """
     shape = np.asarray(outline, float)
     begin = np.asarray(start, float)
@@ -82,7 +82,7 @@ def revolve(
     valid = np.flatnonzero(size >= 1e-9)
     run, rise, size = run[valid], rise[valid], size[valid]
     ends = np.stack([shape[valid], shape[valid + 1]], axis=1)
-    # of each stretch a ring at its start and one at its end
+    # for each segment, one ring at its start and one at its end
     count = len(ring)
     points, normals = np.empty((2, len(valid), 2, count, 3))
     points[..., :2], points[..., 2] = ends[:, :, None, :1] * ring, ends[:, :, None, 1]
@@ -107,18 +107,18 @@ def cylinder(
     Parameters
     ----------
     start, end : (3,) array
-        Centres of its discs, mm.
+        Centres of the end discs, mm.
     radius : float
         Radius, mm.
     tone : str, optional
-        Kind of surface.
+        Surface tone.
     bevel : float, optional
-        Width of the bevel as a share of the radius; at most 0.4 of the length.
+        Bevel width, relative to the radius; at most 0.4 of the length.
 
     Returns
     -------
     Solid
-        Triangles with normals.
+        The solid.
     """
     length = float(np.linalg.norm(np.asarray(end, float) - np.asarray(start, float)))
     cut = min(bevel * radius, 0.4 * length)
@@ -144,14 +144,14 @@ def capsule(
     start, end : (3,) array
         Centres of the round ends, mm.
     start_radius, end_radius : float
-        Their radii, mm.
+        Radii of the round ends, mm.
     tone : str, optional
-        Kind of surface.
+        Surface tone.
 
     Returns
     -------
     Solid
-        Triangles with normals.
+        The solid.
     """
     begin, stop = np.asarray(start, float), np.asarray(end, float)
     length = float(np.linalg.norm(stop - begin))
@@ -174,7 +174,7 @@ def strut(
     thick: float,
     tone: str = BODY,
 ) -> Solid:
-    """Return a plate as wide as two discs at its ends.
+    """Return a plate with round ends of the size of two discs.
 
     Parameters
     ----------
@@ -187,12 +187,12 @@ def strut(
     thick : float
         Thickness along `axis`, mm.
     tone : str, optional
-        Kind of surface.
+        Surface tone.
 
     Returns
     -------
     Solid
-        Triangles with normals.
+        The solid.
     """
     begin, stop, normal = (np.asarray(value, float) for value in (start, end, axis))
     chord = stop - begin
@@ -200,7 +200,7 @@ def strut(
     length = float(np.linalg.norm(chord))
     along = chord / length
     across = np.cross(normal, along)
-    # points at which the common tangents touch the discs
+    # points where the common tangents touch the discs
     lean = float(np.arccos(np.clip((start_radius - end_radius) / length, -1.0, 1.0)))
     low, high = np.linspace(lean, 2.0 * np.pi - lean, 24), np.linspace(-lean, lean, 24)
     outline = np.concatenate(
@@ -217,7 +217,7 @@ def strut(
 
 
 def _prism(outline: Array, outward: Array, normal: Array, thick: float, tone: str) -> Solid:
-    """A convex outline (n, 3) with its normals, thickened to both sides along `normal`."""
+    """Extrude a convex outline (n, 3) with outward normals to both sides along `normal`."""
     n, half = len(outline), 0.5 * thick * normal
     rim = np.concatenate([outline - half, outline + half])
     ends = np.concatenate([-np.ones(n), np.ones(n)])[:, None] * normal
@@ -242,23 +242,23 @@ def box(
     size: tuple[float, float, float],
     tone: str = BODY,
 ) -> Solid:
-    """Return a box about its centre.
+    """Return a box.
 
     Parameters
     ----------
     centre : (3,) array
         Centre, mm.
     x, y : (3,) array
-        Unit vectors of two edges; the third is their cross product.
+        Unit vectors of two edges; their cross product gives the third edge.
     size : tuple[float, float, float]
-        Lengths of the edges, mm.
+        Edge lengths, mm.
     tone : str, optional
-        Kind of surface.
+        Surface tone.
 
     Returns
     -------
     Solid
-        Triangles with normals.
+        The solid.
     """
     axis_x, axis_y = np.asarray(x, float), np.asarray(y, float)
     axes = np.stack([axis_x, axis_y, np.cross(axis_x, axis_y)])

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The calibration of one robot of Universal Robots, as ROS' `ur_calibration` writes it from
-the controller.
+"""Calibration of an individual Universal Robots arm, as ROS' `ur_calibration` exports it.
 
-For every joint the file has the pose of its frame in the previous link: `kinematics:
-forearm: {x, y, z, roll, pitch, yaw}` in m and rad, in block style; the first is seen from
-the manufacturer's base frame. Everything else comes from the machine file.
+The file gives the pose of each joint frame in the previous link: `kinematics: forearm: {x, y, z,
+roll, pitch, yaw}` in m and rad, in YAML block style. The first pose is relative to the
+manufacturer's base frame. The machine file provides everything else.
 """
 
 from __future__ import annotations
@@ -22,10 +21,10 @@ from ...issues import InputError
 from ...types import Array
 from ..chain import Chain
 
-MAX_FILE_MB = 1  # MB
+MAX_FILE_MB = 1
 JOINTS = ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")
 NUMBERS = ("x", "y", "z", "roll", "pitch", "yaw")
-# mm and rad: a calibration that is farther from the machine file belongs to another robot
+# mm and rad; a calibration that deviates more from the machine file belongs to another robot
 FAR_MM, FAR_RAD = 30.0, math.radians(3.0)
 _NAMED = re.compile(r"(?P<machine>.+?)\s+calibration=(?P<file>.+)")
 _ENTRY = re.compile(r"(?P<indent> *)(?P<key>[^\s:#]+):(?:\s+(?P<value>.*))?")
@@ -33,7 +32,7 @@ _ENTRY = re.compile(r"(?P<indent> *)(?P<key>[^\s:#]+):(?:\s+(?P<value>.*))?")
 
 @dataclass(frozen=True)
 class Named:
-    """A machine, by its id or machine file, and the file of its calibration. Its text is `ur-ur10e calibration=my.yaml`."""
+    """A machine (id or file) and its calibration file: `ur-ur10e calibration=my.yaml` as text."""
 
     machine: str
     file: str
@@ -43,30 +42,30 @@ class Named:
 
 
 def named(text: str) -> Named | None:
-    """Return the calibration that a text names, None if it names none."""
+    """Return the machine and calibration that a text names; None without a calibration."""
     match = _NAMED.fullmatch(text.strip())
     return None if match is None else Named(match["machine"], match["file"])
 
 
 def read(path: Path) -> tuple[Array, str]:
-    """Read the calibration of one robot.
+    """Read the calibration of a robot.
 
     Parameters
     ----------
     path : Path
-        The YAML file that ur_calibration wrote.
+        YAML file from ur_calibration.
 
     Returns
     -------
     poses : (6, 4, 4) array
         Poses of the joint frames in the previous links, mm.
     hash : str
-        The robot's `hash`, empty if absent.
+        `hash` of the robot; empty if missing.
 
     Raises
     ------
     InputError
-        UNKNOWN_MACHINE without the file, BAD_CALIBRATION naming line or key.
+        UNKNOWN_MACHINE if the file is missing; BAD_CALIBRATION with the line or key.
     """
     if not is_there(path):
         raise InputError(
@@ -91,18 +90,18 @@ def read(path: Path) -> tuple[Array, str]:
 
 
 def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
-    """Return the chain of a robot with the joint frames of its calibration.
+    """Return the robot chain with calibrated joint frames.
 
     Parameters
     ----------
     chain : Chain
-        The chain of the machine file.
+        Chain of the machine file.
     base : (4, 4) array
-        The manufacturer's base frame in base_link.
+        Manufacturer's base frame in base_link.
     poses : (6, 4, 4) array
-        The calibrated joint frames, mm.
+        Calibrated joint frames, mm.
     path : Path
-        The calibration file, for messages.
+        Calibration file, for messages.
 
     Returns
     -------
@@ -112,7 +111,7 @@ def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
     Raises
     ------
     InputError
-        BAD_CALIBRATION if a joint is far from the chain's, as for another robot.
+        BAD_CALIBRATION if a joint is far from its position in the machine file.
     """
     origins = poses.copy()
     origins[0] = base @ poses[0]
@@ -134,7 +133,7 @@ def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
 
 
 def _entries(text: str, path: Path) -> dict[str, str]:
-    """Return the values of a file of nested keys, by their keys joined with points."""
+    """Return the values of a file of nested keys, by dotted key."""
     values: dict[str, str] = {}
     open_: list[tuple[int, str]] = []
     for number, line in enumerate(text.splitlines(), 1):

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tables of Denavit and Hartenberg, standard and modified, as chains of joint frames, and
-chains as such tables.
+"""Conversion between Denavit-Hartenberg tables, standard or modified, and chains of joint frames.
 
 Standard (Denavit, Hartenberg 1955; Spong): link = Rot(z, theta) Trans(z, d) Trans(x, a)
-Rot(x, alpha). Modified (Craig): link = Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z,
-d). Both are between a pose before the first row and one after the last, which such a
-table cannot hold.
+Rot(x, alpha). Modified (Craig): link = Rot(x, alpha) Trans(x, a) Rot(z, theta) Trans(z, d). Both
+need a pose before the first row and a pose after the last row, which the rows cannot express.
 """
 
 from __future__ import annotations
@@ -26,8 +24,10 @@ PARALLEL = 1e-10
 
 @dataclass(frozen=True)
 class Row:
-    """A link: `theta` and `alpha` rad, `d` and `a` mm. The joint's value times `sign` is added to theta, or to d where the
-    joint is `sliding`."""
+    """A link: `theta` and `alpha` in rad, `d` and `a` in mm.
+
+    The joint value times `sign` is added to theta, or to d if the joint is `sliding`.
+    """
 
     theta: float
     d: float
@@ -39,8 +39,9 @@ class Row:
 
 @dataclass(frozen=True, eq=False)
 class Table:
-    """Rows with the poses (4, 4) before the first and after the last row, mm. `modified`: by
-    Craig.
+    """Rows of a table, with the poses (4, 4) before the first and after the last row, mm.
+
+    modified: Craig's convention.
     """
 
     rows: tuple[Row, ...]
@@ -52,8 +53,8 @@ class Table:
 def chain_of(table: Table) -> Chain:
     """Return the chain of joint frames of a table.
 
-    Raises InputError BAD_TABLE for no rows, signs other than 1 and -1 and values that are not
-    finite.
+    Raises InputError BAD_TABLE for an empty table, signs other than 1 and -1, and values that are
+    not finite.
     """
     _check(table)
     origins, since_joint = [], table.before
@@ -70,10 +71,10 @@ def chain_of(table: Table) -> Chain:
 
 
 def table_of(chain: Chain, modified: bool = False) -> Table:
-    """Return the table of a chain; all signs are 1, because each z is along its axis.
+    """Return the table of a chain, with all signs 1, because each z is along its axis.
 
-    The frames of a table are free along parallel axes: there d is 0 in a standard table, and
-    before the axis in a modified one.
+    The position of a table frame along parallel axes is free. There d is 0 in a standard table, and
+    before the axis in a modified table.
     """
     at_rest = chain.frames(np.zeros(chain.axes))
     axes = list(zip(at_rest.directions, at_rest.origins, strict=True))
@@ -99,7 +100,7 @@ def _check(table: Table) -> None:
 
 
 def _row(row: Row, modified: bool) -> tuple[Array, Array]:
-    """Return the poses before and after the motion of a row's joint."""
+    """Return the poses before and after the joint motion of a row."""
     about_z = frames.pose(frames.about_z(row.theta), (0.0, 0.0, row.d))
     about_x = frames.pose(frames.about_x(row.alpha), (row.a, 0.0, 0.0))
     return (about_x, about_z) if modified else (np.eye(4), about_z @ about_x)
@@ -109,7 +110,10 @@ Axis = tuple[Array, Array]
 
 
 def _standard_frames(axes: Sequence[Axis]) -> list[Array]:
-    """Frame i has its z along axis i + 1 and its x along the common normal from axis i; the last has the z of the last."""
+    """Return frames with z of frame i along axis i + 1 and x along the common normal from axis i.
+
+    The last frame repeats the previous one.
+    """
     direction, origin = axes[0]
     placed = [_frame(direction, _any_normal(direction), origin)]
     for index, (direction, origin) in enumerate(axes[1:]):
@@ -119,8 +123,9 @@ def _standard_frames(axes: Sequence[Axis]) -> list[Array]:
 
 
 def _modified_frames(axes: Sequence[Axis]) -> list[Array]:
-    """Return frames on the axes: z along the axis, x along the common normal to the next; the
-    first frame appears twice.
+    """Return frames with z along each axis and x along the common normal to the next axis.
+
+    The first frame appears twice.
     """
     placed: list[Array] = []
     for index, (direction, origin) in enumerate(axes):
@@ -139,7 +144,7 @@ def _modified_frames(axes: Sequence[Axis]) -> list[Array]:
 
 
 def _parameters(link: Array, modified: bool, sliding: bool) -> Row:
-    """The four numbers of a pose that has the form of a link."""
+    """Return the four parameters of a pose that has the form of a link."""
     if modified:
         alpha = np.arctan2(-link[1, 2], link[2, 2])
         theta = np.arctan2(-link[0, 1], link[0, 0])
@@ -151,10 +156,10 @@ def _parameters(link: Array, modified: bool, sliding: bool) -> Row:
 
 
 def _normal(axis_a: Axis, axis_b: Axis, previous: Array) -> tuple[tuple[Array, Array], Array]:
-    """Return the feet of the common normal of two axes, on either, and its direction.
+    """Return the feet of the common normal on both axes, and its direction.
 
-    For parallel axes it is the normal through the origin of the frame `previous`, for
-    intersecting ones the normal to both; its sense follows the previous x.
+    For parallel axes, the normal passes through the origin of the frame `previous`. For
+    intersecting axes, it is the normal to both, in the sense of the previous x.
     """
     (z1, p1), (z2, p2) = axis_a, axis_b
     cross = np.cross(z1, z2)
@@ -163,7 +168,7 @@ def _normal(axis_a: Axis, axis_b: Axis, previous: Array) -> tuple[tuple[Array, A
         start: Array = p1 + z1 * float(z1 @ (previous[:3, 3] - p1))
         between = (p2 - start) - z1 * float(z1 @ (p2 - start))
         length = float(np.linalg.norm(between))
-        # parallel axes without a distance coincide: any normal is valid, preferably the previous one
+        # parallel axes without distance coincide: any normal is valid, preferably the previous x
         normal: Array = (
             between / length
             if length > 1e-9

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A machine being made: from a URDF, a table, closed-form dimensions or another machine to a
-machine file.
-"""
+"""Draft of a machine file, made from a URDF, a table, closed-form dimensions or another machine."""
 
 from __future__ import annotations
 
@@ -31,7 +29,7 @@ from .machine import Machine
 from .pendant import Shown
 
 NAME = re.compile(r"[a-z0-9][a-z0-9._-]*")
-# mm and deg to which the deviations of check poses are rounded up in the machine file
+# tolerances, mm and deg, to which deviations of check poses are rounded up in the machine file
 _ROUNDINGS = ((0.01, 0.001), (0.05, 0.01), (0.1, 0.05), file.MOST_ROUNDING)
 
 
@@ -39,13 +37,13 @@ _ROUNDINGS = ((0.01, 0.001), (0.05, 0.01), (0.1, 0.05), file.MOST_ROUNDING)
 class Draft:
     """The content of a machine file.
 
-    Per axis: `joints` names, `lower`, `upper`, `max_speed`, `max_acceleration`, `max_jerk`
-    (axes,) rad and mm and per s, infinite where continuous or not known. `horizontal`: the
-    displayed range, deg, of axis 3 against the horizontal, None without. `base` (4, 4): the
-    manufacturer's base frame in base_link. `values` (n, axes) as the controller shows them,
-    deg and mm, with flange `poses` (n, 4, 4) in base_link. `notes`: notes on the source for
-    the user; `remarks` go into the file. `labels`: the pendant's names of the axes, None if
-    it numbers them. `bodies` (axes + 1): the bodies of the links of a mechanism.
+    joints: axis names. lower, upper, max_speed, max_acceleration, max_jerk: (axes,) rad or mm, per
+    s, s^2, s^3; infinite if continuous or unknown. horizontal: displayed range of axis 3 against
+    the horizontal, deg; None if not used. base: (4, 4) manufacturer's base frame in base_link.
+    values: (n, axes) controller joint values, deg and mm. poses: (n, 4, 4) flange poses in
+    base_link for these values. notes: on the source, for the user. remarks: for the file. labels:
+    axis names of the pendant; None if it numbers the axes. bodies: (axes + 1) link bodies of a
+    mechanism.
     """
 
     id: str
@@ -74,7 +72,7 @@ class Draft:
 
     @property
     def units(self) -> Array:
-        """Return the internal value of one displayed unit of each axis.
+        """Return the internal value of one displayed unit, for each axis.
 
         Returns
         -------
@@ -85,7 +83,7 @@ class Draft:
 
 
 def draft_of_description(described: Description, source: str) -> Draft:
-    """Return the draft of a URDF description; limits come from the file."""
+    """Return the draft of a URDF description, with the limits of the file."""
     description = urdf_machine.ground_description(described)
     draft = _bare(description.chain, description.joints, description.name, source)
     return replace(
@@ -101,7 +99,7 @@ def draft_of_description(described: Description, source: str) -> Draft:
 
 
 def draft_of_chain(chain: Chain, source: str) -> Draft:
-    """Return the draft of a bare chain, from a table or closed-form figures."""
+    """Return the draft of a bare chain, from a table or closed-form dimensions."""
     grounded, moved = urdf_machine.grounded_chain(chain)
     draft = _bare(
         grounded, tuple(f"joint_{number}" for number in range(1, chain.axes + 1)), "", source
@@ -110,11 +108,10 @@ def draft_of_chain(chain: Chain, source: str) -> Draft:
 
 
 def draft_of_machine(name: str, folders: Sequence[Path | str] = ()) -> Draft:
-    """Return the draft of a copy of a listed machine, with its check poses and its limits
-    `maker`.
+    """Return the draft of a copy of a listed machine, with its check poses and limit set `maker`.
 
-    Raises InputError as `machine.load` does, and BAD_MACHINE if the controller displays axes
-    in a way that a draft cannot express.
+    Raises InputError as `machine.load` does, and BAD_MACHINE if a draft cannot express how the
+    controller displays axes.
     """
     machine = machines.load(name, folders)
     checks = machine_file.read(machines.file_of(name, folders))["check_poses"].items()
@@ -173,10 +170,10 @@ def closed_form(draft: Draft) -> SerialArm | None:
 
 
 def text(draft: Draft) -> str:
-    """Return the machine file.
+    """Return the text of the machine file.
 
-    Raises InputError BAD_NAME, NO_CLOSED_FORM, or BAD_MACHINE naming the wrong key, such as missing
-    or unmatched check poses.
+    Raises InputError BAD_NAME, NO_CLOSED_FORM, or BAD_MACHINE with the invalid key, such as missing
+    or mismatched check poses.
     """
     if not NAME.fullmatch(draft.id):
         raise InputError(
@@ -243,7 +240,7 @@ def _bare(chain: Chain, joints: tuple[str, ...], title: str, source: str) -> Dra
 
 
 def _display_of(machine: Machine) -> Shown:
-    """Return how a machine's controller displays its axes, from matrix and offset."""
+    """Return how the controller displays axes, derived from its matrix and offset."""
     zeros = tuple(_figures(machine.controller_offset / machine.unit_values))
     signs = tuple(int(np.sign(value)) for value in np.diag(machine.controller_matrix))
     for coupling in (pendant.NONE, pendant.HORIZONTAL) if len(signs) == 6 else (pendant.NONE,):
@@ -327,7 +324,7 @@ def _shape(shape: LinkShape) -> dict[str, Any]:
 
 
 def _piece(body_piece: Any) -> dict[str, Any]:
-    """Return a part of a body, as `links.bodies` reads it."""
+    """Return a piece of a body in the form that `links.bodies` reads."""
     if isinstance(body_piece, LinkShape):
         return _shape(body_piece)
     assert isinstance(body_piece, Primitive) and body_piece.pose is not None
@@ -358,7 +355,7 @@ def _check_poses(draft: Draft) -> list[dict[str, Any]]:
 
 
 def _pose(pose: Array) -> dict[str, Any]:
-    # + 0.0 turns -0.0 into 0.0
+    # + 0.0 changes -0.0 to 0.0
     return {
         "origin": _figures(pose[:3, 3]),
         "rpy": _figures(np.degrees(-frames.to_bryant(pose[:3, :3].T))),
@@ -370,7 +367,7 @@ def _figures(values: Any) -> list[float]:
 
 
 def _figure(value: float) -> float:
-    """A number without numerical noise; whole numbers have no decimal point."""
+    """Return a number without numerical noise; whole numbers as int."""
     rounded = round(value, 9)
     value = rounded + 0.0 if abs(rounded - value) < 1e-11 else value
     return int(value) if value == int(value) else value
@@ -381,20 +378,18 @@ def _known(value: float) -> float | None:
 
 
 def _compact(text: str) -> str:
-    """Return JSON with lists of numbers, and objects that hold only such lists, on one line
-    each.
-    """
+    """Return JSON with each list of numbers on one line."""
     lists = re.compile(r"\[\s+((?:-?[\d.eE+-]+|null),?\s*)+\]")
     return lists.sub(
         lambda match: re.sub(r"\s+", " ", match[0]).replace("[ ", "[").replace(" ]", "]"), text
     )
 
 
-# ---- Poses as pendants show them: the position in mm, and the rotation in degrees by each
-# manufacturer's convention, or as a quaternion
+# ---- Poses as pendants display them: position in mm, and rotation in degrees by the convention of
+# the manufacturer, or as a quaternion
 
 FANUC, KUKA, STAUBLI, ZYZ, QUATERNION = "W P R", "A B C", "RX RY RZ", "O A T", "q1 q2 q3 q4"
-# convention of a rotation -> its figures, and the manufacturers that use it
+# rotation convention -> names of its values, and the manufacturers that use it
 CONVENTIONS = {
     FANUC: ("W P R", "FANUC, Yaskawa (Rx Ry Rz): about X, Y, Z of the base"),
     KUKA: ("A B C", "KUKA: about Z, Y, X, each as the one before turned it"),
@@ -405,12 +400,12 @@ CONVENTIONS = {
 
 
 def rotation(convention: str, figures: Array) -> Array:
-    """Return the rotations for displayed angles.
+    """Return the rotation matrices of displayed angles.
 
     Parameters
     ----------
     convention : str
-        Convention of the controller.
+        Rotation convention of the controller.
     figures : (..., 3) or (..., 4) array
         Angles in degrees, or a quaternion of any length.
 
@@ -439,18 +434,18 @@ def rotation(convention: str, figures: Array) -> Array:
 
 
 def flange_poses(convention: str, figures: Array, base: Array, tool: Array) -> Array:
-    """Return the flange poses for displayed tool poses.
+    """Return the flange poses of displayed tool poses.
 
     Parameters
     ----------
     convention : str
-        Convention of the controller.
+        Rotation convention of the controller.
     figures : (n, 6) or (n, 7) array
-        Displayed poses, mm and degrees or quaternion.
+        Displayed poses, mm and degrees, or mm and quaternion.
     base : (4, 4) array
-        The manufacturer's base frame in base_link.
+        Manufacturer's base frame in base_link.
     tool : (4, 4) array
-        The tool in the flange frame.
+        Tool in the flange frame.
 
     Returns
     -------
@@ -469,14 +464,14 @@ def figures_of(convention: str, poses: Array) -> Array:
     Parameters
     ----------
     convention : str
-        Convention of the controller.
+        Rotation convention of the controller.
     poses : (n, 4, 4) array
         Poses, mm.
 
     Returns
     -------
     (n, 6) or (n, 7) array
-        mm and degrees, or quaternion.
+        mm and degrees, or mm and quaternion.
     """
     turned = np.asarray(poses, float)[:, :3, :3]
     if convention == QUATERNION:
@@ -502,8 +497,9 @@ def _from_quaternion(q: Array) -> Array:
 
 
 def _to_quaternion(turned: Array) -> Array:
-    """Return unit quaternions (n, 4), scalar first and not negative, by the formula that divides
-    by the largest component.
+    """Return unit quaternions (n, 4), scalar first and non-negative.
+
+    The formula divides by the largest component.
     """
     diagonal = np.diagonal(turned, axis1=1, axis2=2)
     squares = (
@@ -528,11 +524,11 @@ def _to_quaternion(turned: Array) -> Array:
 
 
 def _to_zyz(turned: Array) -> Array:
-    """Return O A T (n, 3) rad, A from 0 to pi; O is 0 where A is 0 or pi."""
+    """Return O A T (n, 3) rad, with A from 0 to pi; O is 0 if A is 0 or pi."""
     locked = np.hypot(turned[:, 0, 2], turned[:, 1, 2]) < 1e-12
     angle_o = np.where(locked, 0.0, np.arctan2(turned[:, 1, 2], turned[:, 0, 2]))
     angle_a = np.arctan2(np.hypot(turned[:, 0, 2], turned[:, 1, 2]), turned[:, 2, 2])
-    # the Y of the frame after the rotation by O
+    # Y of the frame after rotation by O
     across = np.column_stack((-np.sin(angle_o), np.cos(angle_o), np.zeros_like(angle_o)))
     angle_t = np.arctan2(
         np.einsum("ni,ni->n", across, turned[:, :, 0]),

@@ -25,24 +25,24 @@ from ..inverse.serial_arm import SerialArm
 from ..inverse.spherical_wrist import OpwArm
 from ..limits import Limits, Payload
 
-MAX_FILE_MB = 16  # MB
+MAX_FILE_MB = 16
 LARGEST_NUMBER = 1e300
 
 
 class Node:
-    """A part of a machine file with its place in it. Getters raise InputError 'BAD_MACHINE'."""
+    """A part of a machine file and its location. Getters raise InputError BAD_MACHINE."""
 
     def __init__(self, value: Any, path: Path, key: str = "") -> None:
         self.value, self.path, self.key = value, path, key
 
     def bad(self, message: str) -> InputError:
-        """The error for this part."""
+        """Return the error for this part."""
         return InputError(
             "BAD_MACHINE", f"{self.path}{': ' if self.key else ''}{self.key}", message
         )
 
     def only(self, *allowed: str) -> Node:
-        """Return the node, if it is an object without unknown keys."""
+        """Return this node if it is an object without unknown keys."""
         if not isinstance(self.value, dict):
             raise self.bad(
                 Text(
@@ -66,7 +66,7 @@ class Node:
         return Node(self.value[key], self.path, f"{self.key}.{key}".lstrip("."))
 
     def items(self, length: int | None = None) -> list[Node]:
-        """The parts of a list, of the given `length` if any."""
+        """Return the items of a list, which must have `length` items if given."""
         if not isinstance(self.value, list) or (length is not None and len(self.value) != length):
             raise self.bad(
                 Text(
@@ -80,23 +80,23 @@ class Node:
         ]
 
     def pairs(self) -> Iterator[tuple[str, Node]]:
-        """The keys and values of an object."""
+        """Return the keys and values of an object."""
         if not isinstance(self.value, dict):
             raise self.bad(Text("{} is not an object; write one in braces", _short(self.value)))
         return ((key, self[key]) for key in self.value)
 
     def text(self) -> str:
-        """A text that is not empty."""
+        """Return a non-empty text."""
         if not isinstance(self.value, str) or not self.value:
             raise self.bad(Text("{} is not a text; write one in quotes", _short(self.value)))
         return self.value
 
     def texts(self) -> tuple[str, ...]:
-        """A list of texts."""
+        """Return a list of texts."""
         return tuple(item.text() for item in self.items())
 
     def number(self) -> float:
-        """A finite number."""
+        """Return a finite number."""
         if (
             isinstance(self.value, bool)
             or not isinstance(self.value, (int, float))
@@ -133,7 +133,7 @@ class Node:
             and all(abs(value) <= LARGEST_NUMBER for value in self.value)
         ):
             return np.array(self.value, float)
-        # something is wrong: find out what
+        # something is invalid: item by item, the error names it
         return np.array([item.number() for item in self.items(length)])
 
     def span(self, unit: float = math.radians(1.0)) -> tuple[float, float]:
@@ -142,7 +142,7 @@ class Node:
         Parameters
         ----------
         unit : float, optional
-            Factor for both; the default converts degrees to rad.
+            Factor for both numbers; converts degrees to rad by default.
 
         Returns
         -------
@@ -152,7 +152,7 @@ class Node:
         Raises
         ------
         InputError
-            BAD_MACHINE if the first number is not smaller.
+            BAD_MACHINE if the first number is not the smaller one.
         """
         if self.value is None:
             return -math.inf, math.inf
@@ -168,7 +168,7 @@ class Node:
         return lower * unit, upper * unit
 
     def matrix(self, rows: int, columns: int) -> Array:
-        """Return a list of lists of numbers.
+        """Return a matrix from a list of lists of numbers.
 
         Parameters
         ----------
@@ -204,7 +204,7 @@ class Node:
 
 
 def _once(pairs: list[tuple[str, Any]], path: Path) -> dict[str, Any]:
-    """Return an object, each key of which occurs once."""
+    """Return an object; reject duplicate keys."""
     entries: dict[str, Any] = {}
     for key, value in pairs:
         if key in entries:
@@ -216,7 +216,7 @@ def _once(pairs: list[tuple[str, Any]], path: Path) -> dict[str, Any]:
 
 
 def read(path: Path) -> Node:
-    """The content of a machine file; raises InputError 'BAD_MACHINE' when it cannot be read as JSON."""
+    """Read a machine file. Raises InputError BAD_MACHINE if it is not valid JSON."""
     try:
         return Node(
             json.loads(
@@ -245,9 +245,9 @@ def _short(value: Any) -> str:
     return text if len(text) <= 60 else text[:57] + "..."
 
 
-# error due to rounding of check poses: mm, and entries of a rotation
+# tolerances for the rounding of check poses: mm, and rotation matrix entries
 POSITION_TOLERANCE, ROTATION_TOLERANCE = 1e-6, 1e-9
-MOST_ROUNDING = (0.5, 0.1)  # largest tolerance that a check pose may state, mm and deg
+MOST_ROUNDING = (0.5, 0.1)  # maximum tolerance that a check pose may state, mm and deg
 
 
 def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
@@ -258,14 +258,14 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
     chain : Chain
         The chain of the file.
     opw : OpwArm or None
-        Its closed form; None without one.
+        Closed form of the arm; None without a closed form.
     node : Node
-        The check poses: at least three, one at all zeros.
+        Check poses: at least three, including the zero pose.
 
     Raises
     ------
     InputError
-        BAD_MACHINE for missing or wrong poses.
+        BAD_MACHINE for missing or mismatched poses.
     """
     poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
     if len(poses) < 3:
@@ -304,8 +304,9 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
 
 
 def _tolerance_of(pose: Node) -> tuple[float, float]:
-    """Return the tolerance of a check pose, mm and as entries of the rotation: `within` for a
-    pose read from a display.
+    """Return the tolerance of a check pose in mm and as rotation matrix entries.
+
+    `within` sets it for a pose read from a display.
     """
     if not pose.has("within"):
         return POSITION_TOLERANCE, ROTATION_TOLERANCE
@@ -326,20 +327,20 @@ def _tolerance_of(pose: Node) -> tuple[float, float]:
 
 
 SPEED_UNITS = ("mm/s", "cm/min", "mm/min")
-# possible scopes of a warning: positions of Cartesian programs, joint values of joint programs, the limits of all sets or,
-# behind a dot, of one, and the speeds of the axes
+# scopes of a warning: positions of Cartesian programs, joint values of joint programs, limits of
+# all sets (or of one, as limits.NAME), and axis speeds
 WARNED = ("base", "joint", "limits", "speeds")
 
 
 class MachineWarning(NamedTuple):
-    """A doubt about a machine file that may change a program: its scope, and its text."""
+    """A doubt about a machine file that may change a program: its scope and its text."""
 
     applies_to: str
     text: str
 
 
 def warnings_of(top: Node) -> tuple[MachineWarning, ...]:
-    """Return the warnings of a machine file, empty without the key."""
+    """Return the warnings of a machine file; empty without the key."""
     return (
         tuple(_warning(node, top) for node in top["warnings"].items())
         if top.has("warnings")
@@ -368,19 +369,19 @@ def pulses_of(controller: Node, count: int) -> tuple[float, ...]:
     Parameters
     ----------
     controller : Node
-        The controller of the machine file.
+        The `controller` node of the machine file.
     count : int
         Number of axes.
 
     Returns
     -------
     tuple of float
-        Negative where pulses count down; empty if the file does not state them.
+        Pulses per degree, negative where pulses count down; empty if the file does not state them.
 
     Raises
     ------
     InputError
-        BAD_MACHINE for a 0.
+        BAD_MACHINE for a value of 0.
     """
     if not controller.has("pulses_per_degree"):
         return ()
@@ -411,16 +412,16 @@ def name_of(joint: Node, numbered: str, has_name: bool) -> str:
     Parameters
     ----------
     joint : Node
-        The joint in the machine file; its `label` comes first.
+        The joint node; its `label` takes precedence.
     numbered : str
-        Name of an axis without a label or name.
+        Name of an axis without label and name.
     has_name : bool
-        Whether the joint's `name` is used before `numbered`.
+        Whether `name` takes precedence over `numbered`.
 
     Returns
     -------
     str
-        The name.
+        Axis name.
     """
     if joint.has("label"):
         return joint["label"].text()
@@ -433,7 +434,7 @@ def unit_of(node: Node) -> Array:
     Parameters
     ----------
     node : Node
-        Three numbers of the machine file.
+        Node with three numbers.
 
     Returns
     -------
@@ -460,26 +461,26 @@ def slides(joint: Node) -> bool:
 
 
 def maximum_of(joint: Node, key: str, what: str) -> float:
-    """Return the maximum of a joint's motion.
+    """Return the maximum of a joint quantity.
 
     Parameters
     ----------
     joint : Node
-        The joint in the machine file.
+        The joint node.
     key : str
         Key of the value.
     what : str
-        Kind of the value, for messages.
+        Name of the quantity in messages.
 
     Returns
     -------
     float
-        Infinite if the file does not state it.
+        The maximum; infinite if the file does not state it.
 
     Raises
     ------
     InputError
-        BAD_MACHINE for a value that is not positive.
+        BAD_MACHINE if the value is not positive.
     """
     if not joint.has(key):
         return math.inf
@@ -492,7 +493,7 @@ def maximum_of(joint: Node, key: str, what: str) -> float:
 
 
 def payload_of(top: Node) -> Payload:
-    """Return the payload of a machine, as far as its file states it."""
+    """Return the payload of a machine; infinite where its file does not state it."""
     if not top.has("payload"):
         return Payload()
     payload = top["payload"].only("kg", "from_axis", "source")
@@ -502,7 +503,7 @@ def payload_of(top: Node) -> Payload:
 
 
 def recognise_arm(chain: Chain) -> tuple[SerialArm | None, str]:
-    """Return the inverse of a robot whose file has no `opw`.
+    """Return the inverse of an arm whose machine file has no `opw`.
 
     Parameters
     ----------
@@ -512,9 +513,9 @@ def recognise_arm(chain: Chain) -> tuple[SerialArm | None, str]:
     Returns
     -------
     arm : SerialArm or None
-        None for five-axis machines, which `five_axis` handles, and without a closed form.
+        Inverse; None without a closed form, and for five-axis machines, which `five_axis` handles.
     reason : str
-        Why there is no inverse; empty otherwise.
+        Why there is no inverse; otherwise empty.
     """
     if is_five_axis(chain.sliding):
         return None, ""
@@ -560,18 +561,18 @@ def opw_arm(node: Node, count: int) -> OpwArm:
 
 
 def limits_of(name: str, node: Node, axes: tuple[str, ...], units: Array) -> Limits:
-    """Return a set of limits of a machine file.
+    """Return a limit set of a machine file.
 
     Parameters
     ----------
     name : str
-        Name of the set.
+        Name of the limit set.
     node : Node
-        Its content.
+        Node of the limit set.
     axes : tuple of str
-        Names of the axes.
+        Axis names.
     units : (axes,) array
-        Internal value of one displayed unit, rad per degree or 1.
+        Internal value of one displayed unit: rad per degree, or 1.
 
     Returns
     -------
@@ -581,7 +582,7 @@ def limits_of(name: str, node: Node, axes: tuple[str, ...], units: Array) -> Lim
     Raises
     ------
     InputError
-        BAD_MACHINE for wrong content.
+        BAD_MACHINE for invalid content.
     """
     node.only("axes", "coupled", "source")
     count = len(axes)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machines: their geometry, limits and controller conventions, from data files with check poses.
+"""Machines from data files: geometry, limits and controller conventions, with check poses.
 
-A machine file has joint vectors with their flange poses. Each time a file is read, they are
-computed by the joint frames and by the closed form; a file that does not reproduce them is
-rejected.
+A machine file lists check poses: joint vectors with their flange poses. Each time a file is read,
+the joint frames and the closed form compute these poses. A file that fails the check is rejected.
 """
 
 from __future__ import annotations
@@ -39,16 +38,14 @@ from .file import Node, read
 
 
 def unknown(name: str, names: Sequence[str]) -> InputError:
-    """The error UNKNOWN_MACHINE, with known names that are similar."""
+    """Return the error UNKNOWN_MACHINE, with similar known names."""
     return InputError(
         "UNKNOWN_MACHINE", "cell.machine", "unknown name {!r}; {}", name, _near(name, names)
     )
 
 
 def _near(name: str, names: Sequence[str]) -> str:
-    """Return the most similar names; without any, one name of each manufacturer, because all
-    would fill a page.
-    """
+    """Return the most similar names, or one name per manufacturer if no name is similar."""
     alike = difflib.get_close_matches(name.lower().replace("_", "-"), names, n=3, cutoff=0.5)
     if alike:
         return Text("did you mean {}?", ", ".join(alike))
@@ -65,7 +62,7 @@ def _near(name: str, names: Sequence[str]) -> str:
 
 BUILT_IN = Path(__file__).resolve().parents[3] / "machines"
 MAKER = "maker"
-# a remark in old machine files, which had no warnings
+# a remark in old machine files, which have no `warnings`
 BASE_NOT_KNOWN = "The maker's own base frame is not known: base_link is used in its place."
 UNKNOWN_REMARK = "a URDF does not say what the controller shows"
 REFUSED = (
@@ -94,21 +91,18 @@ KEYS = (
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A machine. Joint values are serial ones, rad, and mm for prismatic joints; lengths mm.
+    """A machine. Serial joint values are in rad, or mm for prismatic joints; lengths are in mm.
 
-    `arm` is the inverse of a robot, None for a five-axis machine and where `no_arm` says why
-    it cannot be planned; `opw` the inverse of a spherical wrist. `base` (4, 4) is the
-    manufacturer's base frame in base_link, the frame of the floor plate that `chain` and
-    `arm` use. `max_speed` (axes,) rad/s or mm/s, infinite where not known.
-    `controller_matrix` (axes, axes) and `controller_offset` (axes,) rad give the displayed
-    values: C q + c0; `controller_remark` says how certain that is. `posts` are the posts its
-    controller can read, None if the file does not say; `pulses_per_degree` (axes,) and the
-    `speed_unit` of its path speeds, empty if it does not say. `max_acceleration`, `max_jerk`
-    (axes,) rad or mm and per s^2, s^3, infinite where not known. `shapes` (axes + 1) are the
-    files from which the user has the links drawn, base first. `external`: number of the axes,
-    the last ones, that are external (`external.coupled`). `bodies` (axes + 1): the bodies of
-    its links. `of_urdf`: whether it comes from a URDF. `warnings`: doubts that may change a
-    program.
+    chain: from the floor plate, base_link. arm: inverse of a robot; None for a five-axis machine,
+    and for an arm that cannot be planned, for which `no_arm` gives the reason. base: (4, 4)
+    manufacturer's base frame in base_link. max_speed, max_acceleration, max_jerk: (axes,) rad or mm
+    per s, s^2, s^3; infinite if unknown. controller_matrix C (axes, axes), controller_offset c0
+    (axes,): the controller shows C q + c0. controller_remark: how certain this is. posts: posts
+    that the controller can read; None if the file does not say. pulses_per_degree: (axes,).
+    speed_unit: unit of path speeds. Both are empty if unknown. shapes: (axes + 1) link drawing
+    files, base first. external: number of external axes, which come last (`external.coupled`).
+    bodies: (axes + 1) bodies of the links. of_urdf: whether the machine comes from a URDF.
+    warnings: doubts that may change a program.
     """
 
     id: str
@@ -139,12 +133,12 @@ class Machine:
 
     @property
     def opw(self) -> OpwArm | None:
-        """The closed form of an arm with a spherical wrist."""
+        """The closed form of a spherical wrist arm; None for another arm."""
         return self.arm if isinstance(self.arm, OpwArm) else None
 
     @property
     def arrangements(self) -> tuple[Arrangement, ...]:
-        """The arrangements it can have in a cell, the usual one first."""
+        """The set-ups that the machine supports, the most common first."""
         return (
             OF_FIVE_AXES
             if is_five_axis(self.chain.sliding[: len(self.axes) - self.external])
@@ -153,16 +147,15 @@ class Machine:
 
     @property
     def free(self) -> int:
-        """Number of coordinates that point and tool axis leave free: a robot's rotation about the
-        tool, and external axes.
+        """Number of coordinates that point and tool axis leave free.
+
+        These are a robot's rotation about the tool axis, and external axes.
         """
         return self.arrangements[0].free + self.external
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Names of the axes in tables: q1 to q6 for every robot, so that reading them requires no
-        machine.
-        """
+        """Axis names in tables: q1 to q6 for every robot, so that readers need no machine file."""
         if self.arrangements[0].named_axes:
             return self.axes
         robot_axes = len(self.axes) - self.external
@@ -170,21 +163,21 @@ class Machine:
 
     @property
     def base_is_known(self) -> bool:
-        """Whether `base` is the manufacturer's own base frame; False if base_link replaces it."""
+        """Whether `base` is the manufacturer's base frame; otherwise base_link replaces it."""
         return BASE_NOT_KNOWN not in self.remarks and not self.warnings_of("base")
 
     def warnings_of(self, *applies_to: str) -> tuple[str, ...]:
-        """Return the texts of the warnings with these scopes, see entries.WARNED."""
+        """Return the warnings with these scopes, see entries.WARNED."""
         return tuple(warning.text for warning in self.warnings if warning.applies_to in applies_to)
 
     @property
     def units(self) -> tuple[str, ...]:
-        """The unit that each axis is shown in, 'deg' or 'mm'."""
+        """The displayed unit of each axis, 'deg' or 'mm'."""
         return tuple("mm" if sliding else "deg" for sliding in self.chain.sliding)
 
     @property
     def unit_values(self) -> Array:
-        """Return the internal value of one displayed unit of each axis.
+        """Return the internal value of one displayed unit, for each axis.
 
         Returns
         -------
@@ -194,7 +187,7 @@ class Machine:
         return unit_values(self.chain.sliding)
 
     def limits(self, name: str) -> Limits:
-        """Return the set of limits with this name; raises InputError 'UNKNOWN_LIMITS' if it does not exist."""
+        """Return the limit set of this name. Raises InputError UNKNOWN_LIMITS if it is missing."""
         if name not in self.limit_sets:
             raise InputError(
                 "UNKNOWN_LIMITS",
@@ -207,7 +200,7 @@ class Machine:
         return self.limit_sets[name]
 
     def to_controller(self, q: ArrayLike) -> Array:
-        """Return displayed values for serial joint values.
+        """Convert serial joint values to controller joint values.
 
         Parameters
         ----------
@@ -217,18 +210,18 @@ class Machine:
         Returns
         -------
         (..., axes) array
-            Displayed values, rad or mm.
+            Controller joint values, rad or mm.
         """
         result: Array = np.asarray(q, float) @ self.controller_matrix.T + self.controller_offset
         return result
 
     def from_controller(self, displayed: ArrayLike) -> Array:
-        """Return serial joint values for displayed values.
+        """Convert controller joint values to serial joint values.
 
         Parameters
         ----------
         displayed : (..., axes) array
-            Displayed values, rad or mm.
+            Controller joint values, rad or mm.
 
         Returns
         -------
@@ -241,7 +234,7 @@ class Machine:
 
 
 def unit_values(sliding: Mask) -> Array:
-    """Return the internal value of one displayed unit of each axis.
+    """Return the internal value of one displayed unit, for each axis.
 
     Parameters
     ----------
@@ -257,10 +250,9 @@ def unit_values(sliding: Mask) -> Array:
 
 
 def known(folders: Sequence[Path | str] = ()) -> list[tuple[str, str]]:
-    """Return all machines, built in and in the user's folders, in order of id.
+    """Return all machines, built in and in the user's folders, sorted by id.
 
-    A file that is not a machine file is included with its error in place of a title: only
-    `load` rejects it.
+    An invalid file is listed with its error as the title; only `load` rejects it.
 
     Parameters
     ----------
@@ -285,12 +277,12 @@ def _title(path: Path) -> str:
 def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
     """Return the machine of an id, a machine file path, or a URDF (`urdf_machine.Reference`).
 
-    A machine file may have the calibration of one robot (`calibration.Named`). A file in the
-    user's `folders` goes before a built-in one.
+    A machine file name may include the calibration of one robot (`calibration.Named`). A file in
+    the user's `folders` takes precedence over a built-in one.
 
-    Raises InputError: UNKNOWN_MACHINE if it does not exist; BAD_MACHINE, naming file, key and
-    value, if the file is wrong or does not meet its own check poses; BAD_CALIBRATION;
-    BAD_URDF, and NO_CLOSED_FORM with the reason.
+    Raises InputError: UNKNOWN_MACHINE if the machine does not exist; BAD_MACHINE with file, key
+    and value if the file is invalid or fails its check poses; BAD_CALIBRATION; BAD_URDF; and
+    NO_CLOSED_FORM with the reason.
     """
     text = str(name)
     measured = calibration.named(text)
@@ -328,16 +320,12 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
 
 @functools.lru_cache(maxsize=8)
 def _built_in(path: Path, _: int) -> Machine:
-    """Return a built-in machine, read once: every stage of a job asks for it, and its file is
-    its only source.
-    """
+    """Return a built-in machine, cached because every stage of a job asks for it."""
     return _parse(read(path))
 
 
 def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
-    """Return the file of the machine with this id; raises InputError UNKNOWN_MACHINE if it does not
-    exist.
-    """
+    """Return the file of a machine id. Raises InputError UNKNOWN_MACHINE if there is none."""
     for folder in (*folders, BUILT_IN):
         path = Path(folder).expanduser() / f"{name}.json"
         if path.stem == name and is_there(path):  # a name may be too long for the file system
@@ -347,10 +335,10 @@ def file_of(name: str, folders: Sequence[Path | str] = ()) -> Path:
 
 
 def parse(text: str, path: Path) -> Machine:
-    """Return the machine of the text of a machine file, which need not exist yet; `path` names
-    it, and locates its shapes.
+    """Return the machine of a machine file text.
 
-    Raises InputError BAD_MACHINE as `load` does.
+    `path` names the file in errors and locates its shapes; it need not exist yet. Raises
+    InputError BAD_MACHINE as `load` does.
     """
     return _parse(Node(json.loads(text), path))
 
@@ -381,7 +369,7 @@ def _parse(top: Node) -> Machine:
     count = len(joints)
     sliding = np.array([file.slides(joint) for joint in joints])
     units = unit_values(sliding)
-    # the axes of a robot are numbered unless the file has the pendant's labels; the axes of a machine tool have names
+    # robot axes are numbered unless the file has the pendant's labels; machine tool axes have names
     names = tuple(
         file.name_of(joint, f"q{index + 1}", bool(sliding.any()))
         for index, joint in enumerate(joints)
@@ -454,7 +442,7 @@ def _parse(top: Node) -> Machine:
 
 
 def _calibrated(machine: Machine, path: Path) -> Machine:
-    """Return the machine with the measured joint frames of one robot, and their inverse."""
+    """Return the machine with the calibrated joint frames of one robot and their inverse."""
     if not isinstance(machine.arm, ParallelAxesArm):
         raise InputError(
             "BAD_CALIBRATION",
@@ -476,16 +464,16 @@ def _calibrated(machine: Machine, path: Path) -> Machine:
 def machine_of_description(source: str, description: Description, arm: SerialArm | None) -> Machine:
     """Return the machine of a URDF, with its limits and speeds.
 
-    No post writes for its unknown controller.
+    The controller is unknown, so no post writes for it.
 
     Parameters
     ----------
     source : str
-        Name of the file.
+        File name.
     description : Description
         The chain and its data.
     arm : SerialArm or None
-        Its inverse; None for a machine with rotary tables.
+        Inverse of the arm; None for a five-axis machine.
 
     Returns
     -------
@@ -536,13 +524,14 @@ def machine_of_description(source: str, description: Description, arm: SerialArm
     )
 
 
-# ---- Figures of the known machines for choosing one, without reading their geometry
+# ---- Data of known machines for choosing one, without reading their geometry
 
 
 @dataclass(frozen=True)
 class Entry:
-    """A machine file's figures. reach: mm, payload: kg, None if the file does not state them.
-    posts: None for any.
+    """Data of a machine file.
+
+    reach: mm. payload: kg. Both are None if the file does not state them. posts: None for any.
     """
 
     id: str
@@ -552,10 +541,9 @@ class Entry:
     posts: tuple[str, ...] | None
 
     def is_of(self, maker: str) -> bool:
-        """Return whether title or id begin with the words of a manufacturer, as 'Yaskawa' and
-        'motoman' for a Yaskawa.
+        """Whether title or id begins with the words of a manufacturer.
 
-        Accents and capitals do not count.
+        For a Yaskawa machine, 'Yaskawa' and 'motoman' both match. Accents and case are ignored.
         """
         maker_name = _plain(maker)
         return any(
@@ -565,9 +553,10 @@ class Entry:
 
 
 def entries(folders: Sequence[Path | str] = ()) -> list[Entry]:
-    """All machines, built in and in the user's `folders`, in order of id; files that are not machine files are left out.
+    """Return all machines, built in and in the user's `folders`, sorted by id.
 
-    Raises InputError BAD_MACHINE for reach or payload that are not figures.
+    Invalid machine files are skipped. Raises InputError BAD_MACHINE if reach or payload is not a
+    number.
     """
     names = [name for name, title in known(folders) if not title.startswith(REFUSED)]
     return [_entry(name, read(file_of(name, folders))) for name in names]
@@ -580,9 +569,9 @@ def select_machines(
     payload: float = 0.0,
     post: str | None = None,
 ) -> list[Entry]:
-    """Return the machines that meet requirements.
+    """Return the machines that meet the requirements.
 
-    A machine whose file does not state a required figure is left out.
+    A machine whose file does not state a required value is omitted.
 
     Parameters
     ----------
@@ -591,16 +580,16 @@ def select_machines(
     maker : str or None, optional
         Manufacturer; None for any.
     reach : float, optional
-        Smallest reach, mm; 0 for any.
+        Minimum reach, mm; 0 for any.
     payload : float, optional
-        Smallest payload, kg; 0 for any.
+        Minimum payload, kg; 0 for any.
     post : str or None, optional
-        Post that the controller has to read; None for any.
+        Post that the controller must support; None for any.
 
     Returns
     -------
     list of Entry
-        The machines in the same order.
+        The machines in the order of `entries`.
 
     Raises
     ------

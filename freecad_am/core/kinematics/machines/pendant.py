@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Displayed joint values, and the possible errors of a machine that does not meet its poses.
+"""Displayed joint values, and possible errors of a machine that does not match its poses.
 
-A pendant displays joint values, which may differ from serial ones by signs, zeros and a
-coupling of axes 2 and 3.
+The joint values on a pendant may differ from serial values by signs, zeros and a coupling of axes 2
+and 3.
 """
 
 from __future__ import annotations
@@ -28,8 +28,10 @@ _QUARTERS = (90.0, -90.0, 180.0)
 
 @dataclass(frozen=True)
 class Shown:
-    """How a controller displays joint values: +1 or -1 per axis, the display at serial zero
-    (deg, or mm), and the reference of axis 3.
+    """How a controller displays joint values.
+
+    signs: +1 or -1 per axis. zeros: display at serial zero, deg or mm. coupling: reference of
+    axis 3.
     """
 
     signs: tuple[int, ...]
@@ -39,7 +41,7 @@ class Shown:
 
 @dataclass(frozen=True)
 class Deviation:
-    """Deviation of a pose from that of the machine: mm, deg."""
+    """Deviation between two poses: position, mm, and angle, deg."""
 
     position: float
     angle: float
@@ -47,12 +49,11 @@ class Deviation:
 
 @dataclass(frozen=True, eq=False)
 class Suspect:
-    """A change with which the machine meets the poses.
+    """A change that makes the machine match the poses.
 
-    axes: the affected axes, from 0. shown: how the controller would display the joints, None if
-    the fault is elsewhere. pose: (4, 4) motion of the base frame in base_link or, if `kind`
-    is FLANGE, the pose after the flange; None if both are right. remaining: the largest
-    remaining deviation.
+    axes: affected axes, from 0. shown: changed display of the joints; None if the error is
+    elsewhere. pose: (4, 4) motion of the base frame in base_link or, if `kind` is FLANGE, pose
+    after the flange; None if both are correct. remaining: maximum remaining deviation.
     """
 
     kind: str
@@ -73,7 +74,7 @@ SIGN, ZERO, SIGN_AND_ZERO, COUPLED, BASE, FLANGE = (
 
 
 def matrix(display: Shown, chain: Chain) -> tuple[Array, Array]:
-    """Return the display of joint values for a machine file.
+    """Return controller matrix and offset for a machine file.
 
     Parameters
     ----------
@@ -85,7 +86,7 @@ def matrix(display: Shown, chain: Chain) -> tuple[Array, Array]:
     Returns
     -------
     matrix : (axes, axes) array
-        Factor of the serial values.
+        Factor of serial joint values.
     offset : (axes,) array
         Display at serial zero, degrees or mm.
     """
@@ -96,12 +97,12 @@ def matrix(display: Shown, chain: Chain) -> tuple[Array, Array]:
 
 
 def serial(display: Shown, chain: Chain, values: Array) -> Array:
-    """Return serial joint values for displayed values.
+    """Convert displayed joint values to serial joint values.
 
     Parameters
     ----------
     display : Shown
-        How the controller displays them.
+        How the controller displays joint values.
     chain : Chain
         The chain.
     values : (n, axes) array
@@ -117,7 +118,7 @@ def serial(display: Shown, chain: Chain, values: Array) -> Array:
 
 
 def _serial(displays: Sequence[Shown], chain: Chain, values: Array) -> Array:
-    """Return the serial values (displays, n, axes) for displayed values (n, axes)."""
+    """Return serial values (displays, n, axes) for displayed values (n, axes)."""
     signs = np.array([display.signs for display in displays], float)
     zeros = np.array([display.zeros for display in displays])
     plain = (np.asarray(values, float) - zeros[:, None]) * signs[:, None]
@@ -129,15 +130,17 @@ def _serial(displays: Sequence[Shown], chain: Chain, values: Array) -> Array:
 
 
 def _sense(chain: Chain) -> float:
-    """Relative to the horizontal, axis 3 shows the sum of the turns of axes 2 and 3, or their
-    difference (-1) if they turn in opposite senses.
+    """Return the sense of axis 3 relative to axis 2.
+
+    Relative to the horizontal, axis 3 displays the sum of the angles of axes 2 and 3, or their
+    difference (-1) if the axes rotate in opposite senses.
     """
     directions = chain.frames(np.zeros(chain.axes)).directions
     return 1.0 if float(directions[1] @ directions[2]) > 0.0 else -1.0
 
 
 def deviations(chain: Chain, display: Shown, values: Array, poses: Array) -> list[Deviation]:
-    """Return the deviations of flange poses from the machine's at displayed values.
+    """Return the deviations of flange poses from the poses of the machine at displayed values.
 
     Parameters
     ----------
@@ -153,7 +156,7 @@ def deviations(chain: Chain, display: Shown, values: Array, poses: Array) -> lis
     Returns
     -------
     list of Deviation
-        One deviation for each pose.
+        One deviation per pose.
     """
     return [
         Deviation(*pair)
@@ -162,7 +165,7 @@ def deviations(chain: Chain, display: Shown, values: Array, poses: Array) -> lis
 
 
 def fits(all_deviations: list[Deviation]) -> bool:
-    """Return whether all deviations are within the rounding of a display."""
+    """Whether all deviations are within the rounding of a display."""
     return all(
         deviation.position <= TOLERANCE_MM and deviation.angle <= TOLERANCE_DEG
         for deviation in all_deviations
@@ -170,11 +173,11 @@ def fits(all_deviations: list[Deviation]) -> bool:
 
 
 def suspects(chain: Chain, display: Shown, values: Array, poses: Array) -> list[Suspect]:
-    """Return possible errors with which the machine meets all poses, the fewest changes first.
+    """Return possible errors that explain all poses, the fewest changes first.
 
-    Tested are signs, zeros off by right angles, one zero off by any value, the coupling,
-    another base frame, another flange; if none of them explains the poses, the first ones
-    together with another base frame.
+    Tested changes are signs, zeros off by right angles, one zero off by any value, the coupling, a
+    different base frame and a different flange. If none explains the poses, changes of signs, zeros
+    and coupling are combined with a different base frame.
 
     Parameters
     ----------
@@ -190,7 +193,7 @@ def suspects(chain: Chain, display: Shown, values: Array, poses: Array) -> list[
     Returns
     -------
     list of Suspect
-        At most four; empty if the poses fit, or if no tested change explains them.
+        At most four; empty if the poses match, or if no tested change explains them.
     """
     values, poses = np.asarray(values, float), np.asarray(poses, float)
     if not len(poses) or fits(deviations(chain, display, values, poses)):
@@ -243,7 +246,7 @@ def _suspect_joints(
                     )
     trials = [trial_entry for trial_entry in trials if trial_entry[1]]
     trial_poses = _poses_of_trials(chain, [trial for _, _, trial in trials], values)
-    # in the base frame that reproduces the first pose, or in the existing one
+    # with the base frame that reproduces the first pose, or with the existing base frame
     bases = (
         trial_poses[:, 0] @ frames.inverse(poses[0])
         if any_base
@@ -267,8 +270,9 @@ def _suspect_joints(
 
 
 def _any_zero(axis: int, chain: Chain, display: Shown, values: Array, poses: Array) -> Suspect:
-    """Return the zero of one axis that misses the poses least: Newton's method from the best of
-    a coarse grid.
+    """Return the zero of one axis that minimises the deviation from the poses.
+
+    Newton's method starts from the best value of a coarse grid.
     """
     span = np.linspace(-500.0, 500.0, 41) if chain.sliding[axis] else np.linspace(-180.0, 170.0, 36)
 
@@ -280,7 +284,7 @@ def _any_zero(axis: int, chain: Chain, display: Shown, values: Array, poses: Arr
         off = (_poses_of_trials(chain, trials, values) - poses).reshape(len(trials), -1, 4, 4)[
             :, :, :3
         ]
-        # an entry of a rotation counts as 500 mm: the size of the arm
+        # rotation matrix entries count as 500 mm, the size of the arm
         off[..., :3] *= 500.0
         return np.asarray(off.reshape(len(trials), -1))
 
@@ -298,13 +302,14 @@ def _any_zero(axis: int, chain: Chain, display: Shown, values: Array, poses: Arr
 
 
 def _poses_of_trials(chain: Chain, trials: Sequence[Shown], values: Array) -> Array:
-    """Return the flange poses (trials, n, 4, 4) for values (n, axes) displayed in these ways."""
+    """Return flange poses (trials, n, 4, 4) for values (n, axes) displayed as in each trial."""
     return chain.forward(_serial(trials, chain, values))
 
 
 def _suspect_frames(chain: Chain, display: Shown, values: Array, poses: Array) -> list[Suspect]:
-    """Return another base frame or another flange, if one explains all poses; a single pose
-    would prove nothing.
+    """Return a different base frame or flange if it explains all poses.
+
+    A single pose would prove nothing.
     """
     if len(poses) < 2:
         return []

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A whole cell from one URDF: robot, track and positioner, identified by the tree of its
-joints.
+"""A whole cell from one URDF: robot, track and positioner, identified by the joint tree.
 
-The robot is the chain of six consecutive revolute axes, on the floor or on prismatic
-axes, which are its track. Joints that its tool moves further on are ignored. Everything
-else that moves relative to the floor carries the part.
+The robot is the chain of six consecutive revolute axes, on the floor or on prismatic axes, which
+are its track. Joints moved by its tool are ignored. Everything else that moves relative to the
+floor carries the part.
 """
 
 from __future__ import annotations
@@ -32,10 +31,10 @@ Way = tuple[str, ...]  # the joints that move a link, starting at the floor
 
 
 class UrdfCell:
-    """The mechanisms of a URDF: joints of `robot` and `track`, and of `positioner`, all from the
-    floor on; empty if absent.
+    """The mechanisms of a URDF.
 
-    Raises InputError BAD_URDF if they cannot be identified.
+    robot, track, positioner: joint names, starting at the floor; empty if absent. Raises InputError
+    BAD_URDF if the mechanisms cannot be identified.
     """
 
     def __init__(self, path: Path | str) -> None:
@@ -59,7 +58,7 @@ class UrdfCell:
         self.positioner = self._positioner(robot_chain)
 
     def machine(self) -> Reference:
-        """The robot."""
+        """Return the reference to the robot."""
         return self._reference(self.robot, self._tip((*self.track, *self.robot)))
 
     def external(self) -> tuple[ExternalMechanism, ...]:
@@ -68,10 +67,10 @@ class UrdfCell:
         Returns
         -------
         tuple of ExternalMechanism
-            The world is the robot's base frame with the track at zero.
+            Mechanisms. The world is the base frame of the robot with the track at zero.
         """
         robot = self.machine()
-        assert robot.base is not None  # named by _reference
+        assert robot.base is not None  # set by _reference
         world, mechanisms = frames.inverse(self._stands(robot)), []
         external = (
             (self.track, robot.base, ROBOT),
@@ -102,9 +101,7 @@ class UrdfCell:
         return self.joints[joint].text("type") == SLIDING
 
     def _robot(self, joint_names: Way) -> Way:
-        """Return the joints of a robot and of its track at the begin of a chain; empty if it has no
-        robot.
-        """
+        """Return the joints of robot and track at the start of a chain; empty without a robot."""
         first_revolute = next(
             (k for k, joint in enumerate(joint_names) if not self._slides(joint)), len(joint_names)
         )
@@ -120,11 +117,11 @@ class UrdfCell:
         }
         seventh = len(further) == 1 and self._turns(
             next(iter(further))
-        )  # an arm; grippers have two fingers that are prismatic or mimic
+        )  # this is a seven-axis arm; grippers have two fingers that are prismatic or mimic
         return () if seventh else joint_names[:end]
 
     def _positioner(self, robot: Way) -> Way:
-        """Return the joints of the part carrier: everything that moves apart from the robot."""
+        """Return the joints of the part carrier: all joints that are independent of the robot."""
         other_chains = [
             joint_names for joint_names in self.farthest if joint_names[: len(robot)] != robot
         ]
@@ -154,7 +151,7 @@ class UrdfCell:
     def _tip(self, joint_names: Way) -> str:
         """Return the link moved by all these joints whose name marks a tool or part mount.
 
-        Otherwise one whose Z points out, farthest out.
+        Otherwise return a link whose Z points out, the farthest from the base.
         """
         if not joint_names:
             return ""
@@ -176,8 +173,8 @@ class UrdfCell:
         )
 
     def _stands(self, mechanism_reference: Reference) -> Array:
-        """Return the manufacturer's base frame (4, 4) of a mechanism, seen from the first link of
-        the file, all joints at zero.
+        """Return the manufacturer's base frame (4, 4) of a mechanism relative to the first link of
+        the file, with all joints at zero.
         """
         assert mechanism_reference.base is not None and mechanism_reference.tip is not None
         description = self.urdf.between(mechanism_reference.base, mechanism_reference.tip)
@@ -210,25 +207,25 @@ class UrdfCell:
 
 
 def cell_values(cell_reference: Reference) -> tuple[str, tuple[ExternalMechanism, ...]]:
-    """Return machine and external axes from a URDF that has them all.
+    """Return machine and external axes of a URDF that describes the whole cell.
 
     Parameters
     ----------
     cell_reference : Reference
-        Reference to the file, without base and tip.
+        The file, without base and tip.
 
     Returns
     -------
     machine : str
-        Text of the cell's machine.
+        Text for the machine of the cell.
     external : tuple of ExternalMechanism
         The external axes.
 
     Raises
     ------
     InputError
-        UNKNOWN_MACHINE without the file, BAD_URDF if the mechanisms cannot be identified,
-        BAD_VALUE if links of one of them are named.
+        UNKNOWN_MACHINE if the file is missing, BAD_URDF if the mechanisms cannot be identified,
+        BAD_VALUE if base or tip is given.
     """
     if cell_reference.base is not None or cell_reference.tip is not None:
         raise InputError(
@@ -249,24 +246,24 @@ def cell_values(cell_reference: Reference) -> tuple[str, tuple[ExternalMechanism
 
 
 def cell_values_of_machine(machine: object) -> tuple[str, tuple[ExternalMechanism, ...]]:
-    """Return machine and external axes from the machine of a cell.
+    """Return machine and external axes from the machine parameter of a cell.
 
     Parameters
     ----------
     machine : object
-        Value of the cell's machine.
+        Machine parameter of the cell.
 
     Returns
     -------
     machine : str
-        Text of the cell's machine.
+        Text for the machine of the cell.
     external : tuple of ExternalMechanism
         The external axes.
 
     Raises
     ------
     InputError
-        BAD_VALUE if the machine is not a URDF; otherwise as `cell_values`.
+        BAD_VALUE if the machine is not a URDF; otherwise the errors of `cell_values`.
     """
     cell_reference = reference(machine) if isinstance(machine, str) else None
     if cell_reference is None:

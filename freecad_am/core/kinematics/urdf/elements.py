@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""XML with its source lines: typed access to the elements of a URDF, every error with file
-and line.
-"""
+"""Typed access to the XML elements of a URDF, with file and line in every error."""
 
 from __future__ import annotations
 
@@ -19,9 +17,9 @@ from ...issues import InputError, Text, Word
 from ...types import Array
 
 CODE = "BAD_URDF"
-MAX_FILE_MB = 64  # MB
+MAX_FILE_MB = 64
 QUARTER = 0.5 * math.pi
-FINE_DECIMALS = 5  # number of digits from which the last digit of a right angle may be off by 5
+FINE_DECIMALS = 5  # decimals from which the last digit of a right angle may be off by 5
 
 
 @dataclass
@@ -35,7 +33,7 @@ class Element:
     children: list[Element] = field(default_factory=list)
 
     def bad(self, message: str) -> InputError:
-        """The error for this element."""
+        """Return the error for this element."""
         return InputError(CODE, f"{self.path.name}: line {self.line}", message)
 
     def all(self, tag: str) -> Iterator[Element]:
@@ -43,11 +41,11 @@ class Element:
         return (child for child in self.children if child.tag == tag)
 
     def first(self, tag: str) -> Element | None:
-        """Return the first child with this tag, None without one."""
+        """Return the first child with this tag; None if there is none."""
         return next(self.all(tag), None)
 
     def one(self, tag: str) -> Element:
-        """Return the first child with this tag; it must exist."""
+        """Return the first child with this tag, which must exist."""
         child = self.first(tag)
         if child is None:
             name = Text(" {!r}", self.attributes["name"]) if "name" in self.attributes else ""
@@ -55,7 +53,7 @@ class Element:
         return child
 
     def text(self, name: str) -> str:
-        """Return an attribute that must exist and not be empty."""
+        """Return an attribute that must exist and must not be empty."""
         value = self.attributes.get(name, "").strip()
         if not value:
             raise self.bad(Text("<{}> has no {}; add it", self.tag, name))
@@ -67,11 +65,11 @@ class Element:
         Parameters
         ----------
         name : str
-            Name of the attribute.
+            Attribute name.
         count : int
             Required number of words.
         default : str
-            Value of a missing attribute.
+            Value if the attribute is missing.
 
         Returns
         -------
@@ -81,7 +79,7 @@ class Element:
         Raises
         ------
         InputError
-            BAD_URDF for another number of words.
+            BAD_URDF if the number of words differs.
         """
         words = self.attributes.get(name, default).split()
         if len(words) != count:
@@ -97,7 +95,7 @@ class Element:
         return words
 
     def number(self, name: str, default: str | None = None) -> float:
-        """An attribute that is a finite number."""
+        """Return an attribute that is a finite number."""
         return self._float(
             self.text(name) if default is None else self.attributes.get(name, default), name
         )
@@ -108,11 +106,11 @@ class Element:
         Parameters
         ----------
         name : str
-            Name of the attribute.
+            Attribute name.
         count : int
             Required number of numbers.
         default : str
-            Value of a missing attribute.
+            Value if the attribute is missing.
 
         Returns
         -------
@@ -127,7 +125,7 @@ class Element:
         return np.array([self._float(word, name) for word in self.words(name, count, default)])
 
     def angle(self, name: str, default: str | None = None) -> float:
-        """An attribute that is an angle, rad; a rounded right angle is a right angle."""
+        """Return an attribute that is an angle, rad; a rounded right angle becomes exact."""
         self.number(name, default)
         return unrounded(self.attributes.get(name, default or ""))
 
@@ -137,8 +135,7 @@ class Element:
         Returns
         -------
         (4, 4) array
-            The pose, mm; the identity without an origin. Rounded right angles are right
-            angles.
+            The pose, mm; the identity without an origin. Rounded right angles become exact.
         """
         origin = self.first("origin")
         if origin is None:
@@ -168,8 +165,9 @@ class Element:
 
 
 def read(path: Path) -> Element:
-    """Return the top element of a file. Raises InputError 'BAD_URDF', with the line, for invalid
-    XML and for entities.
+    """Return the top element of a file.
+
+    Raises InputError BAD_URDF with the line for invalid XML and for entities.
     """
     stack = [Element("", {}, path, 1)]
     parser = xml.parsers.expat.ParserCreate()
@@ -210,16 +208,18 @@ def read(path: Path) -> Element:
 def unrounded(word: str) -> float:
     """Return the angle that a number represents, rad: 1.5708 is a right angle.
 
-    Other multiples of a right angle written with two or more decimals count likewise. A
-    number with all its digits is itself.
+    This also applies to other multiples of a right angle with two or more decimals. A number with
+    all its digits is unchanged.
     """
     return nearest(word, QUARTER)
 
 
 def nearest(word: str, step: float) -> float:
-    """The multiple of `step` whose rounding a number with two or more decimals is, else the number.
-    Half or a quarter of a
-    rounded number counts as rounded (1.570796325), and so does one that is cut off (1.57079, 3.14)."""
+    """Return the multiple of `step` that a number with two or more decimals rounds, or the number.
+
+    Truncated numbers (1.57079, 3.14) count as rounded, and so does half or a quarter of a rounded
+    number (1.570796325).
+    """
     value = float(word)
     decimals = len(word.partition(".")[2]) if "e" not in word.lower() else 17
     multiple = round(value / step) * step

@@ -26,31 +26,30 @@ from .elements import Element
 from .read import FIXED, Description, Urdf
 from .reference import Reference
 
-# ---- Bodies of the links of a mechanism, from the <collision> elements of a URDF, or from
-# <visual> without any
+# ---- Link bodies of a mechanism, from the <collision> elements of a URDF, or else <visual>
 
 NOT_LOOKED_AT = "nothing is kept clear of it"
 
 
 def collision(urdf: Urdf, base: str, tip: str, notes: list[str]) -> tuple[Pieces, ...]:
-    """Return the bodies of the links between a base and a tip.
+    """Return the bodies of the links from a base to a tip.
 
-    Each body includes all links fixed to its link, but not the load on the tip, which has its
-    own joints.
+    Each body includes all links fixed to its link, but not the load on the tip, which has its own
+    joints.
 
     Parameters
     ----------
     urdf : Urdf
         The file.
     base, tip : str
-        Names of the first and last link.
+        First and last link.
     notes : list of str
-        Unreadable geometry is appended here.
+        List to which notes on unreadable geometry are appended.
 
     Returns
     -------
     tuple of Pieces
-        Bodies (axes + 1), base first, each in the frame of the joint that moves it, mm.
+        Bodies (axes + 1), base first, in the frames of the joints that move them, mm.
     """
     chain = [tip, *urdf.above(tip)]
     chain = chain[: chain.index(base) + 1][::-1]
@@ -71,7 +70,7 @@ def collision(urdf: Urdf, base: str, tip: str, notes: list[str]) -> tuple[Pieces
 
 
 def _moves_others(urdf: Urdf, link: str) -> bool:
-    """Return whether joints move anything mounted on a link."""
+    """Whether anything mounted on a link has moving joints."""
     return any(
         urdf.parent[child].text("type") != FIXED or _moves_others(urdf, child)
         for child in urdf.children_of(link)
@@ -104,8 +103,9 @@ def _pieces(urdf: Urdf, link: str, pose: Array, notes: list[str]) -> Iterator[Li
 
 
 def _solid(element: Element) -> Solid | None:
-    """The box, cylinder or ball of an element, about its origin; a ball becomes the cylinder around
-    it.
+    """Return the box, cylinder or sphere of an element, centred at its origin.
+
+    A sphere becomes its enclosing cylinder.
     """
     geometry = element.first("geometry")
     if geometry is None:
@@ -129,7 +129,7 @@ def _sizes(element: Element, sizes: Array) -> Array:
 
 
 MECHANISM = 2  # maximum number of axes of a mechanism
-# value of `cell.external` for the mechanisms in the URDF of the machine (`urdf_cell`)
+# value of `cell.external` that takes the mechanisms from the URDF of the machine (`urdf_cell`)
 WHOLE_CELL = "urdf"
 
 
@@ -139,19 +139,19 @@ def describe(machine_reference: Reference) -> tuple[Description, SerialArm | Non
     Parameters
     ----------
     machine_reference : Reference
-        Reference to the file and to base and tip.
+        The file with base and tip.
 
     Returns
     -------
     description : Description
-        The grounded chain.
+        The chain, relative to `base_link` of `grounded_chain`.
     arm : SerialArm or None
-        None for a machine with three prismatic and two revolute axes.
+        Inverse; None for a five-axis machine.
 
     Raises
     ------
     InputError
-        UNKNOWN_MACHINE without the file, BAD_URDF with file and line, NO_CLOSED_FORM with
+        UNKNOWN_MACHINE if the file is missing, BAD_URDF with file and line, NO_CLOSED_FORM with
         the reason.
     """
     robot, base, tip = _ends(machine_reference, "cell.machine")
@@ -188,7 +188,7 @@ def describe(machine_reference: Reference) -> tuple[Description, SerialArm | Non
 
 
 def _note_deviation(arm: SerialArm) -> list[str]:
-    """A note on an arm whose axes are not exactly at right angles."""
+    """Return a note on an arm whose axes are not exactly perpendicular."""
     if not isinstance(arm, CalibratedArm):
         return []
     return [
@@ -201,31 +201,32 @@ def _note_deviation(arm: SerialArm) -> list[str]:
 
 
 def chain_of(mechanism_reference: Reference) -> Description:
-    """Return the chain of a mechanism besides the robot. Raises InputError UNKNOWN_MACHINE
-    without the file, BAD_URDF.
+    """Return the chain of an external mechanism.
+
+    Raises InputError UNKNOWN_MACHINE if the file is missing, or BAD_URDF.
     """
     return external_chain(*_ends(mechanism_reference, EXTERNAL_KEY))
 
 
 def external_chain(robot: Urdf, base: str, tip: str) -> Description:
-    """Return the chain from one link to another, with the bodies of its links.
+    """Return the chain from one link to another, with its link bodies.
 
     Parameters
     ----------
     robot : Urdf
         The file.
     base, tip : str
-        Names of the first and last link.
+        First and last link.
 
     Returns
     -------
     Description
-        The chain with notes on unreadable geometry.
+        The chain, with notes on unreadable geometry.
 
     Raises
     ------
     InputError
-        BAD_URDF for a wrong file.
+        BAD_URDF for an invalid file.
     """
     description = robot.between(base, tip)
     notes: list[str] = []
@@ -234,9 +235,7 @@ def external_chain(robot: Urdf, base: str, tip: str) -> Description:
 
 
 def _ends(chain_reference: Reference, where: str) -> tuple[Urdf, str, str]:
-    """Return a file, and the links at which a chain begins and ends: the named ones, or those
-    that the file proposes.
-    """
+    """Return the file, base and tip of a reference; the file proposes missing links."""
     path = Path(chain_reference.file).expanduser()
     if not is_there(path):
         raise InputError(
@@ -268,15 +267,16 @@ def _ends(chain_reference: Reference, where: str) -> tuple[Urdf, str, str]:
 
 
 def closed_form(chain: Chain) -> SerialArm | None:
-    """The inverse of a robot; None for a machine with three prismatic and two revolute axes. Raises
-    InputError NO_CLOSED_FORM with the reason for any other machine.
+    """Return the inverse of a robot; None for a five-axis machine.
+
+    Raises InputError NO_CLOSED_FORM with the reason for any other machine.
     """
     return None if is_five_axis(chain.sliding) else recognition.arm_of(chain)
 
 
 def ground_description(description: Description) -> Description:
-    """Return the description with its chain, base and meshes seen from the base_link of
-    `grounded_chain`, which `base` refers to.
+    """Return the description with chain, base and meshes relative to `base_link` of
+    `grounded_chain`.
     """
     chain, moved = grounded_chain(description.chain)
     shapes = tuple(
@@ -292,10 +292,9 @@ def ground_description(description: Description) -> Description:
 
 
 def grounded_chain(chain: Chain) -> tuple[Chain, Array]:
-    """Return a chain seen from a base_link whose Z is axis 1.
+    """Return a chain relative to a base_link whose Z is axis 1.
 
-    Machines with rotary tables begin at the torch, and mechanisms at their foot: they stay
-    unchanged.
+    Five-axis machines begin at the torch, and mechanisms at their foot, so they stay unchanged.
 
     Parameters
     ----------
@@ -305,9 +304,9 @@ def grounded_chain(chain: Chain) -> tuple[Chain, Array]:
     Returns
     -------
     chain : Chain
-        The chain, as `opw_recognition.rooted` returns it.
+        The chain, as returned by `opw_recognition.rooted`.
     base : (4, 4) array
-        The previous base_link in the new one.
+        Previous base_link in the new base_link.
     """
     return (
         (chain, np.eye(4))
@@ -317,5 +316,5 @@ def grounded_chain(chain: Chain) -> tuple[Chain, Array]:
 
 
 def is_mechanism(chain: Chain) -> bool:
-    """Return whether a chain is not a complete machine but a track, a turntable or a positioner."""
+    """Whether a chain is a track, turntable or positioner, not a complete machine."""
     return chain.axes <= MECHANISM

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Machines from URDF: the serial chain between two links of a robot description.
 
-Reads origins, axes, kinds, limits and speeds of joints, fixed joints, and the meshes of
-links. Metres become mm.
+It reads origins, axes, types, limits and speeds of joints, fixed joints and link meshes. Metres are
+converted to mm.
 """
 
 from __future__ import annotations
@@ -25,34 +25,33 @@ from .elements import CODE, Element
 
 MOVING = ("revolute", "continuous", "prismatic")
 FIXED = "fixed"
-# names of flange links in files of ROS-Industrial and FANUC
+# names of flange links in ROS-Industrial and FANUC files
 BASES, TIPS = ("base_link",), ("tool0", "flange", "fanuc_flange")
 ROBOT = 6  # number of joints of a robot
 PARALLEL_TOLERANCE_RAD, BEHIND_MM = (
     math.radians(0.25),
     1e-3,
-)  # tolerances of a tip: angle of its Z from the axis in rad, distance behind in mm
+)  # tolerances of a tip: angle of its Z to the axis, rad, and distance behind the last axis, mm
 DEGREE = math.radians(1.0)
-MOST_RAD, FARTHEST_M = 50.0, 50.0  # larger values are degrees, or mm
-# children of a joint, and those that may occur only once
+MOST_RAD, FARTHEST_M = 50.0, 50.0  # larger values must be in degrees or mm
+# child elements of a joint; SINGLE_TAGS may occur only once
 SINGLE_TAGS = ("parent", "child", "origin", "axis", "limit", "mimic")
 JOINT_TAGS = (*SINGLE_TAGS, "dynamics", "calibration", "safety_controller", "physics", "gazebo")
 ATTRIBUTES = {
     "origin": {"xyz", "rpy"},
-    "axis": {"xyz", "rpy"},  # rpy that old exporters write, always zeros
+    "axis": {"xyz", "rpy"},  # old exporters write rpy, always zero
     "limit": {"lower", "upper", "effort", "velocity", "acceleration", "deceleration", "jerk"},
 }
 
 
 @dataclass(frozen=True, eq=False)
 class Description:
-    """A chain with its data from a URDF.
+    """A chain and its data from a URDF.
 
-    lower, upper, max_speed (axes,) rad, mm and per s, infinite where continuous or not known.
-    base (4, 4): the frame of a link `base` fixed to the first link, which is the
-    manufacturer's own; None without. shapes (axes + 1): the meshes of the links, the first
-    link first. notes: omissions and substitutions. bodies (axes + 1): of a mechanism, the
-    bodies of its links (`urdf.collision`).
+    lower, upper, max_speed: (axes,) rad or mm, per s; infinite if continuous or unknown. base:
+    (4, 4) frame of a link `base` fixed to the first link, the manufacturer's base frame; None if
+    there is none. shapes: (axes + 1) link meshes, first link first. notes: omissions and
+    substitutions. bodies: (axes + 1) link bodies of a mechanism (`urdf.machine.collision`).
     """
 
     name: str
@@ -68,7 +67,7 @@ class Description:
 
 
 class Urdf:
-    """The tree of links and joints of a file. Raises InputError 'BAD_URDF', which names the line that is wrong."""
+    """The tree of links and joints of a file. Raises InputError BAD_URDF with the line."""
 
     def __init__(self, path: Path | str) -> None:
         self.path = Path(path).expanduser()
@@ -86,7 +85,7 @@ class Urdf:
                     self.top.tag,
                 )
             )
-        # files written by xacro may still name its namespace
+        # files expanded by xacro may still declare its namespace
         unexpanded = _xacro_in(self.top)
         if unexpanded is not None:
             raise unexpanded.bad(
@@ -132,17 +131,18 @@ class Urdf:
         return elements
 
     def bases(self) -> list[str]:
-        """Links that a machine may begin with, the likeliest first."""
+        """Return the links that a machine may begin with, the most likely first."""
         return sorted(
             self.links,
             key=lambda link: (link not in BASES, link in self.parent, link in self._leaves()),
         )
 
     def tips(self, base: str) -> list[str]:
-        """Return links in which a machine from `base` may end, the likeliest first.
+        """Return the links that a machine from `base` may end with, the most likely first.
 
-        First the links moved by as many joints as the one with the usual name, or by the maximum;
-        among them those whose Z points out along the last axis, then by name.
+        The first links have as many joints as the link with the usual name, or the maximum number.
+        Among them, links whose Z points out along the last axis come first, then the order is by
+        name.
         """
         moving: dict[str, int] = {}
         for link in self.links:
@@ -160,14 +160,14 @@ class Urdf:
         return sorted((link for link, count in moving.items() if count), key=rank)
 
     def moved_by(self, joint: str) -> str:
-        """Return the link that a joint moves; it must exist."""
+        """Return the link that an existing joint moves."""
         return next(
             link for link, parent_joint in self.parent.items() if parent_joint.text("name") == joint
         )
 
     def points_out(self, link: str) -> bool:
-        """Return whether the Z of a link is along the axis of the last joint that moves it, and does
-        not point back to the one before.
+        """Whether the Z of a link is along the axis of its last moving joint, and does not point
+        back to the joint before.
         """
         last_joint, to_link = self._moving_joint(link, np.eye(4))
         axis = _axis(last_joint)
@@ -178,14 +178,14 @@ class Urdf:
         return _is_along(to_link[:3, 2], axis) and float(ahead) > -BEHIND_MM
 
     def _moving_joint(self, link: str, to_link: Array) -> tuple[Element, Array]:
-        """Return the joint that moves a link, and a pose (4, 4) in that link seen from the joint."""
+        """Return the joint that moves a link, and a pose (4, 4) in this link relative to it."""
         while self.parent[link].text("type") == FIXED:
             to_link = self.parent[link].pose() @ to_link
             link = self.parent[link].one("parent").text("link")
         return self.parent[link], to_link
 
     def between(self, base: str, tip: str) -> Description:
-        """Return the chain from a link to another that it carries."""
+        """Return the chain from one link to a link that it carries."""
         joints = list(self._between(base, tip))
         moving = [joint for joint in joints if joint.text("type") != FIXED]
         if not moving:
@@ -221,7 +221,7 @@ class Urdf:
         )
 
     def above(self, link: str) -> list[str]:
-        """Return the links that carry a link, next first."""
+        """Return the links that carry a link, the nearest first."""
         carriers: list[str] = []
         while link in self.parent:
             link = self.parent[link].one("parent").text("link")
@@ -248,7 +248,7 @@ class Urdf:
         }
 
     def _between(self, base: str, tip: str) -> Iterator[Element]:
-        """The joints from a link to another, in order."""
+        """Yield the joints from one link to another, in order."""
         above = [tip, *self.above(tip)]
         if base not in above:
             raise InputError(
@@ -286,7 +286,7 @@ class Urdf:
         return joint.pose() if fixed else None
 
     def _mesh(self, link: str, notes: list[str]) -> LinkShape | None:
-        """Return the first mesh of a link that exists and can be drawn; obstacles to that are noted."""
+        """Return the first drawable mesh of a link, and note the obstacles."""
         meshes = (
             self.mesh_of(visual, f"{link} is drawn plain", notes)
             for visual in self.links[link].all("visual")
@@ -301,14 +301,14 @@ class Urdf:
         element : Element
             The element.
         otherwise : str
-            Consequence of a mesh that cannot be used, for the note.
+            Consequence of an unusable mesh, for the note.
         notes : list of str
-            Notes are appended here.
+            List to which notes are appended.
 
         Returns
         -------
         LinkShape or None
-            None without a mesh, or for one that cannot be used.
+            The mesh; None if it is missing or unusable.
         """
         geometry = element.first("geometry")
         mesh = None if geometry is None else geometry.first("mesh")
@@ -336,8 +336,9 @@ class Urdf:
         return None
 
     def _file(self, name: str) -> Path | None:
-        """Return the file of a mesh. A package is a folder of its name above the URDF, or next to
-        one above it.
+        """Return the file of a mesh.
+
+        A package is a folder of its name above the URDF, or next to a folder above the URDF.
         """
         if name.startswith("package://"):
             package, _, relative_path = name[len("package://") :].partition("/")
@@ -370,10 +371,10 @@ def _is_along(direction: Array, axis: Array) -> bool:
 
 
 def _turn_out(to_tip: Array, axis: Array, tip: str, notes: list[str]) -> Array:
-    """Return the pose (4, 4) of a tip in its last moving link, with its Z turned to its X if X
-    is along the axis (3,).
+    """Return the pose (4, 4) of a tip in its last moving link, with Z rotated to X if X is along
+    the axis (3,).
 
-    `flange` of ROS-Industrial has its X outwards, where tool0 has its Z.
+    In ROS-Industrial, X of `flange` points outwards, as Z of tool0 does.
     """
     if _is_along(to_tip[:3, 2], axis) or not _is_along(to_tip[:3, 0], axis):
         return to_tip
@@ -392,8 +393,8 @@ def _turn_out(to_tip: Array, axis: Array, tip: str, notes: list[str]) -> Array:
 
 
 def _xacro_in(element: Element) -> Element | None:
-    """Return the first element that only xacro understands: in its namespace, or with an
-    expression in a name.
+    """Return the first element that only xacro understands: in its namespace, or with an expression
+    in a name.
     """
     expressions = ("${", "$(")
     if element.tag.startswith("xacro:") or any(
@@ -408,8 +409,8 @@ def _xacro_in(element: Element) -> Element | None:
 
 
 def _check_joint(joint: Element) -> None:
-    """Raise InputError BAD_URDF for content of a joint that is not read and may move its link,
-    and for lengths not in m.
+    """Raise InputError BAD_URDF for unknown content of a joint that may move its link, and for
+    lengths that are not in m.
     """
     for child in joint.children:
         if child.tag not in JOINT_TAGS:
@@ -449,7 +450,7 @@ def _check_joint(joint: Element) -> None:
 
 
 def _joint_notes(joints: Sequence[Element]) -> list[str]:
-    """Notes on limits that are substituted or not used."""
+    """Return notes on limits that are substituted or unused."""
     notes: list[str] = []
     for joint in joints:
         limit, soft = joint.first("limit"), joint.first("safety_controller")
@@ -465,8 +466,8 @@ def _joint_notes(joints: Sequence[Element]) -> list[str]:
 
 
 def _rounded_angles(joints: Sequence[Element]) -> list[str]:
-    """Notes on angles that count as right angles although their last digit is off by more than
-    rounding.
+    """Return notes on angles that count as right angles although they deviate by more than rounding
+    of their last digit.
     """
     notes: list[str] = []
     for joint in joints:
@@ -489,16 +490,17 @@ def _axis(joint: Element) -> Array:
 
 
 def unrounded_limit(word: str) -> float:
-    """Return the limit of a joint that a number represents, rad: a whole degree or the number itself.
+    """Return the joint limit that a number represents, rad: a whole degree, or the number itself.
 
-    With two decimals only multiples of five degrees count: a whole degree is near every number.
+    With two decimals only multiples of five degrees count, because every number is near a whole
+    degree.
     """
     has_few_decimals = len(word.partition(".")[2]) < 3
     return urdf_xml.nearest(word, 5.0 * DEGREE if has_few_decimals else DEGREE)
 
 
 def _limits(joint: Element) -> tuple[float, float, float]:
-    """Lowest and highest value and speed; limits that are rounded whole degrees are whole degrees."""
+    """Return lower limit, upper limit and speed; rounded whole degrees become exact."""
     kind = joint.text("type")
     limit = joint.first("limit")
     unit = 1000.0 if kind == "prismatic" else 1.0

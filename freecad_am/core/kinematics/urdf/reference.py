@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The text by which a cell names a URDF as its machine."""
+"""The text that names a URDF as the machine of a cell."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ _TEXT = re.compile(
 
 @dataclass(frozen=True)
 class Reference:
-    """A chain of a URDF: its file, and its first and last link, None for links that the file
-    proposes.
+    """A chain of a URDF: its file, first link and last link.
 
-    Its text is `robot.urdf`, or `robot.urdf base=base_link tip=tool0`.
+    A link is None if the file proposes it. The text is `robot.urdf`, or
+    `robot.urdf base=base_link tip=tool0`.
     """
 
     file: str
@@ -32,6 +32,6 @@ class Reference:
 
 
 def reference(text: str) -> Reference | None:
-    """Return the reference that a text gives, None if it does not name a URDF."""
+    """Return the reference in a text; None if the text does not name a URDF."""
     match = _TEXT.fullmatch(text.strip())
     return None if match is None else Reference(match["file"], match["base"], match["tip"])

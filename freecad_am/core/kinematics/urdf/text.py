@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machines as URDF, for simulators and other programs that read one."""
+"""Export machines as URDF for simulators and other programs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..machines.machine import Machine
 
 
 def text(machine: Machine) -> str:
-    """A machine with its limits `maker` as a URDF without visuals."""
+    """Return a machine with its limit set `maker` as a URDF without visuals."""
     limits, count = machine.limits("maker"), len(machine.axes)
     base = None if np.array_equal(machine.base, np.eye(4)) else machine.base
     return _text_of(
@@ -37,8 +37,10 @@ def _text_of(
     max_speed: Array,
     base: Array | None = None,
 ) -> str:
-    """A chain as a URDF without visuals: links base_link, link_1 ... and tool0, the flange; `base`
-    if the manufacturer's base frame is given. Numbers have all their digits.
+    """Return a chain as a URDF without visuals.
+
+    Its links are base_link, link_1 and so on, and tool0 for the flange; `base` too if the
+    manufacturer's base frame is given. Numbers keep full precision.
     """
     lines = [
         '<?xml version="1.0"?>',

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Adds points where motion straight in the joints would leave the bead between its points."""
+"""Add points where joint motion would deviate from a bead between its points."""
 
 from __future__ import annotations
 
@@ -18,9 +18,9 @@ from ..task import Task
 INNER_SHARES = np.array([0.25, 0.5, 0.75])
 FINE_SHARES = (
     np.array([1.0, 2.0, 4.0, 5.0]) / 6.0
-)  # sampling of segments that use more than half of the chord error
-# values there of the polynomials through both ends, where the tip is on the bead, and
-# INNER_SHARES: (4, 3)
+)  # samples of segments that use more than half of the chord error
+# (4, 3) weights: interpolate the deviations at INNER_SHARES to FINE_SHARES, with zero deviation at
+# both ends
 INTERPOLATION = np.array(
     [
         [
@@ -33,32 +33,32 @@ INTERPOLATION = np.array(
     ]
 )
 ROUNDS = 8
-POINTS_PER_BATCH = 4096  # approximate number of points of beads that are checked together
-# margin for rounding, mm: beads of revolution use their whole chord error
+POINTS_PER_BATCH = 4096  # approximate number of points per batch
+# mm; margin for rounding: beads of revolution use their whole chord error
 ROUNDING = 1e-6
 
 
 def refined_to_chord_error(
     task: Task, path: BeadPath, chord_error: float
 ) -> tuple[BeadPath, list[Issue]]:
-    """Add points to a path until straight joint motion keeps the chord error.
+    """Add points to a path until joint motion keeps the chord error.
 
-    Points are added on the curve that the points of the bead outline, not on its chords; at
-    corners on the segments.
+    Added points lie on the curve of the bead, not on its chords; at corners they lie on the
+    segments.
 
     Parameters
     ----------
     task : Task
-        The plan that the path belongs to.
+        The plan of the path.
     path : BeadPath
-        The path; an unreachable one is returned unchanged.
+        The path; returned unchanged if unreachable.
     chord_error : float
-        Largest deviation of the tip between two points, mm.
+        Maximum deviation of the tip between two points, mm.
 
     Returns
     -------
     path : BeadPath
-        The path with added points.
+        The path, including added points.
     issues : list of Issue
         Error NOT_STRAIGHT if the path still deviates after ROUNDS rounds.
     """
@@ -87,21 +87,21 @@ def all_refined(
 ) -> list[tuple[BeadPath, list[Issue]]]:
     """Apply `refined_to_chord_error` to each path.
 
-    Most paths need no more points. Checking many paths in one call finds these soonest.
+    Most paths need no added points. A batched check finds these paths fastest.
 
     Parameters
     ----------
     task : Task
-        The plan that the paths belong to.
+        The plan of the paths.
     paths : sequence of BeadPath
         The paths, reachable or not.
     chord_error : float
-        Largest deviation of the tip between two points, mm.
+        Maximum deviation of the tip between two points, mm.
 
     Returns
     -------
     list of (BeadPath, list of Issue)
-        The paths with added points, each with its issues.
+        Each path, including added points, with its issues.
     """
     reachable = [k for k, path in enumerate(paths) if path.reachable]
     ends = np.cumsum([len(paths[k].bead) for k in reachable])
@@ -127,18 +127,18 @@ def all_refined(
 
 
 def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Array:
-    """Return how far the tip leaves each segment of a bead when the joints run straight.
+    """Return the deviation of the tip from each segment of a bead during joint motion.
 
     Parameters
     ----------
     task : Task
-        The plan that the bead belongs to.
+        The plan of the bead.
     bead : Bead
         The bead of n points.
     joints : (n, axes) array
-        Joint values at its points, rad or mm.
+        Joint values at the bead points, rad or mm.
     chord_error : float
-        The allowed deviation, mm; segments that come near it are sampled more finely.
+        Allowed deviation, mm; segments close to it are sampled more finely.
 
     Returns
     -------
@@ -151,12 +151,14 @@ def deviation(task: Task, bead: Bead, joints: Array, chord_error: float) -> Arra
 def _deviation(
     task: Task, points: Array, joints: Array, segments: Index, chord_error: float
 ) -> Array:
-    """Return the deviations (k,) of the segments that begin at the points with indices (k,), from
-    points (n, 3) and joints (n, axes).
+    """Return the deviation (k,) of segments; `segments` (k,) gives the indices of their starts.
+
+    points: (n, 3). joints: (n, axes).
     """
     distances = _looked_at(task, points, joints, segments, INNER_SHARES)
     deviation: Array = np.maximum.reduce(distances)
-    # nearly all segments deviate smoothly, most in the middle, so samples do not miss the maximum
+    # the deviation of nearly all segments is smooth with its maximum near the midpoint, so few
+    # samples suffice
     doubtful = np.flatnonzero(
         (deviation > 0.5 * chord_error) & (np.maximum.reduce(INTERPOLATION @ distances) > deviation)
     )
@@ -171,7 +173,7 @@ def _deviation(
 
 
 def leaning(cell: Cell, bead: Bead, joints: Array) -> Array:
-    """Return the angle by which the tool strays on each segment as the joints run straight.
+    """Return the deviation of the tool axis on each segment during joint motion.
 
     Parameters
     ----------
@@ -180,12 +182,12 @@ def leaning(cell: Cell, bead: Bead, joints: Array) -> Array:
     bead : Bead
         The bead of n points.
     joints : (n, axes) array
-        Joint values at its points, rad or mm.
+        Joint values at the bead points, rad or mm.
 
     Returns
     -------
     (n - 1,) array
-        Largest angle to the tool axis interpolated between the ends, rad.
+        Maximum angle to the tool axis interpolated between the segment ends, rad.
     """
     joint_step, count = np.diff(joints, axis=0)[:, None], len(INNER_SHARES)
     flange = cell.machine.chain.forward(
@@ -199,7 +201,7 @@ def leaning(cell: Cell, bead: Bead, joints: Array) -> Array:
 
 
 def _looked_at(task: Task, points: Array, joints: Array, segments: Index, shares: Array) -> Array:
-    """Return the deviations (s, k), mm, at shares (s,) of their length."""
+    """Return the deviations (s, k) of segments (k,) at fractions `shares` (s,), mm."""
     start, joint_step = joints[segments], joints[segments + 1] - joints[segments]
     offset = (
         task.cell.tip_at(start[:, None] + joint_step[:, None] * shares[:, None])
@@ -214,7 +216,7 @@ def _looked_at(task: Task, points: Array, joints: Array, segments: Index, shares
 
 
 def _halved(task: Task, path: BeadPath, segments: Integers) -> BeadPath:
-    """The path with a point in the middle of each of the segments."""
+    """Add a point at the midpoint of each of the segments."""
     insert_rows = segments + 1
 
     def middle(column: Array) -> Array:

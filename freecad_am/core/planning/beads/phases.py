@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Phases at the ends of beads: points where they begin and end, and the speed of the torch there.
+"""Phases at bead ends: insert points at their ends, and set the travel speed there.
 
-They are inserted once seams, overlaps and joints are known, on the actual path, where joints run
-straight between points.
+Points are inserted once seams, overlaps and joints are known. They lie on the actual path, which
+is linear in the joints between points.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from ...toolpath import Bead, BeadEnds
 from ...types import Array, Index
 from ..joint_path import BeadPath
 
-STEPS = 4  # iterations; each leaves a small share of the previous error
+STEPS = 4  # iterations; each one leaves a small fraction of the error
 END_MM = 1e-3  # mm; a point this close to the end of a phase counts as its end
-STEP_MM = 0.2 * MIN_STEP  # a point this close to the end of a ramp step counts as its end
+STEP_MM = 0.2 * MIN_STEP  # mm; a point this close to the end of a ramp step counts as its end
 CODE = "PHASE_LENGTH"
 _UNIT = ("build", "tool", "tangents")
 Condition = Callable[[Array, Array], Array]
 
 
 class Stretch(NamedTuple):
-    """A stretch of a bead: its begin and end along the bead, mm, its phase (of PHASES) and its
-    speed, mm/s.
+    """A section of a bead.
 
-    Speed 0 means the speed of the rest of the bead.
+    begin, end: positions along the bead, mm. phase: one of PHASES. speed: mm/s; 0 for the speed of
+    the rest of the bead.
     """
 
     begin: float
@@ -44,7 +44,7 @@ class Stretch(NamedTuple):
 
 
 def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPath, list[Issue]]:
-    """Return the path with points at the ends of its bead's phases, at the speeds of these phases.
+    """Insert points at the ends of the phases of a bead, and set the phase speeds.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
     path : BeadPath
         The path, with points at the ends of phases and ramp steps.
     issues : list of Issue
-        An error if the phases are longer than the bead, such as a piece of a divided bead.
+        An error if the phases are longer than the bead, which may be a piece of a split bead.
     """
     if path.bead.ends is None or not path.reachable:
         return path, []
@@ -90,10 +90,10 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
 
 
 def _borders(stretches: Sequence[Stretch], along: Array) -> Array:
-    """Return the positions (k,), mm along the bead, at which points are inserted.
+    """Return the positions (k,) along the bead at which to insert points, mm.
 
     These are the ends of phases, and the ends of ramp steps without a point nearby. along: (n,)
-    positions of the bead's points, mm.
+    positions of the bead points, mm.
     """
     existing = along
     for of_phase, min_distance in ((True, END_MM), (False, STEP_MM)):
@@ -120,8 +120,9 @@ def _borders(stretches: Sequence[Stretch], along: Array) -> Array:
 
 
 def _stretches(bead: Bead, ends: BeadEnds, length: float) -> list[Stretch]:
-    """Return the stretches of a bead with another speed. Steps of ramps have no phase: the other
-    settings of bead ends do not apply there.
+    """Return the sections of a bead with their own speed.
+
+    Ramp steps have no phase, because the other settings of bead ends do not apply there.
     """
     rising = ramp(ends.start_ramp, ends.start_speed, float(bead.speed[1]))
     falling = ramp(ends.end_ramp, float(bead.speed[-1]), ends.end_speed)
@@ -143,9 +144,9 @@ def _stretches(bead: Bead, ends: BeadEnds, length: float) -> list[Stretch]:
 
 
 def _timed(bead: Bead, along: Array, stretches: Sequence[Stretch]) -> Bead:
-    """Return the bead with the speeds of its phases and the phase of each segment.
+    """Set the speeds of the phases and the phase of each segment of a bead.
 
-    along: (n,) positions of the points, mm along the bead.
+    along: (n,) positions of the points along the bead, mm.
     """
     phase, speed = np.full(len(along), float(MIDDLE)), np.array(bead.speed)
     middle = 0.5 * (along + np.r_[0.0, along[:-1]])  # of the segment that ends at each point
@@ -157,10 +158,10 @@ def _timed(bead: Bead, along: Array, stretches: Sequence[Stretch]) -> Bead:
 
 
 def _shares(cell: Cell, path: BeadPath, segment: Index, lengths_in: Array) -> Array:
-    """Return the shares (k,) of the joint motion at which the tip is `lengths_in` (k,) mm into
+    """Return the fractions (k,) of the joint motion that place the tip `lengths_in` (k,) mm into
     segments (k,).
 
-    The tip does not move evenly over a segment.
+    An iteration is needed because the tip does not move at constant speed over a segment.
     """
     start = path.bead.points[segment]
     offset = path.bead.points[segment + 1] - path.bead.points[segment]
@@ -178,8 +179,9 @@ def _shares(cell: Cell, path: BeadPath, segment: Index, lengths_in: Array) -> Ar
 def _insert_points(
     cell: Cell, path: BeadPath, along: Array, borders: Array, condition_at: Condition
 ) -> BeadPath:
-    """Return the path with new points at `borders` (k,), mm along it in rising order; none may
-    exist yet.
+    """Insert points into a path at `borders` (k,), in mm along it and ascending.
+
+    No point may exist there yet.
     """
     segment = np.searchsorted(along, borders) - 1
     share = _shares(cell, path, segment, borders - along[segment])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Extends beads past their end: open ones back over it, closed ones over their beginning."""
+"""Extend beads past their end: open beads back over their end, closed beads over their start."""
 
 from __future__ import annotations
 
@@ -18,32 +18,34 @@ from ..external import stroke
 from ..joint_path import BeadPath
 from ..task import Task
 
-BACK = -0.999  # cosine between the directions to a point and from it
+BACK = -0.999  # maximum cosine between arriving and leaving directions at a reversal
 
 
 class _Way(NamedTuple):
-    """The way back from the end of a bead: past `past` points and by a share of the segment to the
-    last one.
+    """The retreat from the end of a bead.
+
+    It passes `past` points; the last one is at fraction `share` of its segment.
     """
 
     past: int
     share: float
 
     def of(self, column: Array) -> Array:
-        """Return a column (n, ...) of the bead along the way back, (past, ...), without its end."""
+        """Return a bead column (n, ...) along the retreat (past, ...), without the bead end."""
         back = column[::-1]
         end_value = back[self.past - 1] + self.share * (back[self.past] - back[self.past - 1])
         return np.concatenate([back[1 : self.past], [end_value]])
 
 
 def gone_back(bead: Bead, length: float) -> Bead:
-    """Return an open bead whose last `length` mm are printed once more, backwards, at most the full
-    length; a closed bead unchanged.
+    """Print the last `length` mm of an open bead once more, backwards.
+
+    `length` is limited to the bead length. A closed bead is returned unchanged.
     """
     if length <= 0.0 or bead.closed:
         return bead
     retreat = _way(bead, length)
-    end_segment = len(bead) - 1 - retreat.past  # the segment in which it ends
+    end_segment = len(bead) - 1 - retreat.past  # the segment in which the retreat ends
     (point,), (tangent,) = bead.outline.at(np.array([end_segment]), 1.0 - retreat.share)
     points = retreat.of(bead.points)
     points[-1] = point
@@ -81,21 +83,21 @@ def gone_back(bead: Bead, length: float) -> Bead:
 def go_back(task: Task, path: BeadPath, length: float) -> BeadPath:
     """Extend an open bead backwards over its end.
 
-    The way back uses the joints that led to the end.
+    The retreat reuses the joints that led to the end.
 
     Parameters
     ----------
     task : Task
-        The plan that the path belongs to.
+        The plan of the path.
     path : BeadPath
-        The path; a closed or unreachable one is returned unchanged.
+        The path; returned unchanged if closed or unreachable.
     length : float
-        Length of the way back, mm.
+        Length of the retreat, mm.
 
     Returns
     -------
     BeadPath
-        The longer path.
+        The extended path.
     """
     if length <= 0.0 or path.bead.closed or not path.reachable:
         return path
@@ -107,7 +109,7 @@ def go_back(task: Task, path: BeadPath, length: float) -> BeadPath:
 
 
 def turns_back(bead: Bead) -> Array:
-    """Mark the points where a bead reverses, at which a machine has to stop.
+    """Mark the points where a bead reverses and the machine has to stop.
 
     Parameters
     ----------
@@ -117,7 +119,7 @@ def turns_back(bead: Bead) -> Array:
     Returns
     -------
     (n,) array
-        1 where it reverses, else 0.
+        1 at a reversal, otherwise 0.
     """
     if bead.tangents is None:
         return np.zeros(len(bead))
@@ -125,7 +127,7 @@ def turns_back(bead: Bead) -> Array:
 
 
 def _tangents(bead: Bead) -> Array:
-    """(n, 2, 3) the unit tangents of the curve that the points of a bead outline, arriving and leaving."""
+    """Return the unit tangents (n, 2, 3) of the bead curve, arriving at and leaving each point."""
     if bead.tangents is not None:
         return bead.tangents
     return at_points(unit(bead.outline.leaving), unit(bead.outline.arriving))
@@ -139,27 +141,27 @@ def _way(bead: Bead, length: float) -> _Way:
     return _Way(count + 1, (length - length_before) / (float(along[count]) - length_before))
 
 
-# ---- Extends closed beads past their seam, over their beginning
+# ---- Extend closed beads past their seam
 
 
 def extend_past_seam(task: Task, path: BeadPath, overlap: float) -> BeadPath:
-    """Extend a closed bead over its beginning.
+    """Extend a closed bead over its start by the seam overlap.
 
-    The rotation continues from its end value, and the joints follow it.
+    The rotation continues from its end value, and the joints follow.
 
     Parameters
     ----------
     task : Task
-        The plan that the path belongs to.
+        The plan of the path.
     path : BeadPath
-        The path; an open or unreachable one is returned unchanged.
+        The path; returned unchanged if open or unreachable.
     overlap : float
-        Length of the overlap, mm; at most one round.
+        Overlap length, mm; at most one round.
 
     Returns
     -------
     BeadPath
-        The longer path, with an open bead.
+        The extended path, with an open bead.
     """
     if overlap <= 0.0 or not path.bead.closed or not path.reachable:
         return path
@@ -198,19 +200,19 @@ def longer(
     Parameters
     ----------
     task : Task
-        The plan that the path belongs to.
+        The plan of the path.
     path : BeadPath
         The path of n points.
     bead : Bead
-        The bead with all n + m points.
+        The bead, with all n + m points.
     flange : (m, 4, 4) array
-        Flange poses at the new points, base frame.
+        Flange poses at the new points, base_link.
     phi : (m,) array
         Rotations about the tool axis at the new points, rad.
     joints : (m, axes) array
         Joint values at the new points, rad or mm.
     threshold : (m,) array
-        Smallest condition allowed there.
+        Required minimum condition at the new points.
 
     Returns
     -------
@@ -228,21 +230,21 @@ def longer(
 
 
 def unwrapped_from(task: Task, start: Array, joints: Array) -> Array:
-    """Return joints in the turns that continue from given ones.
+    """Unwrap joints, continuing from given joints.
 
     Parameters
     ----------
     task : Task
-        The plan; its sliding axes stay unchanged.
+        The plan; its prismatic axes stay unchanged.
     start : (axes,) array
         Joints before the first row, rad or mm.
     joints : (n, axes) array
-        Joints up to whole turns.
+        Joints, known up to whole turns.
 
     Returns
     -------
     (n, axes) array
-        Joints without steps of more than half a turn.
+        Joints whose steps are at most half a turn.
     """
     step = np.diff(joints, axis=0, prepend=start[None])
     step -= np.where(task.cell.machine.chain.sliding, 0.0, TURN * np.round(step / TURN))

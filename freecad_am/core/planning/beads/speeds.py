@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Travel speeds that axes cannot follow: slows short places down and leaves the rest to the user."""
+"""Travel speeds above axis limits: slow down short sections, and report longer ones to the user."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ from ...types import Array, Mask
 from ..joint_path import BeadPath
 
 SLOWED = "SLOWED"
-JUST = 1.0 - 1e-9  # share of the maximum speed of an axis
-PILE = 1.0  # allowed excess of deposit where the bead is slowed, as a share of the bead width
-DEFAULT_WIDTH_RATIO = 2.0  # a bead's width in layer heights without a model
+JUST = 1.0 - 1e-9  # fraction of the maximum axis speed that slowed segments use
+PILE = 1.0  # maximum excess deposit in a slowed section, relative to the bead width
+DEFAULT_WIDTH_RATIO = 2.0  # bead width in layer heights, without a bead model
 
 
 def rings_slowed(
     cell: Cell, paths: Sequence[BeadPath], layer_height: float
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Slow the tightest rings of a wall down to the speed that the axes allow.
+    """Slow the smallest rings of a wall to the speed that the axes allow.
 
-    Where a wall closes, the last rings may be very small, and the axis that turns the part
-    would have to turn without bound. Segments at less than a layer height from the part's axis
-    are slowed. The rest is left for the user to decide.
+    Where a wall closes, the last rings may be so small that the axis that rotates the part would
+    have to rotate without bound. Segments within one layer height of the part axis are slowed.
+    Other segments are left for the user to decide.
 
     Parameters
     ----------
     cell : Cell
-        The cell, with the maximum speed of each axis.
+        The cell, including the maximum axis speeds.
     paths : sequence of BeadPath
         The paths.
     layer_height : float
@@ -46,7 +46,7 @@ def rings_slowed(
     paths : list of BeadPath
         The paths, some with lower speeds.
     issues : list of Issue
-        A warning if any path was slowed.
+        A warning if a path was slowed.
     """
     result, slowed = [], []
     for path in paths:
@@ -77,10 +77,11 @@ def rings_slowed(
 
 
 class _Place(NamedTuple):
-    """A place where a bead is slowed: its length, mm, and speed, mm/s, and the excess deposit, mm
-    of bead.
+    """A slowed section of a bead.
 
-    Also the predicted increase of bead width and height, mm; nan without a bead model.
+    point: its slowest point. length: mm. speed: minimum, mm/s. pile: excess deposit, mm of bead
+    length. wider, higher: predicted increase of bead width and height, mm; NaN without a bead
+    model.
     """
 
     path: BeadPath
@@ -95,29 +96,29 @@ class _Place(NamedTuple):
 def corners_slowed(
     cell: Cell, paths: Sequence[BeadPath], layer_height: float, law: SpeedLaw | None
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Slow short stretches of beads on hubs down to the speed that the axes allow.
+    """Slow short sections of filled layers to the speed that the axes allow.
 
-    At corners and near poles any five-axis controller slows down, and so does a robot. The
-    deposit then piles up: a stretch is short if the pile is at most PILE of the bead's width.
-    Longer stretches are left unchanged.
+    Near corners and poles, controllers of five-axis machines and robots slow down anyway. The
+    deposit then piles up. A section is short if its excess deposit is at most PILE bead widths.
+    Longer sections are left unchanged.
 
     Parameters
     ----------
     cell : Cell
-        The cell, with the maximum speed of each axis.
+        The cell, including the maximum axis speeds.
     paths : sequence of BeadPath
         The paths.
     layer_height : float
-        Layer height, mm; it gives the width of beads without their own.
+        Layer height, mm; defines the width of beads without a width.
     law : SpeedLaw or None
-        How the bead's width, height and speed depend on each other, None without a model.
+        Relation between bead width, height and speed; None without a bead model.
 
     Returns
     -------
     paths : list of BeadPath
         The paths, some with lower speeds.
     issues : list of Issue
-        A warning with the worst place if any path was slowed.
+        A warning with the slowest section if a path was slowed.
     """
     result: list[BeadPath] = []
     slow_sections: list[_Place] = []
@@ -153,7 +154,10 @@ def corners_slowed(
 def _slowed(
     path: BeadPath, ratio: Array, layer_height: float, law: SpeedLaw | None
 ) -> tuple[BeadPath, list[_Place]]:
-    """A path whose axes would turn at `ratio` (n - 1,) of their maximum speed, and its slowed positions."""
+    """Slow a path whose axes would exceed their limits; return the path and its slowed sections.
+
+    ratio: (n - 1,) axis speed relative to the maximum.
+    """
     bead = path.bead
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     middle = np.cumsum(length) - 0.5 * length
@@ -191,10 +195,10 @@ def _slowed(
 
 
 def _approached(middle: Array, speed: Array, share: Array, law: SpeedLaw | None) -> Array:
-    """Return the segment speeds (n - 1,), mm/s, with ramps down to slowed segments and up again.
+    """Return the segment speeds (n - 1,), mm/s, with ramps to and from slowed segments.
 
-    middle: (n - 1,) positions of the segment middles, mm. speed: at the middles. share: the largest
-    share of it that each segment may keep.
+    middle: (n - 1,) midpoints of the segments along the bead, mm. speed: planned speeds, mm/s.
+    share: maximum fraction of these speeds for each segment.
     """
     if law is None or (share == 1.0).all():
         return np.asarray(speed * share)
@@ -206,7 +210,7 @@ def _approached(middle: Array, speed: Array, share: Array, law: SpeedLaw | None)
 
 
 def _runs(mask: Mask) -> list[list[int]]:
-    """Start and stop of each run of true values."""
+    """Return start and stop of each run of true values."""
     ends: list[list[int]] = (
         np.flatnonzero(np.diff(np.r_[False, mask, False].astype(int))).reshape(-1, 2).tolist()
     )
@@ -214,7 +218,7 @@ def _runs(mask: Mask) -> list[list[int]]:
 
 
 def _gains(planned: Bead, slowed: Bead) -> tuple[Array, Array]:
-    """Return the predicted increase of bead width and height (n,), mm; nan without a bead model."""
+    """Return the predicted increase of bead width and height (n,), mm; NaN without a bead model."""
     none = np.full(len(planned), np.nan)
     if (
         planned.width is None
@@ -227,7 +231,7 @@ def _gains(planned: Bead, slowed: Bead) -> tuple[Array, Array]:
 
 
 def _growth(sections: Sequence[_Place], worst: _Place, law: SpeedLaw | None) -> str:
-    """Return the growth that the bead model predicts at slowed places."""
+    """Return the message part about bead growth in slowed sections; '' without a bead model."""
     wider = max(section.wider for section in sections)
     if law is None or not wider > 0.0:
         return ""
@@ -254,20 +258,20 @@ def _width(bead: Bead, segments: slice, layer_height: float) -> float:
 
 
 def _scale_speeds(path: BeadPath, share: Array) -> BeadPath:
-    """The path with its segments at a share (n - 1,) of their speeds."""
+    """Scale the segment speeds of a path by fractions (n - 1,)."""
     speed = np.r_[path.bead.speed[:1], path.bead.speed[1:] * share]
     return dataclasses.replace(path, bead=dataclasses.replace(path.bead, speed=speed))
 
 
 def _axis_speeds(path: BeadPath) -> Array:
-    """(n - 1, axes) rad/s at which the axes turn along a bead."""
+    """Return the axis speeds (n - 1, axes) along a bead, rad/s or mm/s."""
     length = lengths(np.diff(path.bead.points, axis=0))
     speed: Array = np.abs(np.diff(path.joints, axis=0)) * (path.bead.speed[1:] / length)[:, None]
     return speed
 
 
 def share_of_speed(cell: Cell, paths: Sequence[BeadPath]) -> float:
-    """The share of the travel speeds at which the axes can follow all paths, at most 1."""
+    """Return the fraction of the travel speed that the axes can follow on all paths, at most 1."""
     return float(
         min(
             (

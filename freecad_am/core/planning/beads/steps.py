@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Removes points of beads that follow each other faster than a controller steps.
+"""Remove bead points that follow each other faster than the controller's interpolation step.
 
-Where walls are thin, small, or printed fast, corners and ends have points some hundredths of a
-millimetre apart. Removed points are within a share of the chord error of the remaining path;
-otherwise they stay, and the move gets the time of a step.
+In walls that are thin, small or printed fast, corners and ends have points hundredths of a
+millimetre apart. A point is removed only if it lies within a fraction of the chord error of the
+remaining path. Otherwise it stays, and its move lasts one step.
 """
 
 from __future__ import annotations
@@ -27,9 +27,9 @@ def refined_to_chord_error(
 ) -> Motion:
     """Add points to the beads of a motion until it keeps the chord error.
 
-    For a part on the robot. Added points are on the curves of the beads, evenly in length and
-    in rotation; the points of a bead get new numbers. Segments without joint values at their
-    ends stay unchanged.
+    This applies to a part on the robot. Added points lie on the bead curves, evenly spaced in
+    length and rotation. Points are renumbered within each bead. Segments with an unreachable end
+    stay unchanged.
 
     Parameters
     ----------
@@ -38,14 +38,14 @@ def refined_to_chord_error(
     cell : Cell
         The cell.
     chord_error : float
-        Largest deviation of the tip between two points, mm.
+        Maximum deviation of the tip between two points, mm.
     beads : sequence of Bead
         The beads of the motion, in order.
 
     Returns
     -------
     Motion
-        The motion with added rows.
+        The motion, including added rows.
     """
     counts = _piece_counts(motion, cell, chord_error)
     row = np.repeat(np.arange(len(motion)), counts)
@@ -75,7 +75,7 @@ def refined_to_chord_error(
 
 
 def origins(motion: Motion, cell: Cell, chord_error: float) -> Integers:
-    """Return the row of the motion from which each row of `refined_to_chord_error` comes.
+    """Return the original row of each row of `refined_to_chord_error`.
 
     Parameters
     ----------
@@ -84,18 +84,18 @@ def origins(motion: Motion, cell: Cell, chord_error: float) -> Integers:
     cell : Cell
         The cell.
     chord_error : float
-        As in `refined_to_chord_error`, mm.
+        Chord error of `refined_to_chord_error`, mm.
 
     Returns
     -------
     (m,) int array
-        Row of the motion; for an added point, the row at the end of its segment.
+        Row index; for an added point, the row at the end of its segment.
     """
     return np.repeat(np.arange(len(motion)), _piece_counts(motion, cell, chord_error))
 
 
 def _curve_points(motion: Motion, beads: Sequence[Bead], end: Integers, share: Array) -> Array:
-    """(n, 3) points of the beads a share (n,) of the way along the segments that end at the rows (n,)."""
+    """Return curve points (n, 3) at fractions (n,) of the segments that end at rows (n,)."""
     number = np.cumsum(motion.deposit & (motion.point == 0)) - 1
     result = np.empty((len(end), 3))
     for bead in np.unique(number[end]):
@@ -105,7 +105,7 @@ def _curve_points(motion: Motion, beads: Sequence[Bead], end: Integers, share: A
 
 
 def _piece_counts(motion: Motion, cell: Cell, chord_error: float) -> Integers:
-    """Return the number of pieces (n,) for the segment that ends at each row; 1 outside of beads."""
+    """Return the number of parts (n,) of the segment that ends at each row; 1 outside of beads."""
     counts = np.ones(len(motion), dtype=np.int64)
     inside = (
         motion.deposit[1:] & (motion.point[1:] > 0) & motion.reachable[1:] & motion.reachable[:-1]
@@ -123,7 +123,10 @@ def _piece_counts(motion: Motion, cell: Cell, chord_error: float) -> Integers:
 
 
 def _rotation_vector(start: Array, end: Array) -> Array:
-    """(n, 3) axis times angle of the rotation that takes start to end (n, 3, 3), in the axes of both their frames."""
+    """Return the rotation vectors (n, 3) from start to end (n, 3, 3).
+
+    Their components are the same in both frames.
+    """
     turn = np.swapaxes(start, 1, 2) @ end
     twice = np.stack(
         [
@@ -142,7 +145,10 @@ def _rotation_vector(start: Array, end: Array) -> Array:
 def _interpolate_flange(
     motion: Motion, cell: Cell, start: Integers, end: Integers, share: Array, position: Array
 ) -> Array:
-    """(n, 4, 4) flange poses a share of the way from row to row in rotation, with points of the part at the nozzle."""
+    """Return flange poses (n, 4, 4) at fractions of the rotation from row to row.
+
+    The part points `position` lie at the nozzle.
+    """
     start_rotation, end_rotation = (
         cell.machine.chain.forward(motion.joints[rows])[:, :3, :3] for rows in (start, end)
     )
@@ -160,7 +166,7 @@ def _interpolate_flange(
 
 
 def _joints(motion: Motion, cell: Cell, flange: Array, reference: Array) -> Array:
-    """Joints (n, axes) of the flange poses in the branch of the motion and in the turns of `reference`."""
+    """Return joints (n, axes) of flange poses, in the branch of the motion and near `reference`."""
     arm = cell.machine.arm
     assert arm is not None
     branch = int(np.bincount(arm.branch_of(motion.joints[motion.reachable])).argmax())
@@ -173,33 +179,33 @@ def _joints(motion: Motion, cell: Cell, flange: Array, reference: Array) -> Arra
     return turned
 
 
-MIN_STEP_SHARE = 0.96  # of the least way, below which a post rejects two points
-OMITTED_DEVIATION_SHARE = 0.4  # share of the chord error for the deviation of omitted points
-REACH = 2000.0  # mm; maximum distance of a point from the axis that turns it
+MIN_STEP_SHARE = 0.96  # fraction of the minimum distance below which a post rejects two points
+OMITTED_DEVIATION_SHARE = 0.4  # fraction of the chord error that removed points may deviate
+REACH = 2000.0  # mm; maximum distance of a point from the axis that rotates it
 
 
 def programmed(
     motion: Motion, controller: Controller, chord_error: float, blend: float
 ) -> tuple[Motion, Index]:
-    """Return the motion for programs of a controller, without steps that are too short for it.
+    """Return the motion for a controller, without steps that are too short for it.
 
     Parameters
     ----------
     motion : Motion
         The motion of n rows.
     controller : Controller
-        The controller, with its least time and blend between points.
+        The controller, including its minimum time and blend between points.
     chord_error : float
-        Largest deviation that removing a row may cause, mm.
+        Chord error, mm; bounds the deviation of removed rows.
     blend : float
-        Blending of the program, percent.
+        Blending of the program, %.
 
     Returns
     -------
     motion : Motion
-        The motion of m rows. The time of removed rows goes to the next remaining row.
+        The motion of m rows. Each remaining row takes over the time of the rows removed before it.
     rows : (m,) int array
-        Its rows in the given motion.
+        Row indices in the given motion.
     """
     step, blended = controller.least_step, controller.least_blend
     if not step:
@@ -212,7 +218,7 @@ def programmed(
     }
     inside = columns["deposit"] & (columns["point"] > 0)
     duration = np.diff(np.cumsum(motion.duration)[rows], prepend=0.0)
-    # the time of removed rows goes to the move that replaces them
+    # the move that replaces removed rows takes over their time
     joined = inside & (np.diff(rows, prepend=-1) > 1)
     columns["duration"] = np.where(joined, duration, columns["duration"])
     slow = inside & (columns["duration"] < step)
@@ -227,8 +233,8 @@ def programmed(
 
 
 def _select_rows(motion: Motion, seconds: float, min_distance: float, chord_error: float) -> Mask:
-    """Return which rows (n,) stay: ends of beads, rapids, and rows `seconds` and `min_distance` mm after
-    the previous one.
+    """Return which rows (n,) stay: bead ends, rapids, and rows at least `seconds` and
+    `min_distance` (mm) after the previous row.
     """
     step_lengths = np.linalg.norm(
         np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1
@@ -256,11 +262,11 @@ def _select_rows(motion: Motion, seconds: float, min_distance: float, chord_erro
 
 
 def _remove_returns(motion: Motion, keep: Mask, min_distance: float, off: float) -> Mask:
-    """Return the rows that stay, without those closer than `min_distance` mm to the previous row.
+    """Return which rows stay after removing rows within `min_distance` mm of the previous row.
 
-    Such rows occur where a bead turns round in less than a blend: there the distance between two
-    points counts, not the length along the bead. Removed rows are within `off` mm of the straight
-    path between the remaining ones; otherwise the row stays.
+    Such rows occur where a bead reverses within a blend: there the direct distance counts, not the
+    length along the bead. A row is removed only if all removed rows then deviate by at most `off`
+    mm from the straight path.
     """
     keep, checked = keep.copy(), np.zeros(len(keep), dtype=bool)
     inside = motion.deposit & (motion.point > 0) & motion.reachable
@@ -268,7 +274,7 @@ def _remove_returns(motion: Motion, keep: Mask, min_distance: float, off: float)
     while True:
         rows = np.flatnonzero(keep)
         step_lengths = np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1)
-        # a rapid leads to the start of a bead, and it has no blend
+        # exclude bead starts, because the rapid to a bead start has no blend
         close_rows = 1 + np.flatnonzero(
             (step_lengths < MIN_STEP_SHARE * min_distance) & inside[rows[1:]]
         )
@@ -290,9 +296,7 @@ def _remove_returns(motion: Motion, keep: Mask, min_distance: float, off: float)
 
 
 def _sparse(clock: Array) -> Mask:
-    """Return which points (n,) of a bead stay so that they are at least 1 apart on a clock; both
-    ends stay.
-    """
+    """Return which points (n,) of a bead stay, at least 1 apart on `clock`; both ends stay."""
     keep: Mask = np.r_[True, np.diff(np.floor(clock)) > 0.0] & (clock <= clock[-1] - 1.0)
     keep[0] = keep[-1] = True
     rows = np.flatnonzero(keep)
@@ -303,10 +307,10 @@ def _sparse(clock: Array) -> Mask:
 
 
 def _add_needed(motion: Motion, keep: Mask, off: float) -> Mask:
-    """Return the rows that stay and as few additional rows as needed.
+    """Add as few rows as needed to the rows that stay.
 
-    Removed rows then lie within `off` mm of the path between the remaining ones, and axes do not
-    turn far enough to leave the path in between.
+    Removed rows then lie within `off` mm of the path between the remaining rows, also where axes
+    rotate between them.
     """
     keep = keep.copy()
     while True:
@@ -325,8 +329,10 @@ def _add_needed(motion: Motion, keep: Mask, off: float) -> Mask:
 
 
 def _off_way(motion: Motion, start: Index, end: Index, gone: Index) -> Array:
-    """Return the distance (k,) mm of removed rows from the straight path between two rows, or the
-    distance by which axes that turn between these would leave it.
+    """Return the deviation (k,) of removed rows from the path between two rows, mm.
+
+    It is the distance from the straight path, or the deviation that axis rotation between the rows
+    may cause, whichever is greater.
     """
     chord = motion.position[end] - motion.position[start]
     offset = motion.position[gone] - motion.position[start]

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Distance of a joint path from the optimum: its objective against a lower bound over all
-rotations.
+"""Distance of a joint path from the optimum: its objective and a lower bound over all rotations.
 
 The rotation about the tool axis is free at every point, not only along a polynomial. Eq. 17 of
-Chalvin 2020 is a chain: each step depends on the rotations at two points. So Bellman's recursion
-over a lattice of rotations at every point gives the least objective (lattice.py). Its steps may end
-between the rotations of the lattice and are bounded from below there (least_ahead.py). The lattice
-is refined until the bound is near the best known course of the rotation.
+Chalvin 2020 is a chain, because each step depends on the rotations at two points. Bellman's
+recursion over a lattice of rotations at every point therefore gives the minimum objective
+(lattice.py). Steps may end between the lattice rotations and are bounded from below there
+(least_ahead.py). The lattice is refined until the bound is close to the best known rotation.
 
-In a group of m consecutive steps only the first and the last joints count if this loses little: a
-sum of m squares is at least the square of the sum divided by m (Cauchy-Schwarz).
+In a group of m consecutive steps, only the first and last joints count if this loses little: a sum
+of m squares is at least the squared sum divided by m (Cauchy-Schwarz).
 """
 
 from __future__ import annotations
@@ -32,21 +31,21 @@ from ..task import MIN_MARGIN, Task, condition_margin
 from . import least_ahead
 from .lattice import CELLS, Lattice, divided, lattice, possible, whole_turn
 
-# ---- Finds the best rotations near known ones, each point free, by Newton steps along the chain
-# of eq. 17
+# ---- Best rotations near known rotations, free at each point, by Newton steps along the chain of
+# eq. 17
 
 STEPS = 30
 STARTS, VALUE_TOLERANCE = (
     24,
     1e-6,
-)  # number of starts over a turn, and the share by which a course must beat the earlier ones
-DIFFERENCE_STEP_RAD = 1e-5  # rad; step of the finite difference for slopes
+)  # number of starts over a turn, and minimum relative improvement over earlier courses
+DIFFERENCE_STEP_RAD = 1e-5  # rad; finite difference step for slopes
 MAX_ACTIVE_SETS, HOLD_STIFFNESS = (
     6,
     1e9,
-)  # rounds that fix further points, and their stiffness in multiples of the largest curvature
-MIN_STEP_SHARE = 0.02  # smallest share of a Newton step that is tried
-MIN_DECREASE = 1e-7  # share by which a step must lower the value
+)  # rounds that fix further points, and their stiffness relative to the maximum curvature
+MIN_STEP_SHARE = 0.02  # minimum fraction of a Newton step to try
+MIN_DECREASE = 1e-7  # minimum relative decrease of the value per step
 
 
 Joints = Callable[[Array], Array]
@@ -54,14 +53,14 @@ Broken = Callable[[Array, Array], Mask]
 
 
 def none_broken(phi: Array, joints: Array) -> Mask:
-    """Return that no rotation is broken.
+    """Return False for every rotation: no constraint is violated.
 
     Parameters
     ----------
     phi : (n,) array
         Tool rotations, rad.
     joints : (n, axes) array
-        Joint values, not used.
+        Joint values, unused.
 
     Returns
     -------
@@ -74,31 +73,31 @@ def none_broken(phi: Array, joints: Array) -> Mask:
 def descend(
     joints_at: Joints, scale: Array, phi: Array, joined: bool, broken: Broken = none_broken
 ) -> tuple[Array, float]:
-    """Minimise the displacement along a chain of points from given rotations.
+    """Minimise the displacement along a chain of points, starting from given rotations.
 
     Parameters
     ----------
     joints_at : Joints
         Returns the joints (n, axes) for rotations (n,).
     scale : (n - 1, axes) array
-        Weight of the squared step of each axis.
+        Weights of the squared axis steps.
     phi : (n,) array
-        Rotations at the start, rad.
+        Start rotations, rad.
     joined : bool
-        Whether the last rotation keeps its distance to the first.
+        Whether the difference between the last and first rotation is fixed.
     broken : Broken, optional
-        Returns the points (n,) at which rotations and their joints are not allowed.
+        Returns the points (n,) where rotations and their joints violate a constraint.
 
     Returns
     -------
     phi : (n,) array
-        The rotations, unchanged if a start is not allowed.
+        Optimised rotations; unchanged if the start violates a constraint.
     value : float
-        Sum of the weighted squared steps; infinite if a start is not allowed.
+        Weighted sum of squared steps; infinite if the start violates a constraint.
 
     Notes
     -----
-    Gauss-Newton steps along the chain of eq. 17 with numerical slopes, at most STEPS.
+    It takes at most STEPS Gauss-Newton steps along the chain of eq. 17, with numerical slopes.
     """
     joints = joints_at(phi)
     if broken(phi, joints).any():
@@ -129,10 +128,10 @@ def _take_step(
     joined: bool,
     broken: Broken,
 ) -> tuple[Array, Array] | None:
-    """Take a Newton step to allowed rotations with a lower sum.
+    """Take a Newton step to feasible rotations with a lower sum.
 
-    Returns the rotations and their joint steps, or None if no step succeeds. Points that would
-    break a constraint are fixed, one group after another; the others keep moving.
+    Return the rotations and their joint steps, or None if no step succeeds. Points that would
+    violate a constraint are fixed, group by group, while the other points keep moving.
     """
     value, blocked = float((current[0] ** 2 * scale).sum()), np.zeros(len(phi), dtype=bool)
     for _ in range(MAX_ACTIVE_SETS):
@@ -160,27 +159,27 @@ def best_course(
 ) -> tuple[Array, float]:
     """Return the best result of `descend` from several starts.
 
-    The starts are the given rotations and these turned by fractions of a turn.
+    The starts are the given rotations, offset by fractions of a turn.
 
     Parameters
     ----------
     joints_at : Joints
         Returns the joints (n, axes) for rotations (n,).
     scale : (n - 1, axes) array
-        Weight of the squared step of each axis.
+        Weights of the squared axis steps.
     phi : (n,) array
-        Rotations at the first start, rad.
+        Rotations of the first start, rad.
     joined : bool
-        Whether the last rotation keeps its distance to the first.
+        Whether the difference between the last and first rotation is fixed.
     broken : Broken, optional
-        Returns the points (n,) at which rotations and their joints are not allowed.
+        Returns the points (n,) where rotations and their joints violate a constraint.
 
     Returns
     -------
     phi : (n,) array
         The best rotations, rad.
     value : float
-        Their sum; infinite if no allowed course exists.
+        Sum of the best rotations; infinite if no course is feasible.
     """
     best_phi, best_value = phi, np.inf
     for turned in TURN / STARTS * np.arange(STARTS):
@@ -191,9 +190,13 @@ def best_course(
 
 
 def _newton(moved: Array, slope: Array, scale: Array, joined: bool, is_fixed: Mask) -> Array:
-    """The step (n,) of Gauss and Newton for squared steps moved (n - 1, axes) with d q / d phi (n, axes); 0 at points that
-    are `is_fixed` (n,)."""
-    from scipy.linalg import solveh_banded  # slow to import, and few jobs ask for a certificate
+    """Return the Gauss-Newton step (n,) of the rotations.
+
+    moved: (n - 1, axes) joint steps. slope: (n, axes) d q / d phi. The step is 0 at points that are
+    `is_fixed` (n,).
+    """
+    # slow to import, and few jobs request a certificate
+    from scipy.linalg import solveh_banded
 
     bands = np.zeros((2, len(slope)))
     bands[1, :-1] += (slope[:-1] ** 2 * scale).sum(axis=1)
@@ -206,7 +209,7 @@ def _newton(moved: Array, slope: Array, scale: Array, joined: bool, is_fixed: Ma
     bands[1, is_fixed] = HOLD_STIFFNESS * bands[1].max()
     rate[is_fixed] = 0.0
     sides = rate[:, None]
-    if joined:  # a multiplier holds both ends together
+    if joined:  # a multiplier keeps the difference between the ends
         together = np.zeros(len(slope))
         together[0], together[-1] = 1.0, -1.0
         sides = np.stack([rate, together], axis=1)
@@ -222,25 +225,25 @@ def _newton(moved: Array, slope: Array, scale: Array, joined: bool, is_fixed: Ma
 
 
 def broken_by(task: Task, points: Points, threshold: Array, phi: Array, joints: Array) -> Mask:
-    """Return at which points of a chain rotations break limits, condition or range.
+    """Return the points of a chain where rotations violate limits, condition or range.
 
     Parameters
     ----------
     task : Task
-        The plan, with limits and the range of the rotation.
+        The plan, including limits and rotation range.
     points : Points
-        The n points, one after the other.
+        The n consecutive points.
     threshold : (n,) array
-        Smallest condition allowed at each point.
+        Required minimum condition.
     phi : (n,) array
         Rotations, rad.
     joints : (n, axes) array
-        Their joints as the inverse gives them, NaN out of reach.
+        Joints from the inverse, NaN out of reach.
 
     Returns
     -------
     (n,) bool array
-        True where something is broken. If a point is out of reach, only such points.
+        True for violations. If any point is unreachable, only unreachable points are True.
     """
     unreachable = ~np.isfinite(joints).all(axis=1)
     if unreachable.any():
@@ -261,34 +264,34 @@ def _steps(joints: Array) -> Array:
     return moved
 
 
-# ---- Lower bound of an objective that rates every point separately: its minimum over all
-# rotations at each point
+# ---- Lower bound of objectives that rate each point separately: the minimum over all rotations at
+# each point
 
 LEVELS = 4
-POINT_TOLERANCE = 1e-3  # share of a point's value at which its bound is close enough
+POINT_TOLERANCE = 1e-3  # relative gap at which the bound of a point is close enough
 
 
 def point_bound(task: Task, points: Points, threshold: Array) -> float:
-    """Return a lower bound of the objective of one bead, from its points taken separately.
+    """Return a lower bound of the objective of one bead, from separate bounds of its points.
 
     Parameters
     ----------
     task : Task
-        The plan, with the objective.
+        The plan, including the objective.
     points : Points
         The n points of the bead.
     threshold : (n,) array
-        Smallest condition allowed at each point.
+        Required minimum condition.
 
     Returns
     -------
     float
-        Infinite if a point has no rotation that keeps limits and condition.
+        Lower bound; infinite if a point has no feasible rotation.
 
     Notes
     -----
-    The turn is divided into cells, and cells are divided again until the bound is within
-    POINT_TOLERANCE of a sampled value, at most LEVELS times.
+    The turn is divided into cells. Cells are subdivided, at most LEVELS times, until the bound is
+    within POINT_TOLERANCE of a sampled value.
     """
     count = len(points)
     phi, half = whole_turn()
@@ -321,7 +324,7 @@ def point_bound(task: Task, points: Points, threshold: Array) -> float:
 
 
 def _values(task: Task, points: Points, index: Index, phi: Array) -> Array:
-    """Return the objective (n,) of rotations phi (n,) at chosen points; NaN out of reach."""
+    """Return the objective (n,) of rotations phi (n,) at selected points; NaN out of reach."""
     name, selected = task.parameters.objective, points.select_points(index)
     joints = task.raw_joints(selected, phi)
     if name not in ("manipulability", "condition"):
@@ -338,29 +341,29 @@ def _values(task: Task, points: Points, index: Index, phi: Array) -> Array:
     return worth
 
 
-BOUND_TOLERANCE = 0.005  # share of the objective at which a bound is close enough
+BOUND_TOLERANCE = 0.005  # gap at which a bound is close enough, fraction of the objective
 ROTATIONS = (
     180,
     360,
     720,
     1440,
-)  # rotations per turn at every point; finer ones are used if the bound is not close enough
+)  # rotations per turn at each point; the next number is used if the bound is not close enough
 BETWEEN_BEADS = 180  # rotations per turn for the bound of a whole job
-PIECE = 100_000  # rotations at points that are held together
-MIN_GROUPS = 4  # groups of steps of a bead
-GROUPED = 0.002  # of the objective: maximum loss by grouping steps
+PIECE = 100_000  # rotations per batch of points
+MIN_GROUPS = 4  # minimum number of step groups per bead
+GROUPED = 0.002  # maximum loss by grouping steps, fraction of the objective
 
 
 @dataclass(frozen=True, eq=False)
 class Optimality:
-    """The objective of a joint path and its lower bound over all rotations, (B,) for each bead."""
+    """The objective of a joint path and its lower bound over all rotations, (B,) per bead."""
 
     objective: Array
     bound: Array
 
     @property
     def gaps(self) -> Array:
-        """Return the share of each bead's objective that is not proved necessary.
+        """Return the relative gap between objective and bound of each bead.
 
         Returns
         -------
@@ -379,20 +382,20 @@ def summed(
     Parameters
     ----------
     task : Task
-        The plan, with the objective.
+        The plan, including the objective.
     paths : sequence of BeadPath
         The feasible paths.
     report : callable, optional
-        Receives the finished share; may raise to cancel.
+        Receives the completed fraction; may raise to cancel.
 
     Returns
     -------
     figures : dict or None
-        Figures of the sum over all beads, of the bead with the largest gap, of each bead,
-        and for the displacement of the job with the moves between beads. None for arms that
-        cannot be bounded.
+        Values for the sum over all beads, the bead with the largest gap and each bead; for the
+        displacement also for the job including moves between beads. None for arms without a
+        bound.
     issues : list of Issue
-        A note for arms that cannot be bounded.
+        A note for arms without a bound.
     """
     if task.arm.followed:
         return None, [
@@ -439,17 +442,17 @@ def certified(
 ) -> Optimality:
     """Return the optimality of feasible paths, bead by bead.
 
-    The bound holds for every course of the rotation along the beads, in the branch of the task,
-    that keeps limits and condition at the points.
+    The bound holds for every rotation course along the beads, in the branch of the task, that keeps
+    limits and condition at the points.
 
     Parameters
     ----------
     task : Task
-        The plan, with the objective.
+        The plan, including the objective.
     paths : sequence of BeadPath
         The feasible paths.
     report : callable, optional
-        Receives the finished share; may raise to cancel.
+        Receives the completed fraction; may raise to cancel.
 
     Returns
     -------
@@ -472,7 +475,7 @@ def certified(
 def whole_job(
     task: Task, paths: Sequence[BeadPath], report: Callable[[float], None] = lambda share: None
 ) -> tuple[float, float]:
-    """Return the displacement of a job with the steps between beads, and its lower bound.
+    """Return the displacement of a job, including steps between beads, and its lower bound.
 
     Parameters
     ----------
@@ -481,14 +484,14 @@ def whole_job(
     paths : sequence of BeadPath
         The feasible paths, in print order.
     report : callable, optional
-        Receives the finished share; may raise to cancel.
+        Receives the completed fraction; may raise to cancel.
 
     Returns
     -------
     objective : float
-        Eq. 17 for the beads and the steps from each bead's end to the next start.
+        Eq. 17 for the beads and the steps from each bead end to the next start.
     bound : float
-        Its lower bound over all rotations.
+        Lower bound over all rotations.
     """
     bead_points = [gather([path.bead], task.cell) for path in paths]
     costs = [_displacement_cost(task, points, path) for points, path in zip(bead_points, paths)]
@@ -500,7 +503,7 @@ def whole_job(
     value, following = np.zeros(BETWEEN_BEADS), None
     for number in range(len(paths) - 1, -1, -1):
         report(1.0 - (number + 1) / len(paths))
-        # steps above this cost are not checked individually: they cost more than any better course
+        # steps above this cost exceed any better course and are not checked individually
         max_cost = max([costs[number], *step_costs[max(0, number - 1) : number + 1]])
         value, first_lattice = _through(
             task, bead_points[number], paths[number], BETWEEN_BEADS, max_cost, value, following
@@ -511,7 +514,7 @@ def whole_job(
 
 
 def _displacement_cost(task: Task, points: Points, path: BeadPath) -> float:
-    """Eq. 17 of one bead."""
+    """Return eq. 17 for one bead."""
     step = steps(path.joints, points)
     return float(((step * step) @ task.weights).sum())
 
@@ -535,7 +538,7 @@ def _displacement_bound(task: Task, points: Points, path: BeadPath, objective: f
 
 
 def _best_known(task: Task, points: Points, path: BeadPath) -> float:
-    """Return the cost of the best course of the rotation found from the course of the path."""
+    """Return the cost of the best rotation course found from the course of the path."""
     groups = _grouped(steps(path.joints, points), task.weights)
     group_points, scale, threshold = (
         points.select_points(groups),
@@ -560,11 +563,11 @@ def _through(
     value: Array,
     following: Lattice | None,
 ) -> tuple[Array, Lattice]:
-    """Return the least sums (count,) from every rotation at the first point of a bead, and that
-    point's lattice.
+    """Return the minimum sums (count,) from each rotation at the first point of a bead, and the
+    lattice of this point.
 
-    value: (count,) least sums from the first point of the next bead, whose lattice is `following`;
-    without one, from the end of this bead.
+    value: (count,) minimum sums from the first point of the next bead, with lattice `following`; if
+    this is None, from the end of this bead.
     """
     groups = _grouped(steps(path.joints, points), task.weights)
     chunk_size = max(2, PIECE // count)
@@ -584,9 +587,7 @@ def _through(
 
 
 def _grouped(step: Array, weights: Array) -> Index:
-    """Return the points at which groups of steps end; grouping loses at most GROUPED of the
-    objective.
-    """
+    """Return the end points of step groups; grouping loses at most GROUPED of the objective."""
     count = len(step) - 1
     total, travel = float(((step * step) @ weights).sum()), np.cumsum(step, axis=0)
     groups = MIN_GROUPS
@@ -600,19 +601,19 @@ def _grouped(step: Array, weights: Array) -> Index:
     return np.arange(count + 1, dtype=np.int64)
 
 
-# ---- Closes the gap between a joint path and its bound: the best course of the rotation along a
-# bead, each point free
+# ---- Close the gap between a joint path and its bound: the best rotation course along a bead, free
+# at each point
 
 POINTWISE_REASON = "each point free"
-MIN_GAIN = 1e-3  # minimum gain as a share of the objective; with less, the polynomial stays
+MIN_GAIN = 1e-3  # minimum gain, fraction of the objective; for less, the polynomial stays
 
 
 def close_gaps(
     task: Task, paths: list[tuple[BeadPath, list[Issue]]]
 ) -> list[tuple[BeadPath, list[Issue]]]:
-    """Return the paths and their issues, with gaps closed if the task asks for it.
+    """Replace paths by better rotation courses if the task requests it.
 
-    New courses get the points that straight motion needs.
+    New courses are refined to the chord error.
 
     Parameters
     ----------
@@ -624,7 +625,7 @@ def close_gaps(
     Returns
     -------
     list of (BeadPath, list of Issue)
-        The same, with better courses where the search finds any.
+        The paths and issues, with better courses where found.
     """
     if not task.parameters.close_gap or not task.cell.machine.free or task.arm.followed:
         return paths
@@ -637,10 +638,10 @@ def close_gaps(
 
 
 def closed(task: Task, path: BeadPath) -> BeadPath:
-    """Return the path with the best rotation course that the search finds, if it is better.
+    """Return the path with the best rotation course found, if it is better.
 
-    The course keeps limits, condition and range of the rotation, joined beads and link clearance.
-    Given paths and infeasible paths stay unchanged.
+    The course keeps limits, condition, rotation range, joined beads and link clearance. Given paths
+    and infeasible paths stay unchanged.
     """
     if (
         task.parameters.objective != "displacement"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The joints at points of a bead, for N rotations of a turn about the tool axis at each point."""
+"""Lattice of joints at bead points, for N rotations about the tool axis at each point."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from ...types import Array, Index, Mask
 from ..points import Points
 from ..task import Task
 
-CELLS, PARTS = 36, 3  # initial cells per turn, and parts into which a cell is divided
+CELLS, PARTS = 36, 3  # initial number of cells per turn, and parts of a subdivided cell
 
 
 def whole_turn() -> tuple[Array, float]:
-    """Divide a whole turn into CELLS equal cells.
+    """Divide a full turn into CELLS equal cells.
 
     Returns
     -------
     middles : (CELLS,) array
-        Middle of each cell, -pi to pi, rad.
+        Midpoint of each cell, -pi to pi, rad.
     half : float
-        Half the width of a cell, rad.
+        Half the cell width, rad.
     """
     half = np.pi / CELLS
     return -np.pi + half * (2.0 * np.arange(CELLS) + 1.0), half
@@ -37,14 +37,14 @@ def divided(phi: Array, half: float) -> Array:
     Parameters
     ----------
     phi : (n,) array
-        Middles of the cells, rad.
+        Midpoints of the cells, rad.
     half : float
-        Half the width of a cell, rad.
+        Half the cell width, rad.
 
     Returns
     -------
     (PARTS n,) array
-        Middles of the parts, in sequence for each cell, rad.
+        Midpoints of the parts, cell by cell, rad.
     """
     offsets = (2.0 * np.arange(PARTS) - (PARTS - 1)) * half / PARTS
     return np.asarray((phi[:, None] + offsets).ravel())
@@ -53,31 +53,31 @@ def divided(phi: Array, half: float) -> Array:
 def possible(
     task: Task, points: Points, index: Index, phi: Array, half: Array, threshold: Array
 ) -> Mask:
-    """Return whether a rotation in each cell may keep limits and condition.
+    """Return in which cells a rotation may keep limits and condition.
 
-    This follows from the middle and the ends of the cell. Joints are assumed to bend at most
-    twice as much in between as their second differences show.
+    The result follows from the midpoint and ends of each cell. The curvature of the joints in
+    between is assumed to be at most twice their second differences.
 
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     points : Points
         The points.
     index : (n,) int array
-        Point of each cell.
+        Point index of each cell.
     phi, half : (n,) array
-        Middle and half width of each cell, rad.
+        Midpoint and half width of each cell, rad.
     threshold : (n,) array
-        Smallest condition allowed.
+        Required minimum condition.
 
     Returns
     -------
     (n,) bool array
-        False where no rotation of the cell can serve.
+        False for a cell without a feasible rotation.
     """
     count = len(phi)
-    begins = ~_goes_on(index, phi, half)  # the previous cell does not end where this one begins
+    begins = ~_goes_on(index, phi, half)  # the previous cell does not end where this cell begins
     sampled = np.concatenate([phi[begins] - half[begins], phi, phi + half])
     sampled_points = points.select_points(np.concatenate([index[begins], index, index]))
     joints, begin_count = task.raw_joints(sampled_points, sampled), int(begins.sum())
@@ -85,7 +85,7 @@ def possible(
     rows = np.stack([np.where(begins, np.cumsum(begins) - 1, rows[1] - 1), *rows])
     previous, middle, following = joints[rows]
     ahead, behind = _short(following - middle), _short(middle - previous)
-    # a cell at the edge of reach is extrapolated beyond the edge
+    # extrapolate a cell at the edge of reach beyond this edge
     lost_ahead, lost_behind = (np.isnan(difference).any(axis=1) for difference in (ahead, behind))
     feasible = np.isfinite(middle).all(axis=1) & ~(lost_ahead & lost_behind)
     ahead, behind = (
@@ -93,8 +93,8 @@ def possible(
         np.where(lost_behind[:, None], ahead, behind),
     )
     turned, bend = 0.5 * np.abs(ahead + behind), np.abs(ahead - behind)
-    # a line through the ends of a parabola is off by up to a quarter of its second
-    # difference: allow twice that
+    # a line through the ends of a parabola deviates by up to a quarter of its second difference:
+    # allow twice this deviation
     off = 0.5 * bend + (half**2)[:, None] * turned.max(axis=1, keepdims=True)
     off = np.where((lost_ahead ^ lost_behind)[:, None], 0.5 * np.abs(ahead), off)
     feasible &= _within_limits(task, middle, turned + off + bend)
@@ -110,9 +110,7 @@ def possible(
 
 
 def _goes_on(index: Index, phi: Array, half: Array) -> Mask:
-    """Return whether each cell (n,) phi +- half begins where the previous cell ends, at the same
-    point.
-    """
+    """Whether each cell (n,) phi +- half begins where the previous cell of its point ends."""
     continues = np.zeros(len(phi), dtype=bool)
     gap = np.abs(phi[1:] - phi[:-1] - half[1:] - half[:-1])
     continues[1:] = (index[1:] == index[:-1]) & (gap < 1e-6 * half[1:])
@@ -120,9 +118,7 @@ def _goes_on(index: Index, phi: Array, half: Array) -> Mask:
 
 
 def _within_limits(task: Task, joints: Array, reach: Array) -> Mask:
-    """Return whether joints (n, axes) can be within the limits of each axis when moved by up to
-    `reach` and by whole turns.
-    """
+    """Whether joints (n, axes) may be within limits if moved by `reach` and by whole turns."""
     limits = task.cell.limits
     beyond = np.abs(_short(joints - task.middle)) - np.where(
         task.continuous, np.inf, 0.5 * (limits.upper - limits.lower)
@@ -133,9 +129,9 @@ def _within_limits(task: Task, joints: Array, reach: Array) -> Mask:
 def _condition(
     task: Task, points: Points, phi: Array, joints: Array, rows: Index, threshold: Array
 ) -> Array:
-    """Return the condition at the chosen rows, 0 out of reach.
+    """Return the condition at selected rows; 0 out of reach.
 
-    A lower bound replaces it where this bound is far above the threshold.
+    A lower bound replaces the condition where it is far above the threshold.
     """
     ratio = np.zeros(len(rows))
     good = np.flatnonzero(np.isfinite(joints[rows]).all(axis=1))
@@ -157,21 +153,21 @@ NO_FIVE = 9
 RATE_SAMPLES, HARMONICS = (
     180,
     36,
-)  # number of rotations at which joint rates are sampled, and the subdivisions of each
-SMOOTH = 0.06  # rad
-KNOWN = 1000  # samples at which the rotations of the lattice are interpolated
-EVENLY = 0.25  # share of rotations spread evenly, not by joint motion
-LARGEST_SHARE = 12.0  # times the mean
-COARSE = 60  # cells of a turn in the first pass; cells next to an impossible one are divided
+)  # number of rotations at which joint rates are sampled, and number of harmonics
+SMOOTH = 0.06  # rad; smoothing width of the density
+KNOWN = 1000  # number of samples for interpolating the lattice rotations
+EVENLY = 0.25  # fraction of the density that is even; the rest follows joint motion
+LARGEST_SHARE = 12.0  # maximum joint rate, relative to the mean
+COARSE = 60  # cells per turn in the first pass; cells next to an impossible cell are refined
 
 
 @dataclass(frozen=True, eq=False)
 class Lattice:
-    """A lattice of m points with N rotations from -pi on, N a multiple of COARSE.
+    """A lattice of m points with N rotations starting at -pi; N is a multiple of COARSE.
 
     joints: (m, N, axes) rad or mm, NaN out of reach. possible: (m, N) whether a rotation between
     this one and the next may keep limits and condition. weights: (axes,) of eq. 17. turning:
-    (axes,) axes for which whole turns cost nothing.
+    (axes,) axes for which whole turns have no cost.
     """
 
     joints: Array
@@ -181,7 +177,7 @@ class Lattice:
 
     @cached_property
     def passable(self) -> Mask:
-        """(m, N) rotations at the ends of possible cells."""
+        """(m, N) reachable rotations at the ends of possible cells."""
         ends: Mask = (self.possible | np.roll(self.possible, 1, axis=1)) & np.isfinite(
             self.joints
         ).all(axis=2)
@@ -189,24 +185,24 @@ class Lattice:
 
     @cached_property
     def closed_cells(self) -> Mask:
-        """Possible cells (m, N) with both ends within reach."""
+        """(m, N) possible cells with both ends within reach."""
         return np.asarray(self.possible & self.passable & np.roll(self.passable, -1, axis=1))
 
     @cached_property
     def ragged(self) -> Mask:
-        """(m, N) rotations at a possible cell whose other end is out of reach."""
+        """(m, N) rotations of a possible cell whose other end is out of reach."""
         torn = self.possible & ~self.closed_cells
         return np.asarray(self.passable & (torn | np.roll(torn, 1, axis=1)))
 
     @cached_property
     def about(self) -> tuple[Array, Array]:
-        """Return the range about each rotation in which cells are whole.
+        """Return the range around each rotation in which cells are closed.
 
         Returns
         -------
         low, high : (m, N) array
-            In steps, from -0.5 to 0.5; up to 1 where the next rotation has no whole
-            cell beyond.
+            In lattice steps, from -0.5 to 0.5; up to 1 if the next rotation has no closed cell
+            beyond it.
         """
         right_closed, left_closed = self.closed_cells, np.roll(self.closed_cells, 1, axis=1)
         low = np.where(left_closed, np.where(np.roll(left_closed, 1, axis=1), -0.5, -1.0), 0.0)
@@ -216,8 +212,9 @@ class Lattice:
 
     @cached_property
     def shift(self) -> Index:
-        """Offset (m, N), in rotations, of the middle of five consecutive rotations with whole
-        cells; NO_FIVE if there are no five.
+        """(m, N) offset, in rotations, of the centre of five consecutive rotations.
+
+        All five have closed cells; NO_FIVE if there are none.
         """
         right_count, left_count = (np.zeros(self.possible.shape, dtype=np.int64) for _ in range(2))
         to_right, to_left = np.ones_like(self.possible), np.ones_like(self.possible)
@@ -231,18 +228,18 @@ class Lattice:
 
     @cached_property
     def rate(self) -> Array:
-        """Return the largest root of the cost from a rotation to the next one.
+        """Return the maximum square root of the cost of one lattice step.
 
         Returns
         -------
         (m,) array
-            Root of eq. 17 for one lattice step, the largest at each point.
+            Square root of eq. 17 for one lattice step, maximum at each point.
         """
         moved = self.joint_steps(self.joints, np.roll(self.joints, -1, axis=1))
         return np.asarray(np.nan_to_num(np.sqrt((moved * moved) @ self.weights)).max(axis=1))
 
     def joint_steps(self, start: Array, end: Array) -> Array:
-        """Return the steps between joints, the short way round for turning axes.
+        """Return the joint steps, the short way for revolute axes.
 
         Parameters
         ----------
@@ -252,30 +249,30 @@ class Lattice:
         Returns
         -------
         (..., axes) array
-            The steps, rad or mm.
+            Steps, rad or mm.
         """
         difference = end - start
         return np.where(self.turning, shortest(difference), difference)
 
     @property
     def first(self) -> Lattice:
-        """The lattice of only the first point."""
+        """The lattice of the first point only."""
         return Lattice(self.joints[:1], self.possible[:1], self.weights, self.turning)
 
     @property
     def count(self) -> int:
-        """Rotations of a turn N."""
+        """Number N of rotations per turn."""
         return self.joints.shape[1]
 
     @cached_property
     def flat(self) -> Array:
-        """Return coordinates of the joints whose distances bound the cost from below.
+        """Return joint coordinates whose distances bound the cost from below.
 
         Returns
         -------
         (m, COARSE, 2 axes) array
-            At each of COARSE rotations. Distances of rows are at most the distances of
-            the joints, so eq. 17 of a step is at least their square.
+            Coordinates at COARSE rotations. Their distances are at most the joint distances, so
+            eq. 17 of a step is at least the squared distance.
         """
         samples, scale = self.joints[:, :: self.count // COARSE], np.sqrt(self.weights)
         return np.concatenate(
@@ -293,20 +290,20 @@ def lattice(task: Task, points: Points, rows: Index, threshold: Array, count: in
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     points : Points
         The points.
     rows : (m,) int array
         The selected points.
     threshold : (m,) array
-        Smallest condition allowed there.
+        Required minimum condition at these points.
     count : int
-        Number N of rotations, a multiple of COARSE.
+        Number N of rotations; a multiple of COARSE.
 
     Returns
     -------
     Lattice
-        The joints and the possible cells at these points.
+        Joints and possible cells at these points.
     """
     ends = _rotations(task, points, rows, count)
     joints = task.raw_joints(
@@ -321,8 +318,9 @@ def lattice(task: Task, points: Points, rows: Index, threshold: Array, count: in
 
 
 def _rotations(task: Task, points: Points, rows: Index, count: int) -> Array:
-    """Return rotations (count + 1,) over a turn, closer together where joints move more at one of
-    the points; the last is a turn after the first.
+    """Return rotations (count + 1,) over a turn, denser where joints move more at any point.
+
+    The last rotation is one turn after the first.
     """
     phi = -np.pi + TURN / RATE_SAMPLES * np.arange(RATE_SAMPLES)
     joints = task.raw_joints(
@@ -334,8 +332,7 @@ def _rotations(task: Task, points: Points, rows: Index, count: int) -> Array:
         return np.linspace(-np.pi, np.pi, count + 1)
     rate = np.minimum(rate / rate.mean(), LARGEST_SHARE)
     order = np.arange(1, HARMONICS + 1)
-    # use the harmonics of a smooth density: its integral is exact, and joint paths do not get
-    # sharper bends
+    # use the harmonics of a smooth density: its integral is exact, and joint paths stay smooth
     smooth = np.exp(-0.5 * (np.arange(HARMONICS + 1) * SMOOTH) ** 2)
     waves = np.fft.rfft(EVENLY + (1.0 - EVENLY) * rate)[: HARMONICS + 1] * smooth
     factor = (

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lower bound of the cost ahead of every rotation at a point.
+"""Lower bound of the remaining cost from every rotation at a point.
 
-Bellman's recursion runs from the last point of a bead to the first. A step may end between the
-rotations of the lattice. There, polynomials of the fourth degree through five neighbours give the
-joints and the cost ahead. Their error is taken as twice the error that their fourth differences
-predict, which bounds the step from below.
+Bellman's recursion runs from the last point of a bead to the first. A step may end between two
+rotations of the lattice. There, quartic polynomials through five neighbouring rotations
+interpolate the joints and the remaining cost. The interpolation error is taken as twice the error
+that the fourth differences predict, so that the cost of a step is bounded from below.
 """
 
 from __future__ import annotations
@@ -17,28 +17,29 @@ from ...geometry.frames import TURN
 from ...types import Array, Index, Mask
 from .lattice import COARSE, NO_FIVE, Lattice
 
-# share of a fourth difference: its error is 1/96 within a step of the middle of five, 1/24
-# further out; allow twice that
+# interpolation error as a share of the fourth difference: 1/96 within a step of the middle of the
+# five rotations, 1/24 further out; twice that is allowed
 INNER_ERROR, OUTER_ERROR = 2.0 / 96.0, 2.0 / 24.0
-MOST_STEPS = 9.0  # offset larger than any within the five rotations
-NEWTON = 3  # Newton steps to the minimum of a polynomial, repeated about the rotation that is then nearest
+MOST_STEPS = 9.0  # larger than any offset within the five rotations
+NEWTON = 3  # Newton steps to a minimum, repeated around the rotation nearest to it
 MIN_SEPARATION = 3  # rotations between two minima that are both refined
 FAR_ABOVE = 2.0  # multiple of the best known sum
-# the powers of 1, x, .. x^4 (rows) in the polynomial that is 1 at one of -2 .. 2 (columns) and 0 at the others
+# coefficients of 1, x, .. x^4 (rows) of the polynomial that is 1 at one of -2 .. 2 (columns) and 0
+# at the others
 POWERS = np.linalg.inv(np.vander(np.arange(-2.0, 3.0), 5, increasing=True))
 FOURTH = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
-TORN = 1e-4  # share of a sum: above this uncertainty of the cost ahead, bound it by lines too
+TORN = 1e-4  # share of a sum; if the remaining cost is less certain, it is bounded by lines too
 
 
 def ahead(lattice: Lattice, end_values: Array, counts: Array, max_cost: float) -> Array:
-    """Return a lower bound of the cost from every rotation at the first point to the end.
+    """Return a lower bound of the cost from every rotation at the first point to the end of a bead.
 
     Parameters
     ----------
     lattice : Lattice
         Lattice of m points with N rotations.
     end_values : (N,) array
-        Costs that follow the last point.
+        Costs that are added after the last point.
     counts : (m - 1,) array
         Number of original steps in each lattice step.
     max_cost : float
@@ -64,7 +65,7 @@ def before(
     count: float,
     max_cost: float,
 ) -> Array:
-    """Return the least costs from every rotation at one point over the next point.
+    """Return the least costs from every rotation at one point, through the next point.
 
     Parameters
     ----------
@@ -106,7 +107,7 @@ def before(
 
 
 def least_of(value: Array, lattice: Lattice) -> float:
-    """Return the least of sums at the rotations of the first point of a lattice, between them too.
+    """Return the minimum of sums over the first point of a lattice, including between rotations.
 
     Parameters
     ----------
@@ -118,7 +119,7 @@ def least_of(value: Array, lattice: Lattice) -> float:
     Returns
     -------
     float
-        The least.
+        The minimum.
     """
     columns = np.arange(-1, lattice.count + 1)[None] % lattice.count
     return float(
@@ -143,10 +144,10 @@ def _least(
     value: Array,
     weights: Array,
 ) -> Array:
-    """Return a lower bound (n,) of sums (n, k) at rotations `columns` (n, k) and between them.
+    """Return a lower bound (n,) of sums (n, k) at the rotations `columns` (n, k) and between them.
 
-    The sums belong to steps from joints start (n, axes) to a point of a lattice. The outer two
-    columns are only neighbours of the others.
+    The sums belong to steps from joints start (n, axes) to point j of a lattice. The first and the
+    last column serve only as neighbours of the others.
     """
     inner = columns[:, 1:-1]
     low, high = (side[j][inner] for side in next_lattice.about)
@@ -156,7 +157,7 @@ def _least(
     )
     minimum = _at_best(guess, to, sampled_min, inner, start, next_lattice, j, value, weights)
     ragged = next_lattice.ragged[j]
-    if ragged.any():  # sums are extrapolated beyond the edge of reach
+    if ragged.any():  # extrapolate the sums beyond the edge of reach
         inner_total = total[:, 1:-1]
         jumps = [
             np.where(np.isfinite(outer_total), np.abs(inner_total - outer_total), 0.0)
@@ -171,8 +172,8 @@ def _least(
 
 
 def _neighbours(lattice: Lattice, i: int, next_lattice: Lattice, j: int, max_cost: float) -> Index:
-    """Return the rotation offsets of steps that cost less than `max_cost`, and one more at both
-    ends.
+    """Return the rotation offsets of the steps that cost less than `max_cost`, and one more at
+    either end.
     """
     cell = lattice.count // COARSE
     radius = np.sqrt(max_cost) + 0.5 * cell * (lattice.rate[i] + next_lattice.rate[j])
@@ -187,27 +188,27 @@ def _neighbours(lattice: Lattice, i: int, next_lattice: Lattice, j: int, max_cos
     )
     start, end = np.nonzero(close)
     met = np.unique((end - start) % COARSE) if len(start) else np.zeros(1, dtype=np.int64)
-    # omit the widest part of the turn in which no step ends
+    # omit the widest part of the turn where no step ends
     gaps = np.diff(np.append(met, met[0] + COARSE))
     widest = int(gaps.argmax())
     first_cell, last_cell = met[(widest + 1) % len(met)] - 1, met[widest] + 1
     last_cell += COARSE if last_cell < first_cell else 0
-    if gaps[widest] <= 3:  # one more at both ends, so that none is omitted
+    if gaps[widest] <= 3:  # the additional one at either end leaves nothing to omit
         return np.arange(-1, lattice.count + 1)
     return np.arange(first_cell * cell - 1, last_cell * cell + 2)
 
 
 def _any(possible: Mask, cell: int) -> Mask:
-    """Return whether a cell on either side of each coarse rotation (COARSE,) is possible."""
+    """Return whether a cell on either side of each coarse rotation is possible: (COARSE,)."""
     cells = possible.reshape(COARSE, cell).any(axis=1)
     return np.asarray(cells | np.roll(cells, 1))
 
 
 def _parabolas(total: Array, low: Array, high: Array, available: Mask) -> tuple[Array, Array]:
-    """Estimate the least sums (n, k) near each rotation but the outer two, and their offsets.
+    """Estimate the least sum near each rotation except the outer two, and its offset: (n, k) each.
 
-    total: (n, k + 2) sums at the rotations. low, high: (n, k) range of the offsets, in steps of the
-    lattice. The sum is infinite where not `available` (n, k).
+    total: (n, k + 2) sums at the rotations. low, high: (n, k) range of the offsets, in lattice
+    steps. The sum is infinite where not `available` (n, k).
     """
     centre, next_total, previous_total = total[:, 1:-1], total[:, 2:], total[:, :-2]
     with np.errstate(invalid="ignore", over="ignore"):
@@ -233,17 +234,17 @@ def _at_best(
     value: Array,
     weights: Array,
 ) -> Array:
-    """Return the least sums (n,) near the best of the guesses (n, k) and near every other local
-    minimum.
+    """Return the least sums (n,) near the best guess of each row and near its other local
+    minima.
 
-    The guesses are at offsets `to` from rotations `columns` (n, k). The result does not exceed
-    `sampled_min` (n,), the least sum at a rotation of the lattice.
+    The guesses (n, k) are at the offsets `to` from the rotations `columns` (n, k). The result is
+    at most `sampled_min` (n,), the least sum at a rotation of the lattice.
     """
     rows, number = np.arange(len(guess)), np.arange(guess.shape[1])
     best_column = guess.argmin(axis=1)
     edge = np.full((len(guess), 1), np.inf)
     neighbours = np.minimum(np.c_[edge, guess[:, :-1]], np.c_[guess[:, 1:], edge])
-    # a guess far above the best known sum, by more than its error, cannot be the least
+    # a guess above the best known sum by much more than its error cannot be the minimum
     worth, minima = np.nonzero(
         (guess <= neighbours)
         & (guess < FAR_ABOVE * sampled_min[:, None])
@@ -257,7 +258,7 @@ def _at_best(
     model = _near((column + nearest) % len(value), start[row], next_lattice, j, value)
     finer, step, doubt = model.least(
         step - nearest, weights
-    )  # about the rotation that is then nearest
+    )  # around the rotation nearest to the minimum
     torn = np.flatnonzero(doubt > TORN * np.abs(finer))
     if len(torn):
         finer[torn] = np.maximum(finer[torn], model.of(torn).least_by_lines(weights))
@@ -271,10 +272,11 @@ def _at_best(
 class _Near:
     """Polynomial models of the steps to rotations near n columns of a lattice.
 
-    Their variable x counts lattice steps from the middle of five rotations, which is `shift` (n,)
+    The variable x counts lattice steps from the middle of the five rotations, which is `shift` (n,)
     steps from the column. moved: (5, n, axes) coefficients of the joint motion. later: (5, n)
-    coefficients of the sum ahead. off: (n, axes) and doubt: (n,) fourth differences of both. low,
-    high: (n,) range of whole cells. around: (n, 5) sums at the five rotations.
+    coefficients of the remaining cost. off: (n, axes) and doubt: (n,) fourth differences of the
+    two. low, high: (n,) range of x that covers whole cells. around: (n, 5) remaining costs at the
+    rotations around the column.
     """
 
     moved: Array
@@ -287,7 +289,7 @@ class _Near:
     around: Array
 
     def of(self, rows: Index) -> _Near:
-        """Return the models of these rows."""
+        """Return the models of the given rows."""
         return _Near(
             self.moved[:, rows],
             self.later[:, rows],
@@ -300,10 +302,9 @@ class _Near:
         )
 
     def least(self, to: Array, weights: Array) -> tuple[Array, Array, Array]:
-        """Return the least sum (n,) near offset `to`, the offset where it occurs, and the error of the
-        sum ahead.
+        """Return the least sum near offset `to`, its offset, and the error of the remaining cost.
 
-        The sum is NaN if unknown.
+        All are (n,). The sum is NaN if unknown.
         """
         x = self._minimised(to - self.shift, self.later, self.low, self.high, weights)
         doubt = np.where(np.abs(x) <= 1.0, INNER_ERROR, OUTER_ERROR) * self.doubt
@@ -315,10 +316,11 @@ class _Near:
             )
 
     def least_by_lines(self, weights: Array) -> Array:
-        """Return the least sum (n,) where polynomials are poor models of the sum ahead.
+        """Return the least sum (n,) where polynomials are a poor model of the remaining cost.
 
-        This is the case near rotations from which no step continues. Within a cell the sum is at
-        least that at its ends, except in a dip, which is bounded by the lines that descend into it.
+        This is the case near rotations from which the bead cannot be continued. Within a cell the
+        remaining cost is at least that at the ends, except in a dip, which is bounded by the lines
+        that descend into it.
         """
         minimum = np.full(len(self.low), np.inf)
         for offset, (before_, centre, next_value, far_value) in (
@@ -380,9 +382,9 @@ class _Near:
 
 
 def _near(column: Index, start: Array, next_lattice: Lattice, j: int, value: Array) -> _Near:
-    """Build the models of steps from joints start (n, axes) to rotations near `column` (n,).
+    """Return the models of steps from joints start (n, axes) to rotations near `column` (n,).
 
-    The rotations belong to point j of a lattice with sums value (N,).
+    The rotations belong to point j of a lattice, whose remaining costs are value (N,).
     """
     joints, shift, count = next_lattice.joints[j], next_lattice.shift[j][column], len(value)
     five = (column + np.where(shift == NO_FIVE, 0, shift))[:, None] + np.arange(-2, 3)
@@ -408,7 +410,7 @@ def _near(column: Index, start: Array, next_lattice: Lattice, j: int, value: Arr
 
 
 def _polynomial(powers: Array, x: Array, order: int) -> Array:
-    """The polynomial with coefficients (5, ...) at x, or its first or second derivative."""
+    """Return the polynomial with coefficients (5, ...) at x, or its first or second derivative."""
     a, b, c, d, e = powers
     if order == 0:
         return np.asarray(a + x * (b + x * (c + x * (d + x * e))))

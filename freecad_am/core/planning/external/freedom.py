@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Optimise all free coordinates of one bead: the tool rotation and every external axis, each a
-polynomial.
+"""Optimise all free coordinates of one bead, as polynomials: tool rotation and external axes.
 
-r(s) in R^(1 + k): the rotation is the given polynomial plus a change; external axis j has the
-position from a rule plus a change. All changes are polynomials of one degree over the bead's
-parameter. The robot follows through its inverse kinematics, so that the derivatives of its joints
-come from a closed chain: robot and external axes together keep the tool on the part.
+r(s) is in R^(1 + k). The rotation is the given polynomial plus a change; external axis j is its
+position from a rule plus a change. All changes are polynomials of one degree over the bead
+parameter. The robot follows by inverse kinematics. Its joint derivatives therefore come from a
+closed chain, in which robot and external axes keep the tool on the part.
 """
 
 from __future__ import annotations
@@ -28,17 +27,18 @@ from ..points import Points
 from ..task import Task
 
 IRRELEVANT_MARGIN = (
-    0.75  # condition margin above which derivatives are omitted; larger than any request
+    0.75  # condition margin above which derivatives are omitted; larger than any requested margin
 )
-MAX_SPEED_SHARE = 0.9  # largest share of its maximum speed that an external axis may use
+MAX_SPEED_SHARE = 0.9  # fraction of its maximum speed that an external axis may use
 
 
 @dataclass(frozen=True, eq=False)
 class Bound:
-    """Objective and constraints at one set of v changes.
+    """Objective and constraints for v changes.
 
-    objective: with `slope` (v,). margins: (r,), shares of limits and condition, 0 at the limit,
-    with `margin_slopes` (r, v). hard: (h,), kept where >= 0, with `hard_slopes` (h, v).
+    objective: with derivative `slope` (v,). margins: (r,) relative margins of limits and condition,
+    0 at the limit, with `margin_slopes` (r, v). hard: (h,) satisfied if >= 0, with `hard_slopes`
+    (h, v).
     """
 
     objective: float
@@ -53,10 +53,10 @@ class Bound:
 class Freedom:
     """The free coordinates of one bead of T points.
 
-    thresholds: (T,) smallest condition allowed. start: (degree + 1,) coefficients of the rotation.
-    changes: (degree + 1, c) coefficients of the possible changes. allowed: rad from the vertical.
-    directions: (T, 3) tool axes in the frame of the positioner's face. times: (T,) s since the
-    previous point, 0 at the first.
+    thresholds: (T,) required minimum condition. start: (degree + 1,) rotation coefficients.
+    changes: (degree + 1, c) coefficients of the possible changes. allowed: maximum angle from the
+    vertical, rad. directions: (T, 3) tool axes in the frame of the positioner face. times: (T,)
+    duration since the previous point, s; 0 at the first point.
     """
 
     task: Task
@@ -77,42 +77,42 @@ class Freedom:
 
     @cached_property
     def shape(self) -> Array:
-        """Return the effect of one unit of each change at each point.
+        """Return the effect of a unit change at each point.
 
         Returns
         -------
         (T, c) array
-            Values of the polynomials of the changes.
+            Polynomial values of the changes.
         """
         return np.asarray(self.points.powers(len(self.start) - 1) @ self.changes)
 
     @cached_property
     def unit(self) -> Array:
-        """Return the unit of the changes of each external axis.
+        """Return the unit of changes for each external axis.
 
         Returns
         -------
         (k,) array
-            rad or mm per unit; one rad corresponds to a characteristic length.
+            rad or mm per unit; one characteristic length corresponds to 1 rad.
         """
         robot_axes = self.task.cell.robot.chain.axes
         sliding = self.task.cell.machine.chain.sliding[robot_axes:]
         return np.where(sliding, self.task.parameters.characteristic_length, 1.0)
 
     def values(self, x: Array) -> tuple[Array, Array]:
-        """Return the rotation and the external axes for changes.
+        """Return the rotation and the external axis values for changes.
 
         Parameters
         ----------
         x : (v,) array
-            The changes: c numbers for the rotation, then for each external axis.
+            The changes: c values for the rotation, then c for each external axis.
 
         Returns
         -------
         coefficients : (degree + 1,) array
-            Coefficients of the rotation, the constant first.
+            Rotation coefficients in ascending order.
         external : (T, k) array
-            Values of the external axes, rad or mm.
+            External axis values, rad or mm.
         """
         rows = x.reshape(1 + self.external.axes, -1)
         assert self.points.external is not None
@@ -131,7 +131,7 @@ class Freedom:
         Returns
         -------
         Bound or None
-            Values with slopes; None if a point is out of reach.
+            Values with derivatives; None if a point is unreachable.
         """
         task = self.task
         coefficients, values = self.values(x)
@@ -188,9 +188,7 @@ class Freedom:
         return values.T.ravel(), np.concatenate(slopes, axis=1)
 
     def _hard(self, values: Array, phi: Array, phi_rate: Array) -> tuple[Array, Array]:
-        """Constraints on the tilt of the tool, the range of the rotation and the speed of external
-        axes.
-        """
+        """Return the constraints on tool tilt, rotation range and speed of the external axes."""
         constraints, count = [], 1 + self.external.axes
         if self.allowed < np.pi - 1e-9:
             constraints.append(self._tilts(values))
@@ -245,12 +243,12 @@ class Freedom:
         return np.concatenate([1.0 - step, 1.0 + step]), np.concatenate([-rates, rates])
 
     def _by_number(self, slopes: Array) -> Array:
-        """(m T, c) of slopes (T, m) by the value of a polynomial at each point."""
+        """Convert derivatives (T, m) by polynomial value to derivatives (m T, c) by change."""
         return np.asarray((slopes.T[:, :, None] * self.shape).reshape(-1, self.shape.shape[1]))
 
 
 def set_external_values(points: Points, cell: Cell, values: Array) -> Points:
-    """Return the points with other values of the external axes.
+    """Return the points with new external axis values.
 
     Parameters
     ----------
@@ -259,12 +257,12 @@ def set_external_values(points: Points, cell: Cell, values: Array) -> Points:
     cell : Cell
         The cell, for the pose frames.
     values : (T, k) array
-        Values of the external axes, rad or mm.
+        External axis values, rad or mm.
 
     Returns
     -------
     Points
-        The points, with new frames.
+        The points, with new pose frames.
     """
     return dataclasses.replace(
         points, external=values, frames=cell.pose_frames(points.position, points.tool, values)
@@ -272,7 +270,7 @@ def set_external_values(points: Points, cell: Cell, values: Array) -> Points:
 
 
 def external_rates(cell: Cell, position: Array, joints: Array) -> list[Array]:
-    """Return the joint rates for each external axis, with the tool fixed on the part.
+    """Return the joint rates for motion of each external axis, with the tool fixed on the part.
 
     Parameters
     ----------
@@ -286,7 +284,7 @@ def external_rates(cell: Cell, position: Array, joints: Array) -> list[Array]:
     Returns
     -------
     list of (T, axes) array
-        d q / d e for each external axis.
+        d q / d e per external axis.
     """
     robot_axes, count = cell.robot.chain.axes, cell.machine.chain.axes
     stands = cell.poses.station @ frames.inverse(cell.poses.mount)
@@ -305,19 +303,19 @@ def external_rates(cell: Cell, position: Array, joints: Array) -> list[Array]:
 
 
 def axes_in_world(external: ExternalAxes, values: Array) -> list[Array]:
-    """Return the directions of the positioner's turning axes in the world.
+    """Return the directions of the positioner axes in the world.
 
     Parameters
     ----------
     external : ExternalAxes
         The external axes.
     values : (T, k) array
-        Their values, rad or mm.
+        External axis values, rad or mm.
 
     Returns
     -------
     list of (T, 3) array
-        Unit vectors of each turning axis, from the floor on.
+        Unit vectors of each positioner axis, starting at the floor.
     """
     world_axes = []
     for number, axis in enumerate(external.turning):
@@ -332,26 +330,27 @@ def axes_in_world(external: ExternalAxes, values: Array) -> list[Array]:
     return world_axes
 
 
-ROUNDS = 4  # each run adds the constraints that the previous run came close to
-ACTIVE = 0.1  # rows with this much more margin than requested are left out of the first run
+ROUNDS = 4  # optimiser runs; each adds the constraints that the previous run came close to
+ACTIVE = 0.1  # excess margin above which the first run omits a constraint
 ITERATIONS, TOLERANCE = 80, 1e-7
-# Largest changes of a variable in further attempts, after one without bounds ended outside its constraints. SLSQP may
-# step across a singularity, from which it does not return; whether it does depends on the last bits of the processor.
+# Maximum change of a variable in further attempts, if the attempt without bounds ends outside its
+# constraints. SLSQP may step across a singularity and not return. Whether it does depends on the
+# last bits of the processor's results.
 CLOSER = (0.5, 0.1)
-VIOLATION = 1e-5  # violation of a constraint, at most that of the start, that still counts as kept
-# objective of an unreachable state, as a multiple of the objective at the start
+VIOLATION = 1e-5  # violation that counts as satisfied, unless the start violates more
+# objective of an unreachable state, relative to the objective at the start
 UNREACHABLE_OBJECTIVE = 1e3
 
 
 class Seen:
-    """The bound at the last changes, so that value and slope cost one evaluation."""
+    """Caches the bound of the last changes, so that value and derivatives cost one evaluation."""
 
     def __init__(self, freedom: Freedom) -> None:
         self.freedom, self.key = freedom, b""
         self.found: Bound | None = None
 
     def bound_at(self, x: Array) -> Bound | None:
-        """Return objective and constraints, computed once for the last changes.
+        """Return objective and constraints, cached for the last changes.
 
         Parameters
         ----------
@@ -361,7 +360,7 @@ class Seen:
         Returns
         -------
         Bound or None
-            As `Freedom.look`.
+            Result of `Freedom.look`.
         """
         if x.tobytes() != self.key:
             self.key, self.found = x.tobytes(), self.freedom.look(x)
@@ -376,16 +375,16 @@ def least_objective(freedom: Freedom, start: Array, margin: float) -> tuple[Arra
     freedom : Freedom
         The free coordinates of the bead.
     start : (v,) array
-        The changes at the start.
+        Start changes.
     margin : float
-        Smallest margin allowed for limits and condition.
+        Required minimum margin of limits and condition.
 
     Returns
     -------
     x : (v,) array
-        The changes with the least objective.
+        Changes with the minimum objective.
     iterations : int
-        Iterations of SLSQP.
+        SLSQP iterations.
     """
     cache = Seen(freedom)
     initial = cache.bound_at(start)
@@ -417,18 +416,18 @@ def largest_margin(
     freedom : Freedom
         The free coordinates of the bead.
     start : (v,) array
-        The changes at the start.
+        Start changes.
     objective : float
-        Largest objective allowed.
+        Maximum objective.
     enough : float
         Margin at which the search stops.
 
     Returns
     -------
     x : (v,) array
-        The changes; the start if it is out of reach or has enough margin.
+        The changes; the start if it is unreachable or has enough margin.
     iterations : int
-        Iterations of SLSQP.
+        SLSQP iterations.
     """
     cache, v = Seen(freedom), len(start)
     initial = cache.bound_at(start)
@@ -467,8 +466,9 @@ def _solved(
     value: Callable[[Array], tuple[float, Array]],
     constraint_values: Callable[[Bound, Array], tuple[Array, Array]],
 ) -> tuple[Array, int]:
-    """Return the best z that SLSQP finds; SLSQP runs again if z violates constraints that it did
-    not have.
+    """Return the best z that SLSQP finds.
+
+    SLSQP runs again if z violates constraints that the run did not include.
     """
     from scipy.optimize import minimize  # slow to import, and most jobs do not need it
 

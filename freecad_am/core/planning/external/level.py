@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tilts the part by the axes of a positioner so that the tool is upright where it deposits.
+"""Tilt the part by the positioner axes so that the tool is upright where it deposits.
 
-If one position of the positioner keeps all tool axes of the job, or of a bead, close enough to the
-vertical, it stays there: no axis moves without need. Otherwise the positioner follows the bead and
-keeps the tool axis vertical at every point. It passes through the pole by continuing straight on.
+If one positioner pose keeps all tool axes of the job, or of a bead, close enough to the vertical,
+the positioner holds this pose, because no axis moves without need. Otherwise it follows the bead
+and keeps the tool axis vertical at every point. It passes through the pole without reversing.
 """
 
 from __future__ import annotations
@@ -30,9 +30,10 @@ Levelled = tuple[list[Bead], list[Place], list[Issue]]
 
 
 def ways(cell: Cell, toolpath: Toolpath) -> Iterator[Levelled]:
-    """Yield the beads of `levelled`, then the beads with seams and cuts also chosen for axes that
-    have a whole turn, if these differ. Otherwise such seams are chosen together with the
-    rotation.
+    """Yield the beads of `levelled`, then a variant with seams and cuts for axes that have a whole
+    turn, if it differs.
+
+    In the first variant, planning the rotation chooses such seams.
     """
     if cell.external is None:
         yield (
@@ -51,9 +52,9 @@ def ways(cell: Cell, toolpath: Toolpath) -> Iterator[Levelled]:
 
 
 def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Levelled:
-    """Return the beads with values of the external axes that keep the tool upright.
+    """Return the beads with external axis values that keep the tool upright.
 
-    Where an axis has no room for a bead, the bead begins elsewhere or is divided.
+    If an axis lacks the range for a bead, the seam of the bead is moved, or the bead is split.
 
     Parameters
     ----------
@@ -62,16 +63,16 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
     toolpath : Toolpath
         The toolpath in part coordinates.
     whole_turns : bool, optional
-        Whether axes with a whole turn also get another seam or cuts.
+        Whether to move seams and split beads also for axes that have a whole turn.
 
     Returns
     -------
     beads : list of Bead
-        The beads with the external axes at their points.
+        The beads, with external axis values at their points.
     bead_ids : list of (int, int)
         Layer and index of each bead.
     issues : list of Issue
-        Tool axes beyond `max_from_vertical`, moved seams and divided beads.
+        Tool axes beyond `max_from_vertical`, moved seams and split beads.
     """
     external = cell.external
     assert external is not None
@@ -114,8 +115,9 @@ def levelled(cell: Cell, toolpath: Toolpath, whole_turns: bool = False) -> Level
 
 
 def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
-    """Report beads that lean more than allowed although no external axis turns the part, one issue
-    per bead.
+    """Report beads that tilt more than allowed, for a part that no external axis rotates.
+
+    There is one issue per bead.
     """
     up, issues = cell.machine.base[:3, :3] @ cell.up, list[Issue]()
     allowed = allowed_by_layer(toolpath.parts)
@@ -133,9 +135,9 @@ def standing(cell: Cell, toolpath: Toolpath) -> list[Issue]:
 
 
 def _not_level(turning: bool, tilt: Array, max_lean: float, bead_id: Place) -> list[Issue]:
-    """Report a bead whose tool axes lean too far, at its worst point.
+    """Report a bead whose tool axes tilt too far, at its worst point.
 
-    tilt: (n,) rad from the vertical. turning: whether an axis turns the part.
+    tilt: (n,) angle from the vertical, rad. turning: whether an axis rotates the part.
     """
     worst = int(tilt.argmax())
     if not tilt[worst] > max_lean + ROUNDING:
@@ -175,9 +177,9 @@ def _not_level(turning: bool, tilt: Array, max_lean: float, bead_id: Place) -> l
 
 
 def figures(cell: Cell, path: JointPath) -> dict[str, object]:
-    """Return the figures of the external axes along the deposit.
+    """Return statistics of the external axes along the deposit.
 
-    These are the largest angle of the tool axis from the vertical, deg, and the total travel of
+    These are the maximum angle of the tool axis from the vertical, deg, and the total travel of
     each axis, deg or mm.
     """
     farthest = math.degrees(farthest_from_vertical(cell, path.beads))
@@ -185,7 +187,7 @@ def figures(cell: Cell, path: JointPath) -> dict[str, object]:
 
 
 def farthest_from_vertical(cell: Cell, paths: Sequence[BeadPath]) -> float:
-    """Return the largest angle between the tool axis and the vertical, rad."""
+    """Return the maximum angle between the tool axis and the vertical, rad."""
     external, farthest = cell.external, 0.0
     assert external is not None
     for path in paths:
@@ -218,7 +220,7 @@ def axes_figures(cell: Cell, paths: Sequence[BeadPath]) -> dict[str, object]:
 
 
 def allowed_by_layer(features: Parts) -> dict[int, float]:
-    """The largest allowed angle to the vertical of each layer, rad."""
+    """Return the maximum angle from the vertical that each layer allows, rad."""
     return {
         int(layer): feature.rules.max_from_vertical
         for feature, layers in features
@@ -229,7 +231,7 @@ def allowed_by_layer(features: Parts) -> dict[int, float]:
 def _standing_all(
     external: ExternalAxes, cell: Cell, bead_directions: Sequence[Array], max_lean: float
 ) -> tuple[Array, bool]:
-    """Initial values (k,) of the external axes, and whether they serve the whole job."""
+    """Return initial external axis values (k,), and whether they serve the whole job."""
     zero = np.zeros(external.axes)
     if not external.turning:
         return zero, True
@@ -242,15 +244,17 @@ def _standing_all(
 
 
 def _standing(external: ExternalAxes, cell: Cell, direction: Array, previous: Array) -> Array:
-    """Values (k,) that turn a direction (3,) upright, nearest to the previous values."""
+    """Return external axis values (k,) nearest to `previous` that turn a direction (3,) upright."""
     return np.asarray(stroke.chosen(cell, stroke.upright(external, direction[None]), previous)[0])
 
 
 def _follow_directions(
     external: ExternalAxes, cell: Cell, directions: Array, max_lean: float, previous: Array
 ) -> Array:
-    """Values (n, k) along a bead: constant if the tool then stays close enough to the vertical,
-    else with each direction upright.
+    """Return external axis values (n, k) along a bead.
+
+    They are constant if the tool then stays close enough to the vertical. Otherwise they turn each
+    direction upright.
     """
     mean_direction = middle(directions)
     if (

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""External axes `optimised`: polynomials per bead for the tool rotation and every external axis
-together.
+"""External axes `optimised`: polynomials per bead for tool rotation and all external axes.
 
-It starts from the joint path with the external axes placed by `level`. For each bead it tries other
-positions of the external axes, with a new search of the rotation at each. From the best position
-and from the path itself, two local optimisations follow: the least objective with at least the same
-margin, then the largest margin that keeps most of the gain. A bead that does not improve, or that
-collides, keeps its path.
+The optimisation starts from the joint path with the external axes placed by `level`. For each bead
+it tries other positions of the external axes, each with a new search of the rotation. Two local
+optimisations then start from the best position and from the path itself: the minimum objective with
+at least the same margin, then the maximum margin that keeps most of the gain. A bead that does not
+improve, or that collides, keeps its path.
 """
 
 from __future__ import annotations
@@ -34,15 +33,15 @@ from .stroke import directions_on_face
 
 OPTIMISED = "rotation and external axes together"
 POINTS_PER_BEAD = 40
-GIVEN_BACK = 0.25  # share of the gain in the objective to spend on a larger margin
-SUFFICIENT_MARGIN = 0.5  # sufficient margin: halfway from the limit to the middle
-TRIES = 2  # attempts for a bead that leans too far between the optimised points
+GIVEN_BACK = 0.25  # fraction of the gain in the objective to trade for a larger margin
+SUFFICIENT_MARGIN = 0.5  # sufficient margin: halfway between limit and mid-range
+TRIES = 2  # attempts for a bead that tilts too far between the optimised points
 SPARE = 1e-4  # reserve of margin and angle for the curve between the points
-STANDING = 12  # number of positions tried of an axis without a preferred position
+STANDING = 12  # number of positions to try for an axis without a preferred position
 LEANING = np.array(
     [-1.0, -0.5, 0.5, 1.0]
-)  # shares of the largest angle from the vertical, tried for every axis
-SLIDING = np.array([-0.2, -0.1, 0.1, 0.2])  # shares of the arm's reach
+)  # shifts to try for every axis, relative to the maximum angle from the vertical
+SLIDING = np.array([-0.2, -0.1, 0.1, 0.2])  # track shifts to try, relative to the arm reach
 
 
 def optimised(
@@ -52,7 +51,7 @@ def optimised(
     allowed: Mapping[int, float],
     report: Callable[[float], None] = lambda share: None,
 ) -> list[BeadPath]:
-    """Replace paths by better ones: less objective and at least the same margin.
+    """Replace paths by paths with a lower objective and at least the same margin.
 
     Parameters
     ----------
@@ -63,14 +62,14 @@ def optimised(
     directions : callable
         Returns the tool axes (n, 3) in the frame of the face that carries the part.
     allowed : mapping of int to float
-        Largest angle to the vertical by layer, rad.
+        Maximum angle from the vertical by layer, rad.
     report : callable, optional
-        Receives the share of finished beads; may raise to cancel.
+        Receives the completed fraction; may raise to cancel.
 
     Returns
     -------
     list of BeadPath
-        The paths, in the same order.
+        The paths, in the order of `paths`.
     """
     usable = [
         k
@@ -88,8 +87,10 @@ def optimised(
 
 
 def better(path: BeadPath, reference: BeadPath) -> bool:
-    """Return whether a path keeps its limits with a lower objective and at least the margin of
-    another path, or the other path breaks limits.
+    """Whether a path is feasible and better than another path.
+
+    Its objective is not higher and its margin not lower (up to SUFFICIENT_MARGIN), or the other
+    path violates limits.
     """
     if not path.reachable or path.margin < 0.0 or not np.isfinite(path.objective):
         return False
@@ -100,7 +101,7 @@ def better(path: BeadPath, reference: BeadPath) -> bool:
     )
 
 
-Start = tuple[Array, Array]  # shift (k,) of the external axes, coefficients of the rotation
+Start = tuple[Array, Array]  # shift (k,) of the external axes, rotation coefficients
 
 
 def _elsewhere(
@@ -111,7 +112,7 @@ def _elsewhere(
 ) -> list[Start | None]:
     """Return the best shift of the external axes, and its rotation, for each path.
 
-    None where the unshifted axes are best.
+    None if no shift is better.
     """
     external = task.cell.external
     assert external is not None
@@ -156,8 +157,8 @@ def _evaluate_shifts(
     directions: Callable[[Array], Array],
     shifts: Array,
 ) -> tuple[Array, Array, Array, Array]:
-    """Return the shifts (B, k) of the external axes and the best coefficients, objective and margin
-    of each bead.
+    """Return the shifts (B, k) of the external axes, with the best coefficients, objective and
+    margin of each bead.
     """
     assert points.external is not None
     values = points.external + shifts[points.bead]
@@ -184,7 +185,7 @@ def _evaluate_shifts(
 
 
 def _steps(task: Task, axis: int, max_lean: float) -> Array:
-    """Return the trial shifts of an external axis."""
+    """Return the shifts to try for an external axis."""
     external, arm = task.cell.external, task.cell.robot.arm
     assert external is not None and arm is not None
     if axis == external.slides:
@@ -202,7 +203,7 @@ def _bead(
     directions: Callable[[Array], Array],
     allowed: float,
 ) -> BeadPath:
-    """Return the best path of the local optimisations from this path and from another start."""
+    """Return the best path from local optimisations that start from this path and from `start`."""
     best = path
     for shift, coefficients in ([] if start is None else [start]) + [(None, path.coefficients)]:
         assert coefficients is not None and path.bead.external is not None
@@ -226,7 +227,7 @@ def _upright_enough(
     directions: Callable[[Array], Array],
     allowed: float,
 ) -> BeadPath | None:
-    """Optimise from a start, and tighten the limit until no point in between leans too far."""
+    """Optimise from a start, and tighten the tilt limit until no point in between exceeds it."""
     external, spare = task.cell.external, SPARE
     assert external is not None
     for _ in range(TRIES):
@@ -266,7 +267,7 @@ def _freedom(
 def _evaluate_path(
     task: Task, path: BeadPath, freedom: Freedom, x: Array, iterations: int
 ) -> BeadPath:
-    """Return the path of a bead with changes x, at all its points."""
+    """Return the path of a bead with changes x, evaluated at all its points."""
     coefficients, _ = freedom.values(x)
     points = gather([path.bead], task.cell)
     rows = x.reshape(1 + freedom.external.axes, -1)
@@ -291,7 +292,7 @@ def _evaluate_path(
 
 def _optimise_in_stages(freedom: Freedom, path: BeadPath) -> tuple[Freedom, Array, int]:
     """Minimise the objective with at least the margin of the path, then maximise the margin at the
-    cost of little of the gain.
+    expense of a fraction of the gain.
     """
     x = np.zeros((1 + freedom.external.axes) * freedom.shape.shape[1])
     state = freedom.look(x)
@@ -317,19 +318,19 @@ METHOD = "layer-by-layer"
 
 
 def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
-    """Return whether to optimise external axes.
+    """Return whether to optimise the external axes.
 
     Parameters
     ----------
     parameters : JointParameters
-        The parameters of the joint plan.
+        Joint planning parameters.
     cell : Cell
         The cell.
 
     Returns
     -------
     wanted : bool
-        Whether the job asks for it and the cell has external axes.
+        Whether the job requests it and the cell has external axes.
     issues : list of Issue
         A note if there are no external axes to optimise.
 
@@ -372,7 +373,7 @@ def choose_better(
     finish: Callable[[list[BeadPath]], Found],
     report: Callable[[float], None],
 ) -> tuple[Found, dict[str, object]]:
-    """Return the better of the level plan and the plan with all external axes optimised.
+    """Return the better of the level plan and the plan with optimised external axes.
 
     Parameters
     ----------
@@ -381,18 +382,18 @@ def choose_better(
     level : Found
         The finished paths and issues of the level plan.
     planned : sequence of BeadPath
-        Its beads before `finish` adds points and unwraps turns.
+        Beads of the level plan before `finish` refines and unwraps them.
     finish : callable
-        Returns the finished paths and issues of some paths.
+        Returns the finished paths and their issues.
     report : callable
-        Receives the finished share; may raise to cancel.
+        Receives the completed fraction; may raise to cancel.
 
     Returns
     -------
     result : Found
         Paths and issues of the better plan.
     figures : dict
-        Figures of the level plan, for comparison.
+        Statistics of the level plan, for comparison.
     """
     # few jobs have external axes
 
@@ -417,7 +418,7 @@ def choose_better(
 
 
 def _worse(task: Task, result: Found, level: Found) -> set[tuple[int | None, int | None]]:
-    """Places of beads that, after unwrapping, have errors or less margin than all beads of `level`."""
+    """Return the beads that have errors after unwrapping, or a lower margin than `level`."""
     wrong = {(issue.layer, issue.bead) for issue in result[1] if issue.level == ERROR}
     if not has_errors(level[1]):
         smallest_margin = least_margin(task, level[0])
@@ -430,10 +431,10 @@ def _worse(task: Task, result: Found, level: Found) -> set[tuple[int | None, int
 
 
 def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
-    """Return the figures that compare paths.
+    """Return the statistics for comparing paths.
 
-    These are the objective, the least margin to a limit or to the allowed condition, as shares, the
-    least condition, and the travel of the external axes.
+    These are the objective, the minimum margin to a limit or the condition threshold, the minimum
+    condition, and the travel of the external axes.
     """
     complete = all(path.reachable for path in paths)
     return {
@@ -445,8 +446,9 @@ def figures(task: Task, paths: Sequence[BeadPath]) -> dict[str, object]:
 
 
 def least_margin(task: Task, paths: Sequence[BeadPath]) -> float:
-    """Return the least margin of any axis to its limit less the reserve (1: in the middle), or of
-    the condition.
+    """Return the minimum margin of any axis to its limits less RESERVE, or of the condition.
+
+    1 is mid-range.
     """
     margins = [
         np.minimum(

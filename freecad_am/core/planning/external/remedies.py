@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cells that may make an infeasible job feasible: another position of the positioner, or external
-axes.
-"""
+"""Cells that may make an infeasible job feasible: a moved positioner, or added external axes."""
 
 from __future__ import annotations
 
@@ -28,17 +26,19 @@ from ...types import Array
 
 Cells = Iterator[tuple[str, CellParameters]]
 
-# distance of the face ahead of the shoulder, as a share of the arm's reach, and its height above
-# it, mm
+# distance of the face ahead of the shoulder, as a fraction of the arm reach, and its offset from
+# the given height, mm
 AHEAD = ((0.75, 0.0), (0.6, 0.0), (0.9, 0.0), (0.75, 300.0), (0.6, -300.0))
-MAX_POSITIONERS = 2  # number of positioners tried, the likeliest first
-TRACK_SHARE = 0.6  # share of the reach; a track may help along a part of at least this length
+MAX_POSITIONERS = 2  # maximum number of positioners to try, the most likely first
+TRACK_SHARE = 0.6  # minimum part length for a track, fraction of the reach
 NOT_LEVEL, AUTO = "NOT_LEVEL", "{} and `cell.branch: auto`"
 
 
 def move_positioner(settings: CellParameters, folders: Sequence[str]) -> Cells:
-    """Yield cells with the positioner, and all that carries the part, nearer to the robot or
-    farther away; none without a positioner.
+    """Yield cells with the positioner, and everything that carries the part, moved towards or away
+    from the robot.
+
+    Yield nothing without a positioner.
     """
     named = settings.external
     carriers = [k for k, mechanism in enumerate(named) if mechanism.carries == PART]
@@ -74,8 +74,8 @@ def added(
 ) -> Cells:
     """Yield cells with a positioner or a track added.
 
-    A positioner helps a part whose tool axes may not lean; a track helps a long part.
-    Mechanisms of the robot's manufacturer are preferred.
+    A positioner helps if the tool axes must not tilt. A track helps with a long part. Mechanisms of
+    the robot's manufacturer are preferred.
 
     Parameters
     ----------
@@ -86,14 +86,14 @@ def added(
     toolpath : Toolpath
         The toolpath in part coordinates.
     codes : set[str]
-        Codes of the errors; NOT_LEVEL asks for a positioner.
+        Error codes; NOT_LEVEL calls for a positioner.
     mass : float, optional
         Load of the positioner, kg.
 
     Yields
     ------
     (Text, CellParameters)
-        The change as a remedy, and the cell. No cells if there are external axes already or
+        The change as a remedy, and the cell. Nothing if the cell has external axes already or
         the robot holds the part.
     """
     robot = machines.load(settings.machine, tuple(folders))
@@ -134,7 +134,7 @@ def added(
 
 
 def weight(toolpath: Toolpath, process: ProcessParameters) -> float:
-    """Return the mass, kg, of the beads and of the closed bodies they grow on."""
+    """Return the mass of the beads and of the closed bodies below them, kg."""
     volume = enclosed_volume(toolpath.surroundings)[0]
     usual = toolpath.bead_width or process.bead_width
     for _, _, bead in toolpath:
@@ -148,7 +148,7 @@ def weight(toolpath: Toolpath, process: ProcessParameters) -> float:
 
 
 def _face(mechanism: Machine, pose: Pose) -> Array:
-    """Position (3,) of its face in the world with the axes at zero, mm."""
+    """Return the position (3,) of the face in the world with the axes at zero, mm."""
     face_pose = (
         frames.bryant(pose)
         @ frames.inverse(mechanism.base)
@@ -158,9 +158,7 @@ def _face(mechanism: Machine, pose: Pose) -> Array:
 
 
 def _before(robot: Machine, towards: Array, height: float) -> list[Array]:
-    """Return positions (3,) in front of a robot, towards a point (2,) and near the given height,
-    world frame.
-    """
+    """Return world positions (3,) in front of a robot, towards a point (2,), near `height`."""
     assert robot.arm is not None  # the caller has checked this
     shoulder, _ = robot.arm.shoulder
     turn = math.atan2(towards[1], towards[0]) if math.hypot(*towards) > 1.0 else 0.0

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fits beads to axes of a positioner that have less than a whole turn: by another seam, another way
-to turn the part, waiting at a limit while the tool leans within its allowance, or as the last
-resort by cutting the bead.
+"""Fit beads to positioner axes with a range of less than a full turn.
 
-The range of such an axis has a gap that whole turns cannot bridge. From a point on, a way to turn
-the part is usable until it exceeds the limits by more than the allowed lean, so seams and cuts
-follow from how far each way reaches.
+The means are another seam, another solution for turning the part, waiting at a limit while the tool
+tilt is allowed, and as a last resort splitting the bead.
+
+Whole turns cannot bridge the gap in the range of such an axis. From a given point on, a solution is
+usable until it exceeds the limits by more than the allowed tilt. Seams and cuts follow from how far
+each solution reaches.
 """
 
 from __future__ import annotations
@@ -27,11 +28,11 @@ from ...toolpath import Bead
 from ...types import Array, Index, Mask
 from ..turns import directed
 
-STEPS = 200  # steps of the search for the middle of directions
+STEPS = 200  # steps of the search for the central direction
 
 
 def directions_on_face(cell: Cell, tool: Array) -> Array:
-    """Return tool axes in the frame of the face that carries the part.
+    """Transform tool axes to the frame of the face that carries the part.
 
     Parameters
     ----------
@@ -43,14 +44,14 @@ def directions_on_face(cell: Cell, tool: Array) -> Array:
     Returns
     -------
     (n, 3) array
-        The same directions in the frame of the face.
+        Directions in the frame of the face.
     """
     turned = cell.poses.station[:3, :3] @ cell.poses.mount[:3, :3].T
     return np.asarray(tool @ turned.T)
 
 
 def middle(directions: Array) -> Array | None:
-    """Return the direction with the least maximum angle to all directions.
+    """Return the central direction, which minimises the maximum angle to all directions.
 
     Parameters
     ----------
@@ -64,14 +65,14 @@ def middle(directions: Array) -> Array | None:
 
     References
     ----------
-    Badoiu and Clarkson 2003: step towards the farthest direction, by less each time.
+    Badoiu and Clarkson 2003: take decreasing steps towards the farthest direction.
     """
     mean = directions.mean(axis=0)
     if np.linalg.norm(mean) < 1e-6:
         return None
     mean = mean / np.linalg.norm(mean)
     middle = mean
-    # Badoiu and Clarkson 2003: step towards the farthest direction, by less each time
+    # Badoiu and Clarkson 2003: take decreasing steps towards the farthest direction
     for step in range(1, STEPS):
         farthest = directions[int((directions @ middle).argmin())]
         middle = middle + (farthest - middle) / (step + 1)
@@ -81,19 +82,19 @@ def middle(directions: Array) -> Array | None:
 
 
 def upright(external: ExternalAxes, directions: Array) -> list[Array]:
-    """Return all ways to turn directions upright, up to whole turns.
+    """Return all solutions that turn directions upright, up to whole turns.
 
     Parameters
     ----------
     external : ExternalAxes
-        The external axes, one or two of which turn the part.
+        The external axes; one or two of them turn the part.
     directions : (n, 3) array
         Unit vectors in the frame of the face.
 
     Returns
     -------
     list of (n, k) array
-        Angles of the turning axes, rad, continuous along the rows.
+        Angles of the revolute axes, rad, continuous along the rows.
     """
     source = directions @ external.at_zero.T
     if len(external.turning) == 1:
@@ -106,31 +107,31 @@ def upright(external: ExternalAxes, directions: Array) -> list[Array]:
     )
     if not np.isfinite(
         solutions.first_turn + solutions.second_turn
-    ).all():  # axes that are not at right angles do not reach farther
+    ).all():  # axes that are not perpendicular cannot reach every direction
         angle = rotary_pair.nearest(second_axis, source, external.up).angle
         return [np.unwrap(np.stack([np.zeros(len(angle)), angle], axis=-1), axis=0)]
     return directed.rotary_courses(solutions)
 
 
 def chosen(cell: Cell, courses: Sequence[Array], previous: Array) -> Array:
-    """Choose the course with the least motion within the limits.
+    """Choose the course within the limits with the least motion.
 
-    All courses and whole turns are candidates. A tie goes to the one that starts nearest to the
-    previous values.
+    All courses and whole turns are candidates. The distance of the start from the previous values
+    resolves ties.
 
     Parameters
     ----------
     cell : Cell
         The cell with external axes.
     courses : sequence of (n, t) array
-        Values of the t turning axes, rad.
+        Values of the t revolute axes, rad.
     previous : (k,) array
-        Values of all external axes before.
+        Previous values of all external axes.
 
     Returns
     -------
     (n, k) array
-        Values of all external axes; the others keep their previous values.
+        Values of all external axes; axes that do not turn the part keep their previous values.
     """
     rows, lower, upper = limits_of(cell)
     speed = cell.machine.max_speed[cell.robot.chain.axes + rows]
@@ -144,7 +145,7 @@ def chosen(cell: Cell, courses: Sequence[Array], previous: Array) -> Array:
 
 
 def limits_of(cell: Cell) -> tuple[Index, Array, Array]:
-    """Return the external axes that turn the part and their limits.
+    """Return the external axes that turn the part, and their limits.
 
     Parameters
     ----------
@@ -154,9 +155,9 @@ def limits_of(cell: Cell) -> tuple[Index, Array, Array]:
     Returns
     -------
     rows : (t,) int array
-        Indices among the external axes.
+        Indices of these axes among the external axes.
     lower, upper : (t,) array
-        Limits less the reserve, rad.
+        Limits, narrowed by RESERVE, rad.
     """
     assert cell.external is not None
     rows = cell.external.turned
@@ -165,28 +166,28 @@ def limits_of(cell: Cell) -> tuple[Index, Array, Array]:
 
 
 ROUNDING = 1e-9
-ROUNDS = 6  # rounds that add points between the points of a bead
-# rad between the planning limit and an axis that waits at it, so that rounding keeps it within
-# limits
+ROUNDS = 6  # maximum number of refinements of a bead
+# rad; distance between the planning limit and an axis that waits there, so that rounding cannot
+# exceed the limit
 WAITS = RESERVE
 
 
 def lacks(cell: Cell, values: Array, whole_turns: bool = False) -> bool:
-    """Return whether an axis leaves its limits at some of the values.
+    """Whether an axis exceeds its limits at any of the values.
 
     Parameters
     ----------
     cell : Cell
         The cell with external axes.
     values : (n, k) array
-        Values of the external axes, rad or mm.
+        External axis values, rad or mm.
     whole_turns : bool, optional
-        Whether axes with a whole turn are also checked.
+        Whether to check axes with a full turn as well.
 
     Returns
     -------
     bool
-        True if such an axis leaves its limits.
+        True if a checked axis exceeds its limits.
     """
     rows, lower, upper = limits_of(cell)
     over = np.maximum(lower - values[:, rows], values[:, rows] - upper)
@@ -196,10 +197,10 @@ def lacks(cell: Cell, values: Array, whole_turns: bool = False) -> bool:
 def find_room(
     cell: Cell, bead: Bead, max_lean: float, previous: Array, overlap: float
 ) -> list[Bead]:
-    """Return a bead, or its pieces, with room for the external axes.
+    """Return a bead, or its pieces, that the external axes can follow.
 
-    Another seam is tried first, then the fewest pieces. Points are added where seams or ends of
-    pieces have room between the points of the bead.
+    Another seam is tried first, then the minimum number of pieces. Points are added where seams or
+    cuts fit only between the points of the bead.
 
     Parameters
     ----------
@@ -208,16 +209,16 @@ def find_room(
     bead : Bead
         The bead.
     max_lean : float
-        Largest angle to the vertical, rad.
+        Maximum angle from the vertical, rad.
     previous : (k,) array
-        Values of the external axes before the bead.
+        External axis values before the bead.
     overlap : float
-        Length that a closed bead runs past its seam, mm.
+        Seam overlap of a closed bead, mm.
 
     Returns
     -------
     list of Bead
-        The bead or its pieces with values of the external axes; empty if nothing helps.
+        The bead or its pieces, with external axis values; empty if nothing helps.
     """
     moved = _begun_elsewhere(cell, bead, max_lean, previous, overlap) if bead.closed else None
     if moved is not None:
@@ -236,7 +237,7 @@ def find_room(
 def _begun_elsewhere(
     cell: Cell, bead: Bead, max_lean: float, previous: Array, overlap: float
 ) -> Bead | None:
-    """Return a closed bead from a seam at which the axes have stroke for the whole bead, else None."""
+    """Return a closed bead from a seam that gives the axes enough stroke; None if there is none."""
     for _ in range(ROUNDS):
         solutions, count = _Ways.of_bead(cell, bead, max_lean), len(bead) - 1
         for start, values in solutions.seams(count, previous):
@@ -253,8 +254,9 @@ def _begun_elsewhere(
 def _split_bead(
     solutions: _Ways, cuts: Sequence[int], previous: Array, overlap: float
 ) -> list[Bead]:
-    """Return a bead in pieces, cut at suitable points; a closed bead starts where fewer pieces
-    suffice. The last piece gets the overlap.
+    """Split a bead at suitable points.
+
+    A closed bead starts where fewer pieces suffice. The last piece includes the overlap.
     """
     bead = solutions.bead
     starts = [0, *(cut % (len(bead) - 1) for cut in cuts[1:-1] if bead.closed)]
@@ -274,9 +276,9 @@ def _split_bead(
 
 
 def _share(bead: Bead, last_point: int, section: Bead) -> float:
-    """Return the position of a piece's end in the bead segment that ends at point `last_point`.
+    """Return the end of a piece as a fraction of the bead segment that ends at `last_point`.
 
-    `last_point` counts on over several rounds. The position is a share of the segment.
+    `last_point` keeps counting over several rounds of a closed bead.
     """
     if not bead.closed:
         return 1.0
@@ -287,23 +289,23 @@ def _share(bead: Bead, last_point: int, section: Bead) -> float:
 
 
 def runs_on(cell: Cell, bead: Bead, max_lean: float, overlap: float) -> bool:
-    """Return whether a closed bead keeps the tilt limit over its seam overlap.
+    """Whether a closed bead keeps the tilt limit over its seam overlap.
 
     Parameters
     ----------
     cell : Cell
         The cell with external axes.
     bead : Bead
-        The bead with values of the external axes; open beads have no overlap.
+        The bead, with external axis values; open beads have no overlap.
     max_lean : float
-        Largest angle to the vertical, rad.
+        Maximum angle from the vertical, rad.
     overlap : float
-        Length of the overlap, mm.
+        Overlap length, mm.
 
     Returns
     -------
     bool
-        True also without an overlap.
+        True if the tilt limit is kept or there is no overlap.
     """
     external = cell.external
     if overlap <= 0.0 or not bead.closed:
@@ -319,19 +321,19 @@ def runs_on(cell: Cell, bead: Bead, max_lean: float, overlap: float) -> bool:
 
 
 def waiting(cell: Cell, values: Array, beginning: Array) -> Array:
-    """Return the external values for the seam overlap of a bead.
+    """Return the external axis values for the seam overlap of a bead.
 
-    They equal its beginning. If that leaves the limits of an axis, apart from whole turns, the
-    axes wait at the values of its end.
+    They repeat the start of the bead, up to whole turns. If this exceeds the limits of an axis, the
+    axes wait at their last values.
 
     Parameters
     ----------
     cell : Cell
         The cell with external axes.
     values : (n, k) array
-        External values of the bead.
+        External axis values of the bead.
     beginning : (m, k) array
-        External values of the points that the overlap repeats.
+        External axis values of the points that the overlap repeats.
 
     Returns
     -------
@@ -352,11 +354,11 @@ def waiting(cell: Cell, values: Array, beginning: Array) -> Array:
 
 @dataclasses.dataclass(frozen=True)
 class _Ways:
-    """Ways to turn the directions (n, 3) of a bead upright, each within the limits.
+    """Solutions that turn the directions (n, 3) of a bead upright within the limits.
 
-    They cover a closed bead three times; copies by whole turns are separate ways. values: (ways, n,
-    k) of the turning axes, which are `rows` of the external axes. clamped: (ways, n) rad by which
-    limits hold the axes back. fits: (ways, n) whether the tool keeps `max_lean`.
+    They cover a closed bead three times; copies by whole turns are separate solutions. rows:
+    indices of the axes that turn the part. values: (ways, n, k) of these axes. clamped: (ways, n)
+    rad by which limits hold the axes back. fits: (ways, n) whether the tool keeps `max_lean`.
     """
 
     cell: Cell
@@ -409,8 +411,8 @@ class _Ways:
 
     @cached_property
     def furthest(self) -> Index:
-        """(ways, n) the last point that each way reaches within its stroke from a point; the
-        previous point if none.
+        """(ways, n) last point that each solution reaches from a point within its stroke; the
+        previous point if it reaches none.
         """
         count = self.fits.shape[1]
         without = np.where(self.fits, count, np.arange(count))
@@ -418,11 +420,11 @@ class _Ways:
 
     @cached_property
     def reach(self) -> Index:
-        """The last point (n,) that any way reaches from a point."""
+        """(n,) last point that any solution reaches from a point."""
         return np.asarray(self.furthest.max(axis=0, initial=-1))
 
     def last(self, start: int, overlap: float) -> int:
-        """The point at which the bead, or its overlap, ends if it begins at a given point."""
+        """Return the last point of the bead, including its overlap, if it begins at `start`."""
         return (
             start
             + len(self.bead)
@@ -431,25 +433,22 @@ class _Ways:
         )
 
     def nearly_round(self, count: int) -> Index:
-        """Segments of a closed bead in which a way runs out of room although it covers all other
-        segments.
-        """
+        """Return segments of a closed bead at which a solution ends that covers all others."""
         course, start = np.nonzero(self.fits[:, 1 : count + 1] & ~self.fits[:, :count])
         end = self.furthest[course, start + 1]
         nearly_complete = (
             end - start > count - 2
-        )  # so with a share of both end segments it may cover the whole bead
+        )  # including part of both end segments, such a solution may cover the whole bead
         return np.asarray(
             np.unique(np.concatenate([start[nearly_complete], end[nearly_complete] % count]))
         )
 
     def seams(self, count: int, previous: Array) -> Iterator[tuple[int, Array]]:
-        """Yield the possible seams of a closed bead of `count` segments, with their values (count +
-        1, k).
+        """Yield the possible seams of a closed bead, with its values (count + 1, k).
 
-        At a seam, one way has stroke for the whole bead. The order is by the amount that limits
-        hold an axis back, then by the distance from the present seam, then by the travel time of
-        the axes.
+        count: number of segments. At a seam, one solution has enough stroke for the whole bead.
+        Seams are ordered by how far limits hold the axes back, then by distance from the present
+        seam, then by travel time of the axes.
         """
         course, start = np.nonzero(self.furthest[:, :count] >= np.arange(count) + count)
         so_far = np.cumsum(np.pad(self.clamped, ((0, 0), (1, 0))), axis=1)
@@ -459,9 +458,10 @@ class _Ways:
             yield int(start[k]), self.values[course[k], start[k] : start[k] + count + 1]
 
     def choose_values(self, low: int, high: int, previous: Array) -> Array:
-        """Values (n, k) from one point to another: constant if that serves, else the usable way
-        that clamps the axes least, then moves least, then starts nearest to their current
-        values.
+        """Return values (n, k) from one point to another.
+
+        They are constant if possible. Otherwise take the usable solution that limits hold back
+        least, then the one with the least motion, then the one nearest to the current values.
         """
         directions = self.directions[low : high + 1]
         mean_direction = middle(directions)
@@ -481,13 +481,13 @@ class _Ways:
         )
 
     def _travel_time(self, values: Array, previous: Array) -> Array:
-        """Return the travel times (m,) of the axes to values (m, k), s, rounded to the microsecond."""
+        """Return travel times (m,) of the axes to values (m, k), s, rounded to 1 us."""
         speed = self.cell.machine.max_speed[self.cell.robot.chain.axes + self.rows]
         return np.asarray(np.round((np.abs(values - previous[self.rows]) / speed).max(axis=1), 6))
 
 
 def _overlap_points(bead: Bead, start: int, overlap: float) -> int:
-    """Return the number of overlap points of a closed bead that begins at its point `start`."""
+    """Return the number of overlap points of a closed bead that begins at point `start`."""
     if overlap <= 0.0:
         return 0
     along = np.cumsum(np.roll(lengths(np.diff(bead.points, axis=0)), -start))
@@ -495,8 +495,9 @@ def _overlap_points(bead: Bead, start: int, overlap: float) -> int:
 
 
 def _whole_turn_copies(course: Array, lower: Array, upper: Array) -> Iterator[Array]:
-    """Yield a course (n, k) moved by all whole turns that bring some of it within limits; axes
-    without limits stay.
+    """Yield copies of a course (n, k), shifted by all whole turns that are partly within limits.
+
+    Axes without limits are not shifted.
     """
     with np.errstate(invalid="ignore"):
         fewest = np.ceil((lower - course.max(axis=0)) / TURN)
@@ -510,18 +511,16 @@ def _whole_turn_copies(course: Array, lower: Array, upper: Array) -> Iterator[Ar
 
 
 def _set_external(bead: Bead, values: Array, previous: Array, rows: Index) -> Bead:
-    """The bead with values (n, k) of the axes that turn the part, and unchanged values (k,) of the
-    others.
-    """
+    """Set the values (n, k) of the axes that turn the part; other axes keep `previous` values."""
     external = np.tile(previous, (len(bead), 1))
     external[:, rows] = values
     return dataclasses.replace(bead, external=external)
 
 
 def _cuts(reach: Index, low: int, high: int) -> list[int]:
-    """Return the ends of the fewest pieces between two points, each as long as possible.
+    """Return the cuts for the minimum number of pieces between two points, each of maximum length.
 
-    Empty if no way exists.
+    Empty if there is no solution.
     """
     cuts = [low]
     while cuts[-1] < high:
@@ -533,9 +532,9 @@ def _cuts(reach: Index, low: int, high: int) -> list[int]:
 
 
 def _balanced(reach: Index, cuts: Sequence[int]) -> list[int]:
-    """Return as many pieces with lengths as equal as possible.
+    """Return the cuts for the same number of pieces with lengths as equal as possible.
 
-    The start of a piece gives its latest end; the end of the bead gives its earliest end.
+    The start of a piece limits its end from above; the end of the bead limits it from below.
     """
     low, high, count = cuts[0], cuts[-1], len(cuts) - 1
     earliest = [high]

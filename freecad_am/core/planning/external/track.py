@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Position of the track that carries the robot.
 
-One law covers the whole job: the track follows a share of the deposit's motion along it, so that
-the robot is never farther than half a window from its best position. So a position on the part has
-one position of the track, whatever was printed before. The track moves as smoothly as the beads; if
-the whole part is within the window, it does not move. Windows and offsets are tried in the
-order of increasing motion.
+One rule covers the whole job: the track follows a fraction of the deposit's motion along it, so
+that the robot stays within half a window of its best position. Each point of the part therefore
+has one track position, whatever was printed before. The track moves as smoothly as the beads. It
+stands still if the whole part is within the window. Windows and offsets are tried in order of
+increasing motion.
 """
 
 from __future__ import annotations
@@ -21,34 +21,34 @@ from ...kinematics.limits import RESERVE
 from ...toolpath import Bead
 from ...types import Array
 
-# shares of the arm's reach: the window, and the offset of the robot from the deposit along the
+# fractions of the arm reach: the window, and the offset of the robot from the deposit along the
 # track
 WINDOWS = (0.6, 0.3, 0.0)
 OFFSETS = (0.0, 0.4, -0.4)
-MAX_TRIALS = 3  # placements that are planned
+MAX_TRIALS = 3  # maximum number of placements to plan
 
 
 def place_track(
     beads: Sequence[Bead], cell: Cell, served: Callable[[Sequence[Bead]], float]
 ) -> Iterator[list[Bead]]:
-    """Yield the beads with track values at their points, in the order of motion.
+    """Yield the beads with track values at their points, in order of increasing track motion.
 
-    At most MAX_TRIALS placements that serve all sampled beads are yielded; if none does, the
-    best one. Without a track, the unchanged beads.
+    Yield up to MAX_TRIALS placements in which the robot can print all sampled beads, or the best
+    placement if there is none. Without a track, yield the unchanged beads.
 
     Parameters
     ----------
     beads : sequence of Bead
         The beads in print order.
     cell : Cell
-        The cell, perhaps with a track.
+        The cell; may have a track.
     served : callable
-        Returns the share of the sampled beads that the robot can print.
+        Returns the fraction of the sampled beads that the robot can print.
 
     Yields
     ------
     list of Bead
-        The beads with values of the track.
+        The beads, with track values.
     """
     external = cell.external
     if external is None or external.slides is None:
@@ -56,7 +56,7 @@ def place_track(
         return
     track_positions = [_at_points(bead, cell) for bead in beads]
     arm = cell.robot.arm
-    assert arm is not None  # resolve() refuses other machines
+    assert arm is not None  # resolve() rejects other machines
     yielded, best, best_share = 0, list(beads), -1.0
     for window in WINDOWS:
         for offset in OFFSETS:
@@ -76,7 +76,7 @@ def place_track(
 
 
 def _at_points(bead: Bead, cell: Cell) -> Array:
-    """Positions (n,), mm, of the points of a bead along the track in the world."""
+    """Return the positions (n,) of bead points along the track in the world, mm."""
     external = cell.external
     assert external is not None and external.along is not None and bead.external is not None
     at_zero = bead.external.copy()
@@ -95,10 +95,10 @@ def _follow_track(
     window: float,
     offset: float,
 ) -> list[Bead]:
-    """Return the beads with the robot within half a window of `offset` from the deposit along the
-    track, mm.
+    """Return the beads with track values.
 
-    The track's limits bound its motion.
+    The robot stays within half a window of `offset` from the deposit along the track, mm. The
+    track limits bound its motion.
     """
     external = cell.external
     assert external is not None and external.slides is not None

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""No free coordinate, k = 0: point and tool axis allow two branches and whole turns (Dai 2020,
-section 3).
+"""Planning for machines without a free coordinate (Dai 2020, section 3).
 
-They are chosen bead by bead. Within a bead the branch changes only if a direction coincides with an
-axis and the straight continuation leads to the other branch; elsewhere a change would be a jump. If
-a rotary axis lacks the stroke for a bead, the seam of the bead moves; as the last resort it is
-split.
+Point and tool axis leave two branches and whole turns, chosen bead by bead. Within a bead the
+branch changes only where a direction coincides with an axis and continuing without reversal leads
+to the other branch; elsewhere a change would be a jump. If a rotary axis lacks the stroke for a
+bead, its seam is moved, and as a last resort the bead is split.
 
-The rule for this differs from that of robots (`turns.fit`). The robot's rule searches the tool
-rotation as if the last axis were continuous, and moves or cuts the resulting path without other
-changes. Here no such rotation exists, either of two axes may lack stroke, and a bead with another
-start may cross a pole in the other branch. So each variant of a bead is computed again.
+Robots use a different rule (`turns.unwrap`): it searches the tool rotation as if the last axis were
+continuous, and moves or cuts the resulting path. Here there is no such rotation, either of two axes
+may lack stroke, and a bead with a moved seam may cross a pole in the other branch. Each variant of
+a bead is therefore computed again.
 """
 
 from __future__ import annotations
@@ -39,24 +38,23 @@ Place = tuple[int, int]
 
 METHOD = "five-axis"
 MOST_PIECES = 4
-FEWEST_POINTS = 3  # of a piece
+FEWEST_POINTS = 3  # minimum number of points of a piece
 ROUNDS = 10
 STRAY = math.radians(
     0.5
-)  # allowed deviation of the tool from the requested direction between two points
-LIMIT_TOLERANCE = 1e-9  # tolerance at limits, rad and mm: a limit that is met exactly is kept
-# rad; within this angle a direction counts as on the pole; larger values, below STRAY, are tried
-# if an axis would race near the pole
+)  # maximum deviation of the tool from the requested direction between two points
+LIMIT_TOLERANCE = 1e-9  # rad or mm; tolerance for values exactly at a limit
+# rad; angles within which a direction counts as on the pole; those above AT_POLE, below STRAY, are
+# tried if an axis would race near the pole
 POLES = (AT_POLE, math.radians(0.2), math.radians(0.4))
-RACES = 2.0  # ratio to its maximum speed above which an axis races; below that the bead is slowed
+RACES = 2.0  # speed ratio above which an axis races; for smaller ratios the bead is slowed
 
 
 class _Run(NamedTuple):
-    """A bead or a piece of one in final form, with its axis values (n, 5); fits: whether it keeps
-    the limits.
+    """A bead, or a piece of it, with its axis values.
 
-    bent: a segment that is not straight: number of its end point, deviation from the bead, mm, and
-    from the direction, rad.
+    axes: (n, 5). fits: whether the limits are kept. bent: a segment that deviates: index of its end
+    point, deviation from the bead, mm, and from the direction, rad; None if there is none.
     """
 
     bead: Bead
@@ -70,9 +68,8 @@ def plan(
 ) -> tuple[list[BeadPath], list[Issue]]:
     """Plan the paths of a machine without a free coordinate.
 
-    Points are added where straight motion of the axes would leave the bead. If a limited rotary
-    axis lacks the stroke for a bead, its seam is moved or it is split; then the beads are
-    renumbered.
+    Points are added where joint motion would deviate from the bead. If a rotary axis lacks the
+    stroke for a bead, its seam is moved, or the bead is split and the beads are renumbered.
 
     Parameters
     ----------
@@ -83,14 +80,14 @@ def plan(
     bead_ids : sequence of Place
         Layer and index of each bead.
     progress : callable
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
     paths : list of BeadPath
         The paths; NaN joints where unreachable.
     issues : list of Issue
-        Segments that are not straight, moved seams and split beads.
+        Segments that deviate, moved seams and split beads.
 
     References
     ----------
@@ -115,9 +112,7 @@ def plan(
 
 
 def _within_stroke(task: Task, bead: Bead, previous: Array) -> list[_Run]:
-    """The bead unchanged, or from another seam or in pieces if a rotary axis lacks the stroke for
-    it.
-    """
+    """Return the bead as is, or with a moved seam or in pieces if a rotary axis lacks stroke."""
     unsplit = _run(task, bead, previous)
     if unsplit.fits or not _short_of_turns(task, unsplit.axes):
         return [unsplit]
@@ -134,7 +129,7 @@ def _within_stroke(task: Task, bead: Bead, previous: Array) -> list[_Run]:
 
 
 def _run(task: Task, bead: Bead, previous: Array) -> _Run:
-    """Return the bead in the turns and the branch that suit best after axes (5,).
+    """Return the bead in the branch and turns that suit best after `previous` (5,).
 
     It passes poles with the requested directions if possible.
     """
@@ -142,7 +137,7 @@ def _run(task: Task, bead: Bead, previous: Array) -> _Run:
     for pole in POLES[:1] if task.lock is not None else POLES:
         run = _finer(task, bead, previous, pole)
         race = _race(task, run)
-        # straight through a pole a tilting axis changes sides, for which it may lack the stroke
+        # passing a pole without reversing, the tilt axis changes sides and may lack stroke for that
         if run.bent is None and race <= RACES and (run.fits or not runs):
             return run
         runs.append((run.bent is not None, not run.fits, race, run))
@@ -150,9 +145,7 @@ def _run(task: Task, bead: Bead, previous: Array) -> _Run:
 
 
 def _race(task: Task, run: _Run) -> float:
-    """Return the largest ratio of required axis speed to maximum speed along a run; 0 if it is
-    infeasible.
-    """
+    """Return the maximum ratio of required to maximum axis speed along a run; 0 if infeasible."""
     if not np.isfinite(run.axes).all():
         return 0.0
     time = np.linalg.norm(np.diff(run.bead.points, axis=0), axis=1) / run.bead.speed[1:]
@@ -161,17 +154,16 @@ def _race(task: Task, run: _Run) -> float:
 
 
 def _finer(task: Task, bead: Bead, previous: Array, pole: float) -> _Run:
-    """The bead with directions within `pole` rad of a pole moved onto it, refined where needed."""
+    """Return the refined bead, with directions within `pole` (rad) of a pole moved onto it."""
     cell, checked, axes = task.cell, bead, previous
     bead = gone_back(bead, task.rules.retreat).run_on(task.rules.overlap)
     for _ in range(ROUNDS):
-        # compute the whole bead again: near a pole the shorter continuation only shows with more
-        # points
+        # recompute the whole bead: near a pole, only a finer path shows the shorter continuation
         axes = directed.chosen(cell, directed.courses(cell, task.lock, bead, pole), previous)
         if not np.isfinite(axes).all():
             return _Run(bead, axes, False)
         deviations, leans = deviation(task, bead, axes, task.chord_error), leaning(cell, bead, axes)
-        # with an axis locked the tool leans anyway; one message reports that for the whole job
+        # a locked axis tilts the tool anyway; one message reports this for the whole job
         off = (deviations > task.chord_error + ROUNDING) | ((leans > STRAY) & (task.lock is None))
         if not off.any():
             return _Run(bead, axes, not cell.limits.exceeded(axes, LIMIT_TOLERANCE).any())
@@ -198,7 +190,7 @@ def _not_straight(point: int, distance: float, leans: float, layer: int, bead: i
 
 
 def _path(task: Task, run: _Run, bead_id: Place) -> BeadPath:
-    """Convert the run to a path.
+    """Convert a run to a path.
 
     There is no condition to check, because the courses avoid poles.
     """
@@ -222,7 +214,7 @@ def _path(task: Task, run: _Run, bead_id: Place) -> BeadPath:
 
 
 def _short_of_turns(task: Task, joints: Array) -> bool:
-    """Whether a rotary axis exceeds its stroke on axis values (n, 5)."""
+    """Whether a rotary axis exceeds its stroke for axis values (n, 5)."""
     limits, turning = task.cell.limits, ~task.cell.machine.chain.sliding
     over = (
         np.maximum(limits.lower + RESERVE - joints, joints - limits.upper + RESERVE)
@@ -234,7 +226,7 @@ def _short_of_turns(task: Task, joints: Array) -> bool:
 def _ways(task: Task, bead: Bead) -> Iterator[list[Bead]]:
     """Yield other variants of a bead, the best first.
 
-    These are a closed bead with a seam at which a rotary axis has enough stroke, then any bead in
+    First come seams of a closed bead at which a rotary axis has enough stroke, then divisions into
     two or more pieces.
     """
     limits = task.cell.limits
@@ -256,9 +248,9 @@ def _ways(task: Task, bead: Bead) -> Iterator[list[Bead]]:
 
 
 def _start(angles: Array, low: float, high: float) -> int:
-    """Return the start point that best centres the course (n,) of a closed bead between two limits.
+    """Return the start that best centres the course (n,) of a closed bead between two limits.
 
-    Whole turns do not matter.
+    Whole turns are ignored.
     """
     n = len(angles) - 1
     turn = angles[-1] - angles[0]
@@ -267,8 +259,8 @@ def _start(angles: Array, low: float, high: float) -> int:
     lowest, highest = windows.min(axis=1), windows.max(axis=1)
     off = shortest(0.5 * (lowest + highest) - 0.5 * (low + high))
     over = np.maximum(np.abs(off) + 0.5 * (highest - lowest) - 0.5 * (high - low), 0.0)
-    # rounded, so that every computer gets the same point: among fitting points the nearest to
-    # the seam
+    # round, so that the result is the same on every computer; among starts that fit, take the one
+    # nearest to the seam
     fits = np.flatnonzero(over <= 0.0)
     if len(fits):
         return int(fits[np.argmin(np.minimum(fits, n - fits))])

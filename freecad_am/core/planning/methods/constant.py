@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One RZ for the whole job, without optimisation: a reference for comparison and enough for simple
-parts.
-"""
+"""One RZ for the whole job, without optimisation: a reference, and sufficient for simple parts."""
 
 from __future__ import annotations
 
@@ -23,10 +21,10 @@ from ..task import Task, condition_margin
 Progress = Callable[[float, str], None]
 
 RZ_CANDIDATES, RZ_FINE_CANDIDATES = 360, 21
-LOOKED = 72  # number of RZ values that the link check tries
-POINT_STRIDE = 8  # stride of the points that are checked before the others
+LOOKED = 72  # number of RZ values for the link check
+POINT_STRIDE = 8  # stride of the points to check first
 
-Clear = Callable[[float], bool]  # whether all links are clear with an RZ, rad
+Clear = Callable[[float], bool]  # whether all links are clear for an RZ, rad
 
 
 def plan(
@@ -37,20 +35,20 @@ def plan(
     Parameters
     ----------
     task : Task
-        The plan; `joints.rz` is the angle or 'auto' for the largest worst-case margin.
+        The plan; `joints.rz` is the angle, or 'auto' for the maximum worst-case margin.
     beads : sequence of Bead
         The beads in print order.
     bead_ids : Sequence[tuple[int, int]]
         Layer and index of each bead.
     progress : callable
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
     paths : list of BeadPath
         The paths.
     issues : list of Issue
-        Notes if no RZ is feasible or clears the links.
+        Notes if no RZ is feasible or keeps the links clear.
     """
     requested = task.parameters.rz
     full = gather(beads, task.cell)
@@ -94,7 +92,7 @@ def plan(
 def best_rz(
     task: Task, points: Points, thresholds: Array, clear: Clear | None = None
 ) -> tuple[float, float, bool]:
-    """Return the RZ with the largest worst-case margin over all points.
+    """Return the RZ with the maximum worst-case margin over all points.
 
     Parameters
     ----------
@@ -103,16 +101,16 @@ def best_rz(
     points : Points
         T points.
     thresholds : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     clear : Clear or None, optional
-        Returns whether the links are clear with an RZ; None without the check.
+        Returns whether the links are clear for an RZ; None to skip this check.
 
     Returns
     -------
     rz : float
-        The angle, rad; one with clear links if possible.
+        The angle, rad; with clear links if possible.
     margin : float
-        Its margin; negative if no RZ is feasible.
+        Its worst-case margin; negative if no RZ is feasible.
     is_clear : bool
         False if no feasible RZ has clear links.
     """
@@ -141,8 +139,9 @@ def best_rz(
 
 
 def _keeps_clear(task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]]) -> Clear:
-    """Return a check that no link gets too close with an RZ at the beads' points; it checks a few
-    points first.
+    """Return a check whether the links are clear at all bead points for an RZ.
+
+    It checks a few points first.
     """
     assert task.kept is not None
     arm_clearance, points = task.kept, gather(beads, task.cell, clear_rotations.POINTS_PER_BEAD)
@@ -163,23 +162,23 @@ def _keeps_clear(task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int
 
 
 def margins(task: Task, points: Points, thresholds: Array, values: Array) -> Array:
-    """Return the smallest margin over all points for constant values of RZ.
+    """Return the minimum margin over all points for constant values of RZ.
 
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     points : Points
         T points.
     thresholds : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     values : (C,) array
-        Values of RZ, rad.
+        RZ values, rad.
 
     Returns
     -------
     (C,) array
-        Margin to limits and condition; -inf if a point is out of reach.
+        Margin of limits and condition; -inf if a point is unreachable.
     """
     result = np.empty(len(values))
     for index, rz in enumerate(values):
@@ -226,7 +225,7 @@ def bead_paths(
     joints: Array,
     reason: str,
 ) -> list[BeadPath]:
-    """Return paths without polynomials from the rotation and joints at all points.
+    """Return paths without polynomials, given the rotation and joints at all points.
 
     Parameters
     ----------
@@ -237,15 +236,15 @@ def bead_paths(
     bead_ids : Sequence[tuple[int, int]]
         Layer and index of each bead.
     points : Points
-        All T points of the beads.
+        T points of the B beads.
     threshold : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     phi : (T,) array
         Rotation about the tool axis, rad.
     joints : (T, axes) array
-        Joints, rad or mm, NaN out of reach.
+        Joints, rad or mm; NaN out of reach.
     reason : str
-        Text that the report shows for how the rotation was found.
+        Report text on how the rotation was found.
 
     Returns
     -------

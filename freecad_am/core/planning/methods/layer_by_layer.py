@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Layer by layer: one polynomial of the rotation per bead (Chalvin 2020, section 4.3).
 
-Search the whole range, refine locally, resolve ties, then fit the turns of limited axes.
+The method searches globally, refines locally, resolves ties, then fits limited axes to limits.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from ..turns import unwrap
 Progress = Callable[[float, str], None]
 Place = tuple[int, int]
 
-# whole turns of a joined bead's rotation that are tried besides the best candidate
+# whole turns of the rotation of a joined bead to try in addition to the best candidate
 OTHER_TURNS = (-1.0, 0.0, 1.0)
-# multiple of the best objective above which another number of turns is not tried
+# maximum objective of these alternatives, relative to the best objective
 NOT_MUCH_WORSE = 2.0
 
 
@@ -36,7 +36,7 @@ def plan(
 ) -> tuple[list[BeadPath], list[Issue]]:
     """Plan the paths with one polynomial of the rotation per bead.
 
-    Beads with a given polynomial use it and are checked like the others.
+    Beads with a given polynomial use it and get the same checks.
 
     Parameters
     ----------
@@ -47,12 +47,12 @@ def plan(
     bead_ids : sequence of Place
         Layer and index of each bead.
     progress : callable
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
     paths : list of BeadPath
-        The paths; moved seams and split beads change their number.
+        The paths; moved seams and split beads may increase their number.
     issues : list of Issue
         Notes on moved seams and split beads.
 
@@ -79,7 +79,7 @@ def plan(
 def _searched(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], progress: Progress
 ) -> tuple[list[BeadPath], dict[int, list[BeadPath]]]:
-    """Return the path of every bead, and the replacements of beads that need another seam or a cut."""
+    """Return the path of every bead, and replacements for beads that need a new seam or a split."""
     coarse, full = gather(beads, task.cell, global_search.POINTS_PER_BEAD), gather(beads, task.cell)
     coarse_threshold, threshold = task.thresholds(coarse), task.thresholds(full)
     progress(0.1, "searching rotations")
@@ -95,7 +95,7 @@ def _searched(
         )
     best, bead_rows = candidates.best(), np.arange(len(beads))
     start = candidates.coefficients[best, bead_rows]
-    # a bead that is infeasible from its own seam may be feasible from another, which is cheaper to
+    # a bead that is infeasible from its seam may be feasible from another seam, which is cheaper to
     # try than a local search
     hopeless = [int(k) for k in np.flatnonzero(candidates.margin[best, bead_rows] < 0.0)]
     roomy = unwrap.for_beads(task, [beads[k] for k in hopeless], [bead_ids[k] for k in hopeless])
@@ -142,7 +142,7 @@ def _searched(
                 cleared if is_changed else path
                 for path, cleared, is_changed in zip(paths, moved, changed)
             ]
-    # a joined bead that is feasible in one piece with a higher degree need not be split
+    # a joined bead need not be split if a higher degree makes it feasible as a whole
     helped = {
         k: replacements
         for k, replacements in helped.items()
@@ -173,17 +173,17 @@ def _resolved(
     full: tuple[Points, Array],
     refined: local_optimisation.Refined,
 ) -> list[BeadPath]:
-    """Return the paths of all beads with ties between optima resolved.
+    """Return the paths of all beads, with ties between optima resolved.
 
-    coarse, full: a few and all of their points, each with its smallest allowed conditions.
+    coarse, full: sampled points and all points, each with its condition thresholds.
     """
     resolved = global_search.resolve(task, *coarse, refined.coefficients)
     paths = evaluate_paths(task, beads, bead_ids, *full, resolved, refined)
     equal = global_search.as_good(task, [path.objective for path in paths], refined.objective)
     if equal.all() and all(path.margin >= MIN_MARGIN for path in paths):
         return paths
-    # ties are resolved at a few points of a bead; if all points contradict, the original optimum
-    # stays
+    # ties are resolved at sampled points; if the result is worse at all points, keep the original
+    # optimum
     as_found = evaluate_paths(task, beads, bead_ids, *full, refined.coefficients, refined)
     return [
         path if good and path.margin >= min(MIN_MARGIN, unresolved.margin) else unresolved
@@ -192,10 +192,10 @@ def _resolved(
 
 
 def _add_other_turns(start: Array, candidates: global_search.Found) -> Array:
-    """Return the starts (S, B, degree + 1): the given ones and the best for each other number of
-    whole turns.
+    """Return start coefficients (S, B, degree + 1): the given ones, and the best for each other
+    number of whole turns.
 
-    NaN marks an unpromising start. A higher degree can change which number of turns is best.
+    NaN marks an unpromising start. A higher degree may change the best number of turns.
     """
     if start.shape[1] < 2:
         return start[None]

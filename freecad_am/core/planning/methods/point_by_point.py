@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Point by point: the rotation with the least joint motion from the previous point (Chalvin 2020,
-5.2).
+"""Point by point: the rotation with the minimum joint motion from the previous point (Chalvin 2020,
+section 5.2).
 
-All beads advance together, one point at a time. Each step is a Gauss-Newton step of the only
-unknown; if it would break a limit or come too close to a singularity, the whole turn is searched.
-Beads start at the largest margin. The method serves comparison: its sudden moves are the reason for
-planning whole layers.
+All beads advance together, one point at a time. Each step is a Gauss-Newton step in the rotation,
+the only unknown. If it would exceed a limit or come too close to a singularity, the full turn is
+searched. Beads start at the maximum margin. The method serves for comparison: its sudden motions
+are the reason to plan whole layers.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ STEPS = 2
 def plan(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[tuple[int, int]], progress: Progress
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Plan the paths point by point, each with the least motion from the point before.
+    """Plan the paths point by point, each with the minimum motion from the previous point.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def plan(
     bead_ids : Sequence[tuple[int, int]]
         Layer and index of each bead.
     progress : callable
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
@@ -121,7 +121,7 @@ def _step(
 
 
 def _near(task: Task, points: Points, phi: Array, previous: Array) -> Array:
-    """Joints at phi in the turns nearest to the previous joints; NaN where unreachable."""
+    """Return joints at phi, shifted by whole turns towards `previous`; NaN where unreachable."""
     joints = task.raw_joints(points, phi, previous)
     joints -= TURN * np.nan_to_num(np.round((joints - previous) / TURN))
     return joints
@@ -135,11 +135,10 @@ def _margin(task: Task, points: Points, phi: Array, joints: Array, threshold: Ar
 def _searched(
     task: Task, points: Points, threshold: Array, deposited: Index, previous: Array | None
 ) -> tuple[Array, Array]:
-    """Return the best of the candidates over a whole turn: the least motion among the feasible
-    ones.
+    """Return the feasible rotation of a full turn with the minimum motion, and its joints.
 
-    Candidates with clear links are preferred. Without a feasible candidate, the one with the
-    largest margin is taken. deposited: (k,) number of printed points at each point.
+    Candidates with clear links are preferred. If no candidate is feasible, use the one with the
+    maximum margin. deposited: (k,) number of points printed before each point.
     """
     turn = np.arange(CANDIDATES) * (TURN / CANDIDATES) - np.pi
     phi = np.repeat(turn[:, None], len(points), axis=1)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Looks whether the nozzle stays clear of deposit, platform and bodies on the rapid moves between beads.
+"""Clearance of the nozzle from deposit, platform and bodies on rapids.
 
-While depositing, clearance is settled before the joints are planned. A rapid runs straight in the joints, so where the
-nozzle goes is known only now: retract, travel and approach alike are driven through in small steps, against everything
-deposited by then, and against the triangles of the bodies around the part.
+Clearance while depositing is settled before the joints are planned. Rapids are joint moves, so the
+nozzle path is known only after joint planning. Retracts, travels and approaches are simulated in
+small steps against the deposit at that time and the triangles of the surrounding bodies.
 """
 
 from __future__ import annotations
@@ -22,34 +22,38 @@ from ...geometry.step_count import step_counts
 from ...kinematics.cell import Cell
 from ...types import Array, Index, Mask
 
-# largest turn of an axis between two looks, rad, and way of one that slides, mm
+# maximum step between two checks: rad for revolute axes, mm for prismatic axes
 STEP = np.radians(5.0)
 SLIDE = 5.0
-# largest way of a point of the nozzle between two looks, mm: first with a nozzle as much thicker, then, where that meets
-# anything, with the nozzle itself
+# maximum displacement of a nozzle point between two checks, mm: first with a nozzle thickened by as
+# much, then with the actual nozzle where the thickened nozzle makes contact
 COARSE = 5.0
 FINE = 0.5
-STRIDE = 8  # one position in STRIDE is enough to find most collisions
-# moves driven at once, so that large jobs need no more memory than small ones
+STRIDE = 8  # stride of the first check, which finds most collisions
+# moves per batch, to limit memory
 MOVES = 4096
 
 
 class Moves(NamedTuple):
-    """Rapid moves: joints (k, axes) they start and end at, and how many deposit rows (k,) are there by then: the last of
-    these is where the bead before ends, the one after it where the next starts."""
+    """Rapid moves.
+
+    start, end: (k, axes) joints. deposited: (k,) number of deposit rows printed before the move.
+    The last of these rows ends the previous bead; the row after it starts the next bead.
+    """
 
     start: Array
     end: Array
     deposited: Index
 
     def of(self, rows: Index) -> Moves:
-        """Return the moves of the rows."""
+        """Return selected moves."""
         return Moves(self.start[rows], self.end[rows], self.deposited[rows])
 
 
 class Looks(NamedTuple):
-    """Checked nozzle positions: tip and tool axis (l, 3) in part coordinates, the move (l,) and the
-    share of it.
+    """Checked nozzle positions.
+
+    tip, axis: (l, 3) in part coordinates. move: (l,) move index. share: (l,) fraction of the move.
     """
 
     tip: Array
@@ -58,7 +62,7 @@ class Looks(NamedTuple):
     share: Array
 
     def of(self, rows: Index) -> Looks:
-        """Return the nozzle positions of the rows."""
+        """Return selected nozzle positions."""
         return Looks(self.tip[rows], self.axis[rows], self.move[rows], self.share[rows])
 
 
@@ -66,9 +70,9 @@ Touching = Callable[[Nozzle, Looks], Mask]
 
 
 class RapidObstacles:
-    """The obstacles of rapids: beads of their width and height, platform and bodies.
+    """The obstacles of rapids: beads with their width and height, platform and bodies.
 
-    A bead counts from the row on at which it exists.
+    A bead is an obstacle only after it is printed.
     """
 
     def __init__(self, cell: Cell, deposit: Beads, bodies: Sequence[Body]) -> None:
@@ -87,7 +91,7 @@ class RapidObstacles:
         self._bodies = scene((), deposit.points, 0.0).bodies
 
     def find_collisions(self, moves: Moves) -> Mask:
-        """Return on which moves the nozzle meets an obstacle.
+        """Return the moves on which the nozzle hits an obstacle.
 
         Parameters
         ----------
@@ -97,7 +101,7 @@ class RapidObstacles:
         Returns
         -------
         (k,) array of bool
-            False for moves whose joints are NaN.
+            True for collisions; False for moves with NaN joints.
         """
         collides = np.zeros(len(moves.start), dtype=bool)
         reachable = np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1))
@@ -110,8 +114,9 @@ class RapidObstacles:
         return collides
 
     def names(self, moves: Moves) -> list[str]:
-        """Return the obstacles met on the moves, except moves whose joints are NaN: deposit, bodies by their
-        names, the platform.
+        """Return the names of the obstacles that the nozzle hits: deposit, bodies and platform.
+
+        Moves with NaN joints are ignored.
         """
         moves = moves.of(np.flatnonzero(np.isfinite(moves.start + moves.end).all(axis=1)))
         if not len(moves.start):
@@ -132,7 +137,7 @@ class RapidObstacles:
         ]
 
     def _find_collisions(self, moves: Moves, touching: Touching) -> Mask:
-        """Return whether (k,) each of the moves meets an obstacle, by the test `touching` of nozzle positions."""
+        """Return which moves (k,) hit an obstacle, by the contact test `touching`."""
         collides = np.zeros(len(moves.start), dtype=bool)
         looks = _evaluate_looks(self.cell, moves, COARSE)
         nozzle = self._nozzle(moves, looks)
@@ -140,7 +145,7 @@ class RapidObstacles:
         def mark(rows: Index) -> None:
             collides[looks.move[rows[touching(nozzle.rows(rows), looks.of(rows))]]] = True
 
-        # most moves that meet an obstacle run deep into it: few positions suffice to find that
+        # most colliding moves run deep into the obstacle, so a few positions find them
         mark(np.arange(0, len(looks.move), STRIDE))
         pending = np.flatnonzero(~collides[looks.move])
         close_looks = np.zeros(len(looks.move), dtype=bool)
@@ -183,15 +188,18 @@ class RapidObstacles:
 
     @property
     def _reach(self) -> float:
-        """Largest distance of a point of the nozzle from its tip, mm."""
+        """Maximum distance of a nozzle point from the tip, mm."""
         radius, slope, length = self._size
         return float(np.hypot(length, radius + slope * length))
 
     def _nearby_bodies(self, tip: Array) -> Bodies:
-        """The bodies that nozzles at the tips (k, 3) may meet. Trees of bodies take long and are kept for the next moves."""
+        """Return the bodies near nozzles at tips (k, 3).
+
+        Search trees of bodies are slow to build, so they are kept for later moves.
+        """
         low, high = tip.min(axis=0), tip.max(axis=0)
         if (low < self._box[0]).any() or (high > self._box[1]).any():
-            # larger at once by half where it is too small, so that it seldom is again
+            # enlarge a box that is too small by half, so that it seldom needs to grow again
             is_known = np.isfinite(self._box).all()
             extra = 0.5 * (high - low) if is_known else np.zeros(3)
             lowest, highest = self._box
@@ -205,17 +213,20 @@ class RapidObstacles:
         return self._bodies
 
     def _nozzle(self, moves: Moves, looks: Looks) -> Nozzle:
-        """The nozzle at each look, less what touches rightly near the ends of beads."""
+        """Return the nozzle at each position, without the part in intended contact at bead ends."""
         return self._ends.nozzle(looks.tip, moves.deposited[looks.move])
 
 
 def _evaluate_looks(cell: Cell, moves: Moves, largest: float) -> Looks:
-    """Looks along all moves, between which no point of the nozzle goes farther than the largest way, mm."""
+    """Return nozzle positions along all moves.
+
+    Between two positions, no nozzle point moves further than `largest` (mm).
+    """
     chain = cell.machine.chain
     steps = np.where(chain.sliding, SLIDE, STEP)
     count = 1 + step_counts((np.abs(moves.end - moves.start) / steps).max(axis=1), 1.0, 0)
     looks = _evenly(cell, moves, count)
-    # an arm's tip goes far while its axes hardly turn
+    # the tip may travel far while the axes hardly rotate
     same = looks.move[1:] == looks.move[:-1]
     travel = np.linalg.norm(
         np.diff(looks.tip, axis=0), axis=1
@@ -227,24 +238,24 @@ def _evaluate_looks(cell: Cell, moves: Moves, largest: float) -> Looks:
 
 
 def _evenly(cell: Cell, moves: Moves, count: Index) -> Looks:
-    """One look more along each move than the count (k,)."""
+    """Return `count` + 1 (k,) evenly spaced nozzle positions along each move."""
     return _looks(cell, moves, *evenly(count))
 
 
 def evenly(count: Index) -> tuple[Index, Array]:
-    """Spread positions evenly along moves.
+    """Return evenly spaced positions along moves.
 
     Parameters
     ----------
     count : (k,) int array
-        Number of intervals on each move.
+        Number of intervals per move.
 
     Returns
     -------
     move : (n,) int array
-        Move of each position.
+        Move index of each position.
     share : (n,) array
-        Share of the move, both ends included.
+        Fraction of the move, including both ends.
     """
     move = np.repeat(np.arange(len(count)), count + 1)
     step = np.arange(len(move)) - np.repeat(np.cumsum(count + 1) - count - 1, count + 1)
@@ -262,7 +273,7 @@ def _body_touched(bodies: Bodies, nozzle: Nozzle, looks: Looks) -> Mask:
 
 
 def _thicker(nozzle: Nozzle, thickness: float) -> Nozzle:
-    """Return a nozzle that contains every point within `thickness` mm of the nozzle."""
+    """Return a nozzle that contains all points within `thickness` mm of the given nozzle."""
     return Nozzle(
         *(
             replace(

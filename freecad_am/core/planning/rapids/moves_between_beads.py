@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The rapid ways between beads: away from one, over to the next, onto it. The machine can go them, and nothing is met."""
+"""The rapids between beads: retract, travel and approach, feasible for the machine and clear."""
 
 from __future__ import annotations
 
@@ -23,23 +23,26 @@ from .clearance import Moves, RapidObstacles
 from .path_around_obstacles import LARGEST_TURN, Attempt, LedRound, attempts
 from .retracts import DEFAULT_CHOICE, LIMIT, SINGULAR, Ends, Failure, Leg, Retracts, branch_of
 
-# how many moves more than it takes such a turn is tried in, where a place between is near a singularity
+# maximum number of additional moves to divide a large rotation into, to avoid a singularity
 MORE_MOVES = 3
 
 
 @dataclass(frozen=True, eq=False)
 class Way:
-    """The rapid rows to a bead, or after the last one: joints (m, axes) and roles (m,). start: (axes,) where the first of
-    them comes from, None before the first bead."""
+    """The rapid to a bead, or the retract from the last bead.
+
+    start: (axes,) joints before the first row; None before the first bead. joints: (m, axes).
+    role: (m,) motion roles.
+    """
 
     start: Array | None
     joints: Array
     role: Integers
-    singular: float | None = None  # the condition of a row between, where it is below the floor
+    singular: float | None = None  # condition of an intermediate row, if below the minimum
 
 
 class RapidWays:
-    """Ways for all beads of a joint path; way k leads to bead k, the last one away from the last bead."""
+    """The rapids of a joint path: rapid k leads to bead k, the last one off the last bead."""
 
     def __init__(
         self,
@@ -52,12 +55,12 @@ class RapidWays:
         height: float = 0.0,
         cylinders: Cylinders = (),
     ) -> None:
-        """width, height: mm, for beads without their own."""
+        """width, height: size of beads without a size, mm."""
         self.beads, self.cell, self.retract = joint_path.beads, cell, retract
         self.retracts = Retracts(
             cell, Ends.of(self.beads), branch_of(joint_path.branch), parameters
         )
-        # by number of the end of a bead, as `Ends` counts them
+        # by index of the bead end, see `Ends`
         self.legs: dict[int, Leg | None] = dict.fromkeys(range(2 * len(self.beads)))
         self.failures: dict[int, Failure] = {}
         if retract > 0.0:
@@ -74,7 +77,7 @@ class RapidWays:
         self.met = sorted({*self._lead_round(met), *hopeless})
 
     def _ask(self) -> None:
-        """Find the requested legs, or the nearest alternatives that the machine can move."""
+        """Find the requested legs, or the nearest feasible alternatives."""
         sound = np.flatnonzero(self.retracts.sound)
         legs, failures = self.retracts.find_legs(sound, np.full(len(sound), self.retract))
         for end, leg, failure in zip(sound.tolist(), legs, failures):
@@ -91,12 +94,13 @@ class RapidWays:
             self.legs[end] = leg
 
     def ends(self, k: int) -> list[int]:
-        """The ends of beads that way k leaves and comes to."""
+        """Return the bead ends that rapid k connects."""
         return [end for end in (2 * k - 1, 2 * k) if end in self.legs]
 
     def _way(self, k: int, legs: Mapping[int, Leg | None], round_: Array | None = None) -> Way:
-        """Return rapid k built from its legs; round_: (m, axes) via points between the legs, if it
-        has a detour.
+        """Build rapid k from its legs.
+
+        round_: (m, axes) via points between the legs, for a detour.
         """
         previous = self.beads[k - 1] if k else None
         path = self.beads[k] if k < len(self.beads) else None
@@ -118,7 +122,7 @@ class RapidWays:
         return self._in_shorter_turns(Way(start, joints, np.array(role, dtype=np.int64)))
 
     def _in_shorter_turns(self, rapid: Way) -> Way:
-        """Return the rapid, with rows added where a continuous axis turns too far in one move."""
+        """Add rows to the rapid where a continuous axis rotates too far in one move."""
         assert rapid.start is not None
         rows_with_start = np.vstack([rapid.start, rapid.joints])
         continuous = self.cell.limits.continuous
@@ -126,7 +130,7 @@ class RapidWays:
             np.abs(rows_with_start[1:, continuous] - rows_with_start[:-1, continuous]),
             axis=1,
             initial=0.0,
-        )  # none of NaN
+        )  # fmax ignores NaN
         if turn.max() <= LARGEST_TURN:
             return rapid
         rows: list[Array] = []
@@ -144,10 +148,10 @@ class RapidWays:
         return Way(rapid.start, np.array(rows), np.array(role, dtype=np.int64), singular)
 
     def _between(self, start: Array, end: Array, moves: int) -> tuple[list[Array], float | None]:
-        """Return rows that divide a move into `moves` parts, and the condition near a singularity.
+        """Return the rows that divide a move into `moves` parts, and their minimum condition.
 
-        Up to MORE_MOVES more parts are tried if a row is near a singularity. The condition is None
-        if a division avoids it.
+        If a row is near a singularity, up to MORE_MOVES more parts are tried. The condition is
+        None if a division avoids the singularity.
         """
         subdivisions = [
             [start + (end - start) * (k / count) for k in range(1, count)]
@@ -164,14 +168,14 @@ class RapidWays:
         return subdivisions[0], lowest_conditions[0]
 
     def _moves(self, k: int, rapid: Way) -> Moves:
-        """Return the moves of rapid k as they are checked."""
+        """Return the moves of rapid k for the collision check."""
         joints = rapid.joints if rapid.start is None else np.vstack([rapid.start, rapid.joints])
         return Moves(
             joints[:-1], joints[1:], np.full(max(len(joints) - 1, 0), self.rows[k], dtype=np.intp)
         )
 
     def _find_collisions(self, numbers: Sequence[int], rapids: Sequence[Way]) -> list[int]:
-        """Return the rapids among `numbers` that meet an obstacle."""
+        """Return which rapids of `numbers` hit an obstacle."""
         moves = [self._moves(k, rapid) for k, rapid in zip(numbers, rapids)]
         if not moves:
             return []
@@ -183,7 +187,7 @@ class RapidWays:
         return [numbers[k] for k in np.unique(number[met]).tolist()]
 
     def _clear_moves(self, moves: Moves) -> Mask:
-        """(k,) whether nothing is met on moves."""
+        """Return which moves (k,) are free of contact."""
         met = self.obstacles.find_collisions(moves)
         if self.cell.part_moves or self.cell.shapes.external_links:
             met |= nozzle_obstacles.find_contacts(self.cell, moves.start, moves.end).any(axis=0)
@@ -194,11 +198,14 @@ class RapidWays:
         return ~met
 
     def _clear(self) -> tuple[list[int], set[int]]:
-        """Finds other ways where something is met, higher or aside; the ways that this leaves, and those beyond help."""
+        """Replace rapids that hit an obstacle by higher or sideways retracts.
+
+        Return the rapids that still hit an obstacle, and those that no retract can clear.
+        """
         sound = self.retracts.sound
         candidates = [k for k in range(len(self.ways)) if sound[self.ends(k)].all()]
         met = self._find_collisions(candidates, [self.ways[k] for k in candidates])
-        # where a link is too near at the very end of a bead, no way off or onto it helps
+        # if a link is too close at the bead end itself, no retract or approach helps
         hopeless = self._standing_too_near(met)
         met = [k for k in met if k not in hopeless]
         for attempt in self.attempts:
@@ -208,7 +215,7 @@ class RapidWays:
         return list(met), hopeless
 
     def _lead_round(self, met: Sequence[int]) -> list[int]:
-        """Lead rapids around their obstacles; return the rapids without a detour."""
+        """Find detours around the obstacles; return the rapids without a detour."""
         unsolved = []
         for k in met:
             ends = (
@@ -229,9 +236,7 @@ class RapidWays:
         return unsolved
 
     def _standing_too_near(self, numbers: Sequence[int]) -> set[int]:
-        """Return the rapids among `numbers` that start or end on a bead with a link of the arm too near to an
-        obstacle.
-        """
+        """Return which rapids of `numbers` start or end with a link too close to an obstacle."""
         if self.arm is None or not numbers:
             return set()
         ends = [(k, self.beads[k - 1].joints[-1]) for k in numbers if k > 0]
@@ -242,8 +247,8 @@ class RapidWays:
         return {k for (k, _), is_near in zip(ends, touches.any) if is_near}
 
     def _retry_with(self, met: Sequence[int], attempt: Attempt) -> list[int]:
-        """Takes an attempt for the ways where nothing is met with it; the others."""
-        # without a retract distance the machine stays where the last bead ends
+        """Use an attempt for the rapids that it clears; return the other rapids."""
+        # without a retract distance, the machine stays at the end of the last bead
         candidates = [k for k in met if self.retract > 0.0 or k < len(self.beads)]
         ends = np.array(sorted({end for k in candidates for end in self.ends(k)}), dtype=np.intp)
         legs_found, _ = self.retracts.find_legs(
@@ -269,7 +274,7 @@ class RapidWays:
         return [k for k in met if k not in attempts_by_number or k in still]
 
     def place(self, k: int) -> BeadPath:
-        """Return the bead to which issues of rapid k refer: its target, or the last one."""
+        """Return the bead that issues of rapid k refer to: the next bead, or the last one."""
         return self.beads[min(k, len(self.beads) - 1)]
 
     def reasons(self, k: int) -> list[str]:
@@ -287,7 +292,7 @@ class RapidWays:
         return names
 
     def arm_issue(self, k: int) -> Issue | None:
-        """Report the obstacle that a link gets too close to on rapid k, if any."""
+        """Return an issue if a link gets too close to an obstacle on rapid k."""
         if self.arm is None:
             return None
         _, touched = check_moves(self.arm, *self._moves(k, self.ways[k]))
@@ -310,8 +315,8 @@ def findings(rapids: RapidWays) -> tuple[Issue, ...]:
     Returns
     -------
     tuple of Issue
-        An error for each bead that cannot be reached or left, and notes about rapids that
-        replace the requested ones.
+        An error for each bead with an infeasible rapid, and notes about rapids that replace
+        the requested ones.
     """
     met: list[Issue] = []
     for k in rapids.met:
@@ -324,7 +329,7 @@ def findings(rapids: RapidWays) -> tuple[Issue, ...]:
 
 
 def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
-    """Return the error of a bead on whose rapid the nozzle would meet the obstacles `names`."""
+    """Return the error of a bead on whose rapid the nozzle would hit the obstacles `names`."""
     return Issue(
         ERROR,
         "RAPID_COLLISION",
@@ -340,7 +345,7 @@ def _collision(names: Sequence[str], layer: int, bead: int) -> Issue:
 
 
 def _failures(rapids: RapidWays) -> list[Issue]:
-    """One issue for each bead, for its first reason."""
+    """Return one issue per bead, for its first failure."""
     first_issues: dict[tuple[int, int], Issue] = {}
     failed = [(rapids.beads[end // 2], failure) for end, failure in sorted(rapids.failures.items())]
     failed += [
@@ -356,7 +361,7 @@ def _failures(rapids: RapidWays) -> list[Issue]:
 def _failed(failure: Failure, path: BeadPath, cell: Cell) -> Issue:
     limits, machine = cell.limits, cell.machine
     if failure.kind == LIMIT:
-        # what couples axes couples turning ones
+        # coupled limits involve revolute axes only
         alone = failure.label < limits.axes
         unit, per = (
             (machine.units[failure.label], float(machine.unit_values[failure.label]))
@@ -390,7 +395,7 @@ def _failed(failure: Failure, path: BeadPath, cell: Cell) -> Issue:
 
 
 def _raised(rapids: RapidWays) -> list[Issue]:
-    """Notes about other ways taken because something was met."""
+    """Return notes about rapids that were changed for clearance."""
     raised, aside, highest = [], [], 0.0
     for k in sorted(rapids.raised):
         legs = [leg for end in rapids.ends(k) if (leg := rapids.legs[end]) is not None]
@@ -446,7 +451,7 @@ def _raised(rapids: RapidWays) -> list[Issue]:
 
 
 def _others(rapids: RapidWays) -> list[Issue]:
-    """Return a note about other rapids, taken because the machine cannot do the requested ones."""
+    """Return a note about rapids that replace infeasible retracts."""
     cleared = {end for k in (*rapids.raised, *rapids.led.ways) for end in rapids.ends(k)}
     changed_legs: list[tuple[int, Leg]] = [
         (end, leg)

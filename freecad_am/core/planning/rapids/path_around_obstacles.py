@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A path from one position to another in the joints, around obstacles, by sampling.
+"""Path planning around obstacles in joint space, by sampling.
 
-Two trees of clear moves grow towards the same samples, one from each end, until a clear move joins
-them (RRT-Connect, after Kuffner and LaValle 2000); here they grow by many samples at once. The
-joined path is then shortened: the clear moves between its points that take the least time are kept,
-and these points are pulled towards each other as far as the path stays clear. The samples are
-always the same, without randomness, so that the same job has the same rapids.
+Two trees of clear moves grow from both ends towards the same samples until a clear move joins them
+(RRT-Connect, after Kuffner and LaValle 2000). Here they grow by many samples at once. The joined
+path is then shortened: the fastest sequence of clear moves between its points is kept, and these
+points are pulled towards their neighbours as far as the path stays clear. The samples are
+deterministic, so the same job always has the same rapids.
 """
 
 from __future__ import annotations
@@ -25,20 +25,23 @@ from ...types import Array, Index, Mask
 from .clearance import Moves
 from .retracts import DIRECTIONS, STRAY_MM, Leg, Retracts
 
-# how many times the retract distance is tried where the nozzle would meet something, and further, beyond everything there is
+# multiples of the retract distance to try; then each height is extended until it clears everything
 RETRACT_FACTORS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
 EXTENSION_FACTOR = 1.5
-# of a retract distance of nothing, mm
+# mm; first retract distance to try if the requested distance is 0
 FIRST_RETRACT = 2.0
-# how near to the straight line a retract is held that meets something on its way, mm
+# mm; maximum deviation from the straight line for a retract that hits an obstacle on its way
 FINE_MM = 0.02
-# retract distances in directions other than the tool axis, as shares of the one asked for
+# retract distances in other directions than the tool axis, relative to the requested distance
 SIDE_SHARES = (1.0, 4.0)
 
 
 @dataclass(frozen=True)
 class Attempt:
-    """Height (mm) and direction of a retract, and how near (mm) it is held to the line."""
+    """A retract to try.
+
+    height: mm. direction: index. tolerance: maximum deviation from the straight line, mm.
+    """
 
     height: float
     direction: int = 0
@@ -50,14 +53,14 @@ def attempts(
 ) -> list[Attempt]:
     """Return the retracts to try after the requested one.
 
-    Heights grow up to where the nozzle is beyond the sphere about all obstacles.
+    Heights increase until the nozzle is outside the sphere around all obstacles.
 
     Parameters
     ----------
     cell : Cell
-        The cell, with the platform.
+        The cell, including the platform.
     retract : float
-        Requested height, mm; 0 for none.
+        Requested height, mm; 0 for no retract.
     beads : sequence of Bead
         The beads, part coordinates.
     bodies : sequence of Body
@@ -75,7 +78,7 @@ def attempts(
     points = np.vstack(
         [*(bead.points for bead in beads), platform, *(body.vertices for body in all_)]
     )
-    # from any inside point, a move by the diameter in any direction leads outside
+    # from any point inside, moving by the diameter in any direction leads outside
     furthest = float(np.linalg.norm(points.max(axis=0) - points.min(axis=0)))
     base = retract or FIRST_RETRACT
     heights = [*([] if retract else [base]), *(factor * base for factor in RETRACT_FACTORS)]
@@ -90,28 +93,28 @@ def attempts(
 
 Free = Callable[
     [Array, Array], Mask
-]  # (k,) whether moves straight in the joints from (k, axes) to (k, axes) are clear
-Fits = Callable[[Array], Mask]  # (k,) whether joints (k, axes) are allowed
+]  # whether joint moves (k,) from (k, axes) to (k, axes) are clear
+Fits = Callable[[Array], Mask]  # whether joints (k, axes) are allowed, (k,)
 
-BATCH, ROUNDS = 32, 30  # samples that trees grow by at once, and how often
+BATCH, ROUNDS = 32, 30  # samples per growth step, and number of growth steps
 FULL_RANGE_ROUND = (
-    10  # rounds until samples are of the whole ranges; the first are of a part next to both ends
+    10  # growth steps until samples cover the full ranges; the first samples lie near both ends
 )
-STEP = 0.2  # longest move that a tree grows by, as a share of the ranges
-SHORTENED = 4  # times that a way is made shorter
-PULLS = np.array([0.0, 0.03, 0.1, 0.3])  # of the way from a place to halfway between its neighbours
+STEP = 0.2  # maximum length of a growth move, fraction of the ranges
+SHORTENED = 4  # number of shortening passes
+PULLS = np.array([0.0, 0.03, 0.1, 0.3])  # fractions of the way to the midpoint of the neighbours
 
 
 @dataclass(frozen=True, eq=False)
 class Ranges:
-    """The search space of the joints: low, high (axes,), and the largest speed of each axis."""
+    """The search space of the joints: low, high (axes,), and the maximum speed of each axis."""
 
     low: Array
     high: Array
     speed: Array
 
     def lasts(self, start: Array, end: Array) -> Array:
-        """Return the time that moves take, by the slowest axis.
+        """Return the duration of moves, limited by the slowest axis.
 
         Parameters
         ----------
@@ -121,32 +124,34 @@ class Ranges:
         Returns
         -------
         (...) array
-            Times, s.
+            Durations, s.
         """
         seconds: Array = (np.abs(end - start) / self.speed).max(axis=-1)
         return seconds
 
 
 class _Tree:
-    """A tree of joint positions (n, axes), each reached from its parent (n,) by a clear move, in a
-    total of `lasts` (n,) s.
+    """A tree of joint positions that clear moves connect.
+
+    place: (n, axes). parent: (n,) index of the previous position. lasts: (n,) duration from the
+    root, s.
     """
 
     def __init__(self, root: Array) -> None:
         self.place, self.parent, self.lasts = root[None], np.array([-1]), np.zeros(1)
 
     def nearest(self, ranges: Ranges, position: Array) -> Index:
-        """Return the indices (k,) of the nodes nearest to the positions (k, axes)."""
+        """Return the indices (k,) of the nodes nearest to positions (k, axes)."""
         return np.asarray(ranges.lasts(self.place[None], position[:, None]).argmin(axis=1))
 
     def add_nodes(self, position: Array, parent: Index, lasts: Array) -> None:
-        """Add positions that moves of `lasts` s lead to from their parents."""
+        """Add positions, each with the duration `lasts` (s) of the move from its parent."""
         self.place = np.concatenate([self.place, position])
         self.lasts = np.concatenate([self.lasts, self.lasts[parent] + lasts])
         self.parent = np.concatenate([self.parent, parent])
 
     def back(self, number: int) -> list[Array]:
-        """The places from one of its own to the first."""
+        """Return the positions from a node back to the root."""
         route = []
         while number >= 0:
             route.append(self.place[number])
@@ -155,23 +160,23 @@ class _Tree:
 
 
 def way_round(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) -> Array | None:
-    """Find a clear path between two positions in the joints.
+    """Find a clear path between two joint positions.
 
     Parameters
     ----------
     start, end : (axes,) array
-        The positions, rad or mm.
+        Joint positions, rad or mm.
     ranges : Ranges
-        The search space and the axis speeds.
+        Search space and axis speeds.
     free : Free
-        Returns whether moves between rows of joints are clear.
+        Returns whether moves between joint positions are clear.
     fits : Fits
-        Returns whether positions keep limits and condition.
+        Returns whether joint positions keep limits and condition.
 
     Returns
     -------
     (m, axes) array or None
-        The positions in between; None if the search fails.
+        Intermediate positions; None if the search fails.
     """
     route = _connect(start, end, ranges, free, fits)
     if route is None:
@@ -184,7 +189,7 @@ def way_round(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) 
 
 
 def _connect(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) -> Array | None:
-    """Places (m, axes) from the start to the end that clear moves join, both among them."""
+    """Return positions (m, axes) of a clear path, both ends included; None if there is none."""
     if free(start[None], end[None])[0]:
         return np.stack([start, end])
     trees = _Tree(start), _Tree(end)
@@ -205,7 +210,7 @@ def _connect(start: Array, end: Array, ranges: Ranges, free: Free, fits: Fits) -
 
 
 def _grow(tree: _Tree, samples: Array, ranges: Ranges, free: Free, fits: Fits) -> Index:
-    """Grows a tree towards samples; the numbers of the places added."""
+    """Grow a tree towards samples; return the indices of the added nodes."""
     parent = tree.nearest(ranges, samples)
     offset = samples - tree.place[parent]
     share = (np.abs(offset) / np.maximum(ranges.high - ranges.low, 1e-9)).max(axis=1)
@@ -220,7 +225,10 @@ def _grow(tree: _Tree, samples: Array, ranges: Ranges, free: Free, fits: Fits) -
 def _find_meeting(
     tree: _Tree, opposite: _Tree, added: Index, ranges: Ranges, free: Free
 ) -> tuple[int, int] | None:
-    """The numbers of a place added to one tree and of one of the other that a clear move joins, by which it is soonest."""
+    """Return the node of each tree where a clear move joins the trees with the shortest duration.
+
+    Only nodes `added` to the first tree are considered. None if no move is clear.
+    """
     if not len(added):
         return None
     nearest = opposite.nearest(ranges, tree.place[added])
@@ -237,8 +245,10 @@ def _find_meeting(
 
 
 def _shortest(route: Array, ranges: Ranges, free: Free) -> Array:
-    """The soonest way by some of the places (m, axes) of one, the first and the last among them; moves from each to the next
-    are clear."""
+    """Return the fastest clear path through a subset of the positions (m, axes) of a clear path.
+
+    The first and last position stay.
+    """
     count = len(route)
     start_rows, end_rows = np.triu_indices(count, 1)
     clear = end_rows == start_rows + 1
@@ -260,8 +270,9 @@ def _shortest(route: Array, ranges: Ranges, free: Free) -> Array:
 
 
 def _shorten_by_pulling(route: Array, ranges: Ranges, free: Free, fits: Fits) -> Array:
-    """Return a path (m, axes) with each inner point at its position or pulled towards halfway between its
-    neighbours, so that it takes the least time; its moves are clear.
+    """Pull inner positions of a path (m, axes) towards the midpoint of their neighbours.
+
+    Each position moves or stays so that the duration is minimal and all moves stay clear.
     """
     inner, halfway = route[1:-1], 0.5 * (route[:-2] + route[2:])
     pulled = inner[:, None] + PULLS[:, None] * (halfway - inner)[:, None]
@@ -291,12 +302,13 @@ def _shorten_by_pulling(route: Array, ranges: Ranges, free: Free, fits: Fits) ->
     return np.array(pulled_route[::-1])
 
 
-# rad; largest turn of a continuous axis in one rapid move: such an axis takes the shorter way, so
-# half a turn is ambiguous
+# rad; maximum rotation of a continuous axis in one rapid: such an axis takes the shorter way, which
+# is ambiguous at half a turn
 LARGEST_TURN = np.radians(170.0)
-# rapids without a detour after which the search stops: it takes seconds, and the job is infeasible
+# failed searches before the search for detours stops: a search takes seconds, and the job is
+# infeasible
 MAX_FAILED_DETOURS = 3
-KNOWN = 8  # ways found before that are tried first
+KNOWN = 8  # number of earlier detours to try first
 
 Legs = dict[int, Leg | None]
 
@@ -304,8 +316,8 @@ Legs = dict[int, Leg | None]
 class LedRound:
     """Finds detours around obstacles.
 
-    The argument `clear` returns whether moves are free of contact. The attribute `ways` holds the
-    numbers of the rapids with a detour.
+    The argument `clear` returns whether moves are free of contact. The attribute `ways` lists the
+    rapids with a detour.
     """
 
     def __init__(self, cell: Cell, retracts: Retracts, clear: Callable[[Moves], Mask]) -> None:
@@ -314,7 +326,7 @@ class LedRound:
         self._lost = 0
         self._known: list[
             Array
-        ] = []  # places of the last ways found, there and back: the next one often leads the same way
+        ] = []  # positions of the last detours, in both directions, because detours often repeat
 
     def find_detour(
         self,
@@ -328,24 +340,24 @@ class LedRound:
         Parameters
         ----------
         ends : mapping of int to Array
-            Joints (axes,) at the ends of the beads, by number of the end.
+            Joints (axes,) at the bead ends, by end index.
         legs : Mapping[int, Leg or None]
-            Legs tried before, by number of the end; None without one.
+            Legs tried before, by end index; None without a leg.
         attempts : sequence of Attempt
             Retracts to try.
         deposited : int
-            Number of printed points.
+            Number of points printed before.
 
         Returns
         -------
         legs : dict
-            Leg or None by number of the end.
+            Leg or None, by end index.
         via_points : (m, axes) array
-            Positions between the legs.
+            Joint positions between the legs.
 
         Notes
         -----
-        None is returned in place of both if the search fails, or failed too often before.
+        The result is None if the search fails, or if it has failed too often before.
         """
         if not ends or self._lost >= MAX_FAILED_DETOURS:
             return None
@@ -375,9 +387,9 @@ class LedRound:
         attempts: Sequence[Attempt],
         deposited: int,
     ) -> tuple[Leg | None, Array] | None:
-        """Return a clear leg off the end of a bead and its far joints; None without one.
+        """Return a clear leg from a bead end and its far joints; None if there is none.
 
-        The leg is None if the end needs none.
+        The leg is None if the end needs no leg.
         """
         if tried_leg is None and self._clear(joints[None], joints[None], deposited)[0]:
             return None, joints
@@ -390,7 +402,7 @@ class LedRound:
     def _others(
         self, end: int, tried_leg: Leg | None, attempts: Sequence[Attempt]
     ) -> Iterator[Leg]:
-        """Yield the leg tried before, then those of every attempt."""
+        """Yield the leg tried before, then the legs of all attempts."""
         if tried_leg is not None:
             yield tried_leg
         for attempt in attempts:
@@ -405,7 +417,7 @@ class LedRound:
                 yield legs[0]
 
     def _between(self, start: Array, goal: Array, deposited: int) -> Array | None:
-        """The places of a way round."""
+        """Return the intermediate positions of a detour; None if there is none."""
         for via_points in self._known:
             route = np.vstack([start, via_points, goal])
             if self._clear(route[:-1], route[1:], deposited).all():
@@ -419,7 +431,7 @@ class LedRound:
         )
 
     def _clear(self, start: Array, end: Array, deposited: int) -> Mask:
-        """(k,) whether moves can be driven, and meet nothing."""
+        """Return which moves (k,) are possible and clear."""
         continuous = self.cell.limits.continuous
         short: Mask = (np.abs(end - start)[:, continuous] <= LARGEST_TURN).all(axis=1)
         rows = np.flatnonzero(short)
@@ -431,8 +443,8 @@ class LedRound:
     def _ranges(self, start: Array, goal: Array) -> Ranges:
         """Return the ranges of the axes between start and goal.
 
-        Robot axes may use their limits, continuous axes half a turn beyond both ends, and external
-        axes only the range between both ends.
+        Robot axes may use their full limits, continuous axes half a turn beyond start and goal, and
+        external axes only the range between them.
         """
         limits, robot_axes = self.cell.limits, self.cell.robot.chain.axes
         lowest, highest = np.minimum(start, goal), np.maximum(start, goal)
@@ -443,7 +455,7 @@ class LedRound:
         return Ranges(low, high, self.cell.machine.max_speed)
 
     def _fits(self, joints: Array) -> Mask:
-        """(k,) whether joints keep limits and condition, and are of the configuration of the beads."""
+        """Return which joints (k,) keep limits, condition and the configuration of the beads."""
         fits = self.retracts.fits(joints[:, None], self.retracts.reserve_of_limits(RESERVE))
         arm, branch = self.cell.robot.arm, self.retracts.branch
         rows = np.flatnonzero(fits)

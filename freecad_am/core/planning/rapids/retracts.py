@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Feasible retracts from the ends of beads: within limits and reach, and clear of singularities.
 
-A retract leads straight from the end of a bead to the retract distance along the tool axis; an
-approach leads back the same way. The machine interpolates joints, so rows are added where its path
-would deviate from the line by more than a tolerance. If the requested retract is infeasible, others
-are tried in a fixed order: other heights, other directions, other rotations about the tool axis and
-other tool axes at the far end.
+A retract leads straight from the end of a bead to the retract distance along the tool axis. An
+approach is the reverse. The machine interpolates joints, so rows are added where its path would
+deviate from the line by more than a tolerance. If the requested retract is infeasible, alternatives
+are tried in a fixed order: other heights, directions, rotations about the tool axis and tilts of
+the tool axis at the far end.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _TURNS = tuple(
     for turn in (5, 15, 30, 60, 90, 120, 180, 240, 360)
     for sign in (1, -1)
 )
-# by how much the tool axis leans at the far end, rad, and towards how many sides
+# tilts of the tool axis at the far end, and number of sides that it tilts to
 LEANS_RAD = (0.0, math.radians(5.0), math.radians(15.0))
 SIDES = 8
 _LEANS = tuple(range(1, 1 + SIDES * (len(LEANS_RAD) - 1)))
@@ -48,9 +48,9 @@ _LEANS = tuple(range(1, 1 + SIDES * (len(LEANS_RAD) - 1)))
 class Choice(NamedTuple):
     """A retract from a bead, relative to the requested one.
 
-    share: of the requested height. direction: index of the direction. turn: rad about the tool axis
-    on the way. lean: index of the added tilt of the tool axis: none, then SIDES tilts for each
-    angle.
+    share: fraction of the requested height. direction: index of the direction. turn: rotation about
+    the tool axis on the way, rad. lean: index of the added tilt: 0 for none, then SIDES tilts for
+    each angle.
     """
 
     share: float = 1.0
@@ -63,19 +63,19 @@ DEFAULT_CHOICE = Choice()
 
 
 def groups(direction: int, thorough: bool) -> tuple[tuple[Choice, ...], ...]:
-    """Return the retracts to try in their order of preference.
+    """Return the retracts to try, in order of preference.
 
     Parameters
     ----------
     direction : int
         Index of the requested direction.
     thorough : bool
-        Whether other heights and directions are allowed, not only rotations and tilts.
+        Whether to try other heights and directions, not only rotations and tilts.
 
     Returns
     -------
     tuple[tuple[Choice, ...], ...]
-        Groups of retracts that are checked together.
+        Groups of retracts; each group is checked at once.
     """
     if not thorough:
         return (
@@ -112,10 +112,10 @@ def groups(direction: int, thorough: bool) -> tuple[tuple[Choice, ...], ...]:
 
 
 class Ways(NamedTuple):
-    """Retracts from ends of beads: end numbers (k,), heights (k,) mm, directions (k, 3), turns (k,)
-    rad and tilts (k, 3).
+    """Retracts from bead ends.
 
-    A tilt is a vector that is added to the tool axis at the far end.
+    end: (k,) end indices. height: (k,) mm. direction: (k, 3). turn: (k,) rotation about the tool
+    axis, rad. lean: (k, 3) vectors added to the tool axes at the far end.
     """
 
     end: Index
@@ -125,16 +125,16 @@ class Ways(NamedTuple):
     lean: Array
 
     def of(self, rows: Index) -> Ways:
-        """Return the retracts of the rows."""
+        """Return selected retracts."""
         return Ways(*(column[rows] for column in self))  # type: ignore[arg-type]
 
 
 @dataclass(frozen=True, eq=False)
 class Leg:
-    """A retract from a bead within the machine's limits.
+    """A feasible retract from a bead.
 
     joints: (m, axes) at the ends of its moves, outwards, unwrapped from the bead. position: (m, 3)
-    mm, the tip there. height: mm. choice: its difference from the requested retract.
+    tip positions there, mm. height: mm. choice: difference from the requested retract.
     """
 
     joints: Array
@@ -145,10 +145,10 @@ class Leg:
 
 @dataclass(frozen=True)
 class Failure:
-    """The reason why the requested retract is impossible: LIMIT, UNREACHABLE or SINGULAR.
+    """The reason why the requested retract is infeasible.
 
-    label: index of the limit among the labels of the limits. value, bound: of the limit, rad or mm,
-    or of the condition.
+    kind: LIMIT, UNREACHABLE or SINGULAR. label: index of the limit in `Limits.labels`. value,
+    bound: axis value and its limit, rad or mm, or condition and its minimum.
     """
 
     kind: str
@@ -161,7 +161,8 @@ class Failure:
 class Ends:
     """The first (even) and last (odd) points of all beads, n = twice the bead count.
 
-    Holds points, directions, rotations (n,) rad and joints (n, axes).
+    point, tool, build: (n, 3) points, tool axes and build directions. phi: (n,) rotations, rad.
+    joints: (n, axes).
     """
 
     point: Array
@@ -172,7 +173,7 @@ class Ends:
 
     @classmethod
     def of(cls, beads: Sequence[BeadPath]) -> Ends:
-        """The ends of the beads of a joint path."""
+        """Return the ends of all beads of a joint path."""
         both_ends = [0, -1]
         return cls(
             np.concatenate([path.bead.points[both_ends] for path in beads]),
@@ -183,25 +184,24 @@ class Ends:
         )
 
 
-# maximum deviation of the tip from the straight path, mm: a twentieth of the usual distance to a
-# wall
+# maximum deviation of the tip from the straight path, mm: 1/20 of the usual distance to a wall
 STRAY_MM = 0.5
-# maximum number of moves in a retract, and maximum turn about the tool axis in one move, rad
+# maximum number of moves in a retract, and maximum rotation about the tool axis per move, rad
 MOST_MOVES = 64
 MOVE_TURN_RAD = math.radians(60.0)
 BETWEEN = np.array([0.25, 0.5, 0.75])
-# rad; loss by a program's last digit: the requested retract keeps this distance to limits, all
-# others keep RESERVE
+# distance to limits, rad, that the requested retract keeps: rounding to the last digit of a
+# program loses this much; alternatives keep RESERVE
 LAST_DIGIT_RAD = math.radians(0.001)
 ROUNDING_RAD = 1e-9
-# a direction must lead away from the bead: least cosine of its angle to the tool axis
+# a direction must lead away from the bead: minimum cosine of its angle to the tool axis
 AWAY = 0.2
 SAME_DIRECTION = 1e-6
 
 
 @dataclass(frozen=True)
 class Retracts:
-    """Finds retracts from the ends of beads. branch: of the robot, None for a five-axis machine."""
+    """Finds retracts from bead ends. branch: of the robot; None for a five-axis machine."""
 
     cell: Cell
     ends: Ends
@@ -210,16 +210,16 @@ class Retracts:
 
     @cached_property
     def directions(self) -> Array:
-        """Return the possible directions of retracts.
+        """Return the candidate directions of retracts.
 
-        These are tool axis, build direction, platform normal, halfway between two of the
-        former, and from the tool axis to four sides.
+        These are the tool axis, the build direction, the platform normal, the bisectors of each
+        pair of them, and the tool axis tilted to four sides.
 
         Returns
         -------
         (10, n, 3) array
-            Unit vectors in the part frame; NaN for a direction that leads back to the
-            bead or repeats an earlier one.
+            Unit vectors in the part frame; NaN for a direction that leads back to the bead or
+            equals an earlier direction.
         """
         tool, build = self.ends.tool, self.ends.build
         normal = np.broadcast_to(self.cell.poses.mount[:3, 2], tool.shape)
@@ -239,23 +239,23 @@ class Retracts:
 
     @cached_property
     def _across(self) -> tuple[Array, Array]:
-        """(n, 3) unit vectors across the tool axes, one that the platform gives and one across both."""
+        """Two unit vectors (n, 3) normal to each tool axis; the platform defines the first."""
         tool = self.ends.tool
         x, y = self.cell.poses.mount[:3, 0], self.cell.poses.mount[:3, 1]
-        # where two choices are as good, rounding must not choose
+        # a threshold away from a tie, so that rounding does not decide
         across = np.cross(tool, np.where((np.abs(tool @ x) < 0.8)[:, None], x, y))
         across /= np.linalg.norm(across, axis=1, keepdims=True)
         return across, np.cross(tool, across)
 
     def _sides(self, angle: float) -> Array:
-        """Return unit vectors (n, 3) across the tool axes, at an angle (rad) about them from the first side."""
+        """Return unit vectors (n, 3) normal to the tool axes, at `angle` (rad) to the first one."""
         across, across_both = self._across
         side: Array = math.cos(angle) * across + math.sin(angle) * across_both
         return side
 
     @cached_property
     def leaning(self) -> Array:
-        """Return the tilts of the tool axis at the far end of a retract.
+        """Return the candidate tilts of the tool axis at the far end of a retract.
 
         Returns
         -------
@@ -269,8 +269,9 @@ class Retracts:
 
     @cached_property
     def sound(self) -> Mask:
-        """(n,) whether the end itself is within reach and limits; otherwise the bead has an issue
-        already.
+        """(n,) whether the bead end is within reach and limits.
+
+        Otherwise the bead has an issue already.
         """
         reachable = np.flatnonzero(np.isfinite(self.ends.joints).all(axis=1))
         sound = np.zeros(len(self.ends.phi), dtype=bool)
@@ -281,7 +282,7 @@ class Retracts:
 
     @cached_property
     def floor(self) -> float:
-        """The least condition of a way's rows."""
+        """The minimum condition on rapids."""
         requested = self.parameters.min_condition
         return CONDITION_FLOOR if isinstance(requested, str) else float(requested)
 
@@ -293,34 +294,33 @@ class Retracts:
         tolerance: float = STRAY_MM,
         thorough: bool = True,
     ) -> tuple[list[Leg | None], list[Failure | None]]:
-        """Return the legs off ends of beads along a direction.
+        """Return the legs from bead ends along a direction.
 
-        A leg that is not possible is replaced by the nearest alternative.
+        An infeasible leg is replaced by the nearest alternative.
 
         Parameters
         ----------
         end_numbers : (k,) int array
-            The ends.
+            Indices of the bead ends.
         height : (k,) array
             Requested heights, mm.
         direction : int, optional
-            Index among `directions`.
+            Index in `directions`.
         tolerance : float, optional
-            Largest deviation of the tip from the straight line, mm.
+            Maximum deviation of the tip from the straight line, mm.
         thorough : bool, optional
-            Whether all alternatives are tried; otherwise only other rotations and
-            tilts.
+            Whether to try all alternatives; otherwise only rotations and tilts.
 
         Returns
         -------
         legs : list of Leg or None
-            None if no alternative is possible.
+            None if no alternative is feasible.
         failures : list of Failure or None
-            Reason why the requested leg is impossible; None if it is possible.
+            Reason why the requested leg is infeasible; None if it is feasible.
         """
         legs: list[Leg | None] = [None] * len(end_numbers)
         failures: list[Failure | None] = [None] * len(end_numbers)
-        # the requested retract is kept wherever it is feasible
+        # use the requested retract wherever it is feasible
         is_default = True
         for reserve in (RESERVE, LAST_DIGIT_RAD) if thorough else (RESERVE,):
             for group in groups(direction, thorough):
@@ -346,19 +346,19 @@ class Retracts:
         return legs, failures
 
     def asked(self, end_numbers: Index, height: Array) -> list[Leg]:
-        """Return the requested retracts, possible or not.
+        """Return the requested retracts, feasible or not.
 
         Parameters
         ----------
         end_numbers : (k,) array of int
-            Numbers of the ends of beads.
+            Indices of the bead ends.
         height : (k,) array
-            Heights of the retracts, mm.
+            Retract heights, mm.
 
         Returns
         -------
         list of Leg
-            Their joints are NaN out of reach.
+            Retracts; joints are NaN out of reach.
         """
         joints, position = self._courses(self._ways(end_numbers, height, (DEFAULT_CHOICE,)), 1)
         return [
@@ -374,7 +374,7 @@ class Retracts:
         tolerance: float,
         reserved: Array,
     ) -> list[Leg | None]:
-        """The first way of the group that fits, of each end."""
+        """Return the first feasible retract of a group for each end."""
         count = len(group)
         candidates = self._ways(end_numbers, height, group)
         legs: list[Leg | None] = [None] * len(end_numbers)
@@ -382,7 +382,7 @@ class Retracts:
         pending = np.flatnonzero(self._possible(candidates))
         moves = 1
         while len(pending) and moves <= MOST_MOVES:
-            # a retract is checked only until it fails, and none after the first that serves
+            # refine a retract until it fails; skip retracts that rank below a feasible one
             ready = pending[(np.abs(candidates.turn[pending]) <= MOVE_TURN_RAD * moves)]
             pending = pending[np.abs(candidates.turn[pending]) > MOVE_TURN_RAD * moves]
             joints, position = self._courses(candidates.of(ready), moves)
@@ -402,7 +402,7 @@ class Retracts:
         return legs
 
     def _ways(self, end_numbers: Index, height: Array, group: Sequence[Choice]) -> Ways:
-        """Return all retracts of a group for all ends, grouped by end."""
+        """Return all retracts of a group for all ends, in order of ends."""
         count = len(group)
         end = np.repeat(end_numbers, count)
         column = {
@@ -418,8 +418,9 @@ class Retracts:
         )
 
     def _possible(self, candidates: Ways) -> Mask:
-        """Return which retracts lead away and keep the range of the tool rotation; five-axis
-        machines have none.
+        """Return which retracts lead away from the bead and keep the rotation range.
+
+        A five-axis machine cannot rotate or tilt the tool.
         """
         turned = (candidates.turn != 0.0) | (candidates.lean != 0.0).any(axis=1)
         possible: Mask = np.isfinite(candidates.direction).all(axis=1)
@@ -432,8 +433,9 @@ class Retracts:
         return np.asarray(possible & (~turned | (phi >= low) & (phi <= high)))
 
     def _courses(self, candidates: Ways, moves: int) -> tuple[Array, Array]:
-        """Return joints (k, moves, axes) at the ends of `moves` equal moves, each in the turns of the previous
-        one, and the tip there (k, moves, 3); joints NaN out of reach.
+        """Return the joints and tip positions at the ends of `moves` equal moves.
+
+        joints: (k, moves, axes), unwrapped, NaN out of reach. tip: (k, moves, 3), mm.
         """
         share = np.arange(1, moves + 1) / moves
         point, tool, joints = (
@@ -476,7 +478,7 @@ class Retracts:
         return raw + TURN * np.cumsum(np.round((previous - raw) / TURN), axis=1), tip
 
     def _stray(self, candidates: Ways, joints: Array) -> Array:
-        """Return the distance (k,) of the tip from the straight path on straight joint moves, mm."""
+        """Return the maximum deviation (k,) of the tip from the straight path, mm."""
         course = np.concatenate([self.ends.joints[candidates.end, None], joints], axis=1)
         between = course[:, :-1, None] + BETWEEN[:, None] * np.diff(course, axis=1)[:, :, None]
         chain = self.cell.machine.chain
@@ -494,19 +496,19 @@ class Retracts:
         return deviation
 
     def fits(self, joints: Array, reserved: Array) -> Mask:
-        """Return which retracts are reachable and keep reserve and condition in all rows.
+        """Return which retracts keep reach, limits, reserve and condition in all rows.
 
         Parameters
         ----------
         joints : (k, m, axes) array
             Joint values of the m rows of k retracts, rad or mm.
         reserved : (limits,) array
-            Free distance to keep to every limit, rad.
+            Minimum distance to each limit, rad or mm.
 
         Returns
         -------
         (k,) array of bool
-            False if the condition is below the least one allowed, too.
+            True if all rows are feasible.
         """
         with np.errstate(invalid="ignore"):
             fits: Mask = (self.cell.limits.margin(joints) >= reserved - ROUNDING_RAD).all(
@@ -522,7 +524,7 @@ class Retracts:
         return fits
 
     def condition(self, joints: Array) -> Array:
-        """Return the condition of the robot.
+        """Return the inverse condition number of the robot.
 
         Parameters
         ----------
@@ -532,8 +534,7 @@ class Retracts:
         Returns
         -------
         (n,) array
-            sigma_min / sigma_max as of deposit rows; infinite for a machine without a
-            free coordinate.
+            sigma_min / sigma_max, rounded as for deposit rows; infinite for a five-axis machine.
         """
         if not self.cell.machine.free:
             return np.full(len(joints), np.inf)
@@ -547,7 +548,9 @@ class Retracts:
 
     @cached_property
     def _least(self) -> Array:
-        """(axes + m,) RESERVE, which no way of a sliding axis goes below: text has as many digits of a mm as of a degree."""
+        """(axes + m,) minimum reserve: RESERVE for prismatic axes, because program text has as many
+        decimals for mm as for degrees; 0 for other limits.
+        """
         limits = self.cell.limits
         sliding = np.concatenate(
             [self.cell.machine.chain.sliding, np.zeros(len(limits.coupled_lower), dtype=bool)]
@@ -565,14 +568,14 @@ class Retracts:
         Returns
         -------
         (axes + m,) array
-            The reserve of each limit row, at least the smallest one.
+            The reserve of each limit, at least its minimum.
         """
         return np.maximum(self._least, reserve)
 
     def _explain_failures(
         self, end_numbers: Index, height: Array, direction: int, reserved: Array
     ) -> list[Failure]:
-        """Return the failures of the requested legs."""
+        """Return the reason why each requested leg fails."""
         failures = []
         joints = self._courses(self._ways(end_numbers, height, (Choice(1.0, direction),)), 1)[0][
             :, 0
@@ -586,7 +589,7 @@ class Retracts:
             worst = int(margin.argmin())
             if margin[worst] >= 0.0:
                 value = float(self.condition(row[None])[0])
-                # the path there may be infeasible, not its end
+                # its path may be infeasible even if its end is feasible
                 failures.append(
                     Failure(SINGULAR, 0, value, self.floor)
                     if value < self.floor
@@ -609,5 +612,5 @@ class Retracts:
 
 
 def branch_of(words: Sequence[str]) -> int | None:
-    """The index of a joint path's branch; None of a machine with five axes."""
+    """Return the branch index of a joint path; None for a five-axis machine."""
     return spherical_wrist.branch_index(words) if words else None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Polynomials of the rotation that are given by the user instead of searched; they are judged like any other."""
+"""Rotation polynomials given by the user; they get the same checks as computed ones."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ def coefficients(
     Parameters
     ----------
     parameters : JointParameters
-        The joint parameters with `given`.
+        Joint parameters, including `given`.
     bead_ids : sequence of Place
         Layer and index of each bead.
 
     Returns
     -------
     dict[int, tuple[float, ...]]
-        Coefficients, the constant first, by number of the bead; beads without any are
+        Coefficients in ascending order, by bead index; beads without a given polynomial are
         missing.
     """
     polynomials = {polynomial.bead: polynomial.coefficients for polynomial in parameters.given}
@@ -51,7 +51,7 @@ def paths(
     bead_ids: Sequence[Place],
     fixed: Mapping[int, tuple[float, ...]],
 ) -> dict[int, BeadPath]:
-    """Return the paths that given coefficients make.
+    """Return the paths for given coefficients.
 
     Parameters
     ----------
@@ -62,12 +62,12 @@ def paths(
     bead_ids : sequence of Place
         Layer and index of each bead.
     fixed : Mapping[int, tuple[float, ...]]
-        Coefficients by number of the bead.
+        Coefficients by bead index.
 
     Returns
     -------
     dict[int, BeadPath]
-        Path by number of the bead.
+        Paths by bead index.
     """
     if not fixed:
         return {}
@@ -92,7 +92,7 @@ def paths(
 
 
 def not_used(parameters: JointParameters, bead_ids: Sequence[Place]) -> list[Issue]:
-    """Return a warning for polynomials given for missing beads, or to a method that takes none."""
+    """Return a warning about given polynomials of unknown beads, or if the method ignores them."""
     if parameters.given and parameters.method != METHOD:
         return [
             Issue(

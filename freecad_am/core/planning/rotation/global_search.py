@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The search over the whole range of offset and slope that every layer starts from.
+"""Global search over offset and slope of the rotation, the start of the search for every layer.
 
-A local optimiser with one start loses layers whose feasible rotations are elsewhere. Array
-kinematics makes a full search cheap. It takes few points per bead and checks the limits first. A
-cheap bound of the condition then screens the candidates, and the exact condition is computed only
-for those that the bound leaves open.
+A local optimiser with one start fails on layers whose feasible rotations are elsewhere. Array
+kinematics makes a global search cheap. It uses few points per bead and checks the limits first. A
+cheap bound then screens the candidates by condition. The exact condition is computed only where
+the bound is inconclusive.
 """
 
 from __future__ import annotations
@@ -30,25 +30,25 @@ from .local_optimisation import evaluate_paths
 POINTS_PER_BEAD = 10
 OFFSETS = 24
 SLOPES = np.linspace(-2.0, 2.0, 13)
-# slopes that close a full turn in joint space
+# slopes that rotate the tool by whole turns over a closed bead
 CLOSING_SLOPES = np.array([-2.0, -1.0, 0.0, 1.0, 2.0])
-# of candidates with the same objective the one that moves the joints less is taken
+# weight of the joint motion that breaks ties between candidates with equal objective
 TIE = 1e-6
-# poses handled at once, so that they stay in the processor's cache and a long job does not fill the memory
+# poses per batch: fits the processor cache and bounds the memory of long jobs
 CHUNK = 30_000
-# passes of condition checks; the last one covers all unknown candidates of beads that need more
+# passes of condition checks; the last pass covers all unknown candidates of unfinished beads
 MAX_CONDITION_PASSES = 5
-# sigma_min / sigma_max is between the bound 1 / kappa_F and 6 times the bound: kappa_2 <= kappa_F
-# <= 6 kappa_2
+# bound <= sigma_min / sigma_max <= 6 bound with bound = 1 / kappa_F, since
+# kappa_2 <= kappa_F <= 6 kappa_2
 BOUND_SPREAD = 6.0
 
 
 @dataclass(frozen=True, eq=False)
 class Found:
-    """C candidates per bead: coefficients (C, B, degree + 1), objective and margin (C, B).
+    """C candidates per bead.
 
-    margin is the smallest of the limit and condition margins, negative where one is exceeded, -inf where a point
-    cannot be reached.
+    coefficients: (C, B, degree + 1). objective: (C, B). margin: (C, B) minimum of limit and
+    condition margins, negative if exceeded, -inf if a point is unreachable.
     """
 
     coefficients: Array
@@ -56,7 +56,7 @@ class Found:
     margin: Array
 
     def select_slope(self, slope: float) -> Found:
-        """Return only the candidates of one slope."""
+        """Return the candidates with a given slope."""
         candidate_rows = np.abs(self.coefficients[:, 0, 1] - slope) < 1e-9
         return Found(
             self.coefficients[candidate_rows],
@@ -65,26 +65,29 @@ class Found:
         )
 
     def select_beads(self, beads: Index) -> Found:
-        """Return the candidates of some beads.
+        """Return the candidates of selected beads.
 
         Parameters
         ----------
         beads : (k,) array of int
-            Numbers of the beads.
+            Bead indices.
 
         Returns
         -------
         Found
-            Their candidates.
+            The candidates of these beads.
         """
         return Found(self.coefficients[:, beads], self.objective[:, beads], self.margin[:, beads])
 
     def best(self) -> Integers:
-        """(B,) index of the candidate with the least objective among the feasible, else of the largest margin."""
+        """Return the index (B,) of the feasible candidate with the minimum objective.
+
+        If no candidate is feasible, return the one with the maximum margin.
+        """
         return self._best(self.margin)
 
     def is_best(self, margin: Array) -> Mask:
-        """Return which candidates are the best ones with other margins.
+        """Return which candidates are the best for given margins.
 
         Parameters
         ----------
@@ -94,7 +97,7 @@ class Found:
         Returns
         -------
         (C, B) array of bool
-            True for one candidate of each bead.
+            True for one candidate per bead.
         """
         best_mask: Mask = np.arange(len(margin))[:, None] == self._best(margin)
         return best_mask
@@ -115,25 +118,25 @@ def everywhere(
     offsets: int = OFFSETS,
     best_alone: bool = False,
 ) -> Found:
-    """Return candidates over the whole range of offset and slope, for every bead.
+    """Return candidates over the full range of offset and slope for every bead.
 
-    Closed beads that have to join up only allow slopes of whole turns.
+    Closed beads whose rotation must return to its start allow only integer slopes.
 
     Parameters
     ----------
     task : Task
         The plan.
     points : Points
-        T points of B beads, perhaps thinned.
+        T points of B beads; may be a sample.
     thresholds : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     slopes : array or None, optional
-        Slopes to try; None for the usual ones.
+        Slopes to try; None for the defaults.
     offsets : int, optional
         Number of offsets over a turn.
     best_alone : bool, optional
-        Whether only the best candidate of each bead matters; then conditions of worse ones
-        are not computed.
+        Whether only the best candidate of each bead is needed; conditions of other candidates
+        are then skipped.
 
     Returns
     -------
@@ -169,7 +172,7 @@ def add_conditions(
     candidates: Found,
     select_needed: Callable[[Array], Mask],
 ) -> Array:
-    """Lower the margins of candidates by their condition where that matters.
+    """Add the condition to the margins of the candidates that need it.
 
     Parameters
     ----------
@@ -178,16 +181,16 @@ def add_conditions(
     points : Points
         T points of B beads.
     thresholds : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     candidates : Found
-        C candidates per bead with margins to limits only.
+        C candidates per bead, with margins of limits only.
     select_needed : callable
-        Returns the candidates (C, B) that matter for margins (C, B).
+        Returns which candidates (C, B) need the condition, given margins (C, B).
 
     Returns
     -------
     (C, B) array
-        Margins; exact for all candidates that matter.
+        Margins, exact for the candidates that need the condition.
     """
     margin = candidates.margin.copy()
     is_known = candidates.margin < 0.0
@@ -212,7 +215,7 @@ def add_conditions(
 def judge(
     task: Task, points: Points, thresholds: Array, coefficients: Array, conditions: bool = True
 ) -> Found:
-    """Return objective and margin of candidates.
+    """Return candidates with objective and margin.
 
     Parameters
     ----------
@@ -221,11 +224,11 @@ def judge(
     points : Points
         T points of B beads.
     thresholds : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     coefficients : (C, B, degree + 1) array
-        The candidates, the constant first.
+        Coefficients in ascending order.
     conditions : bool, optional
-        Whether the margin includes the condition; otherwise only limits.
+        Whether the margin includes the condition; otherwise it covers only limits.
 
     Returns
     -------
@@ -306,7 +309,7 @@ def _objective(task: Task, points: Points, phi: Array, joints: Array) -> Array:
 
 
 def _total_joint_motion(points: Points, joints: Array) -> Array:
-    """Return the sum (..., B) over all axes of the squared steps, with equal weights, rad^2."""
+    """Return the squared joint steps (..., B), summed over all axes with equal weights, rad^2."""
     step = steps(joints, points)
     return points.total((step * step).sum(axis=-1))
 
@@ -314,7 +317,10 @@ def _total_joint_motion(points: Points, joints: Array) -> Array:
 def _screened_condition_margin(
     task: Task, points: Points, phi: Array, joints: Array, index: Integers, thresholds: Array
 ) -> Array:
-    """Condition margins of chosen poses: exact near the threshold, by the bound where that settles the sign."""
+    """Return the condition margins of selected poses.
+
+    They are exact near the threshold. Elsewhere the bound suffices for the sign.
+    """
     length, threshold = task.parameters.characteristic_length, thresholds[index]
     condition, undecided = np.empty(len(index)), np.empty(len(index), dtype=bool)
     matrices: list[Array] = []
@@ -330,31 +336,31 @@ def _screened_condition_margin(
 
 
 COARSE, FINE = 72, 15
-# minimum separation of two different peaks of the margin, in coarse steps (30 deg)
+# minimum separation of two margin peaks, in coarse steps (30 deg)
 MIN_PEAK_SEPARATION_STEPS = 6
-# two objectives count as equal within this share, two margins within this distance (1 is the middle of a range)
+# relative tolerance for equal objectives, and tolerance for equal margins (1 is mid-range)
 OBJECTIVE_TOLERANCE = 1e-6
 MAX_MARGIN_LOSS = 0.01
 
 
 def resolve(task: Task, points: Points, thresholds: Array, coefficients: Array) -> Array:
-    """Move coefficients along a valley of equal objective to the best margin.
+    """Resolve ties: where the objective is flat, shift the offset to the maximum margin.
 
     Parameters
     ----------
     task : Task
         The plan.
     points : Points
-        T points of B beads, perhaps thinned.
+        T points of B beads; may be a sample.
     thresholds : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     coefficients : (B, degree + 1) array
-        The optimum, the constant first.
+        The optimum, in ascending order.
 
     Returns
     -------
     (B, degree + 1) array
-        Unchanged where the optimum is unique.
+        Coefficients; unchanged where the optimum is unique.
     """
     current = judge(task, points, thresholds, coefficients[None])
     coarse = _offset_candidates(
@@ -381,12 +387,12 @@ def resolve(task: Task, points: Points, thresholds: Array, coefficients: Array) 
 
 
 def as_good(task: Task, objective: ArrayLike, best: Array) -> Mask:
-    """Return whether objectives count as equal to the best ones.
+    """Return which objectives count as equal to the best ones.
 
     Parameters
     ----------
     task : Task
-        The plan, with the tolerance.
+        The plan, including the tolerance.
     objective : array
         Objectives.
     best : array
@@ -404,13 +410,13 @@ def as_good(task: Task, objective: ArrayLike, best: Array) -> Mask:
 
 
 def _are_peaks(margin: Array) -> Mask:
-    """(C, B) which candidates are `_peaks`."""
+    """Return which candidates (C, B) are `_peaks`."""
     is_peak: Mask = (np.arange(COARSE)[:, None] == _peaks(margin)[:, None]).any(axis=0)
     return is_peak
 
 
 def _peaks(margin: Array) -> Array:
-    """(2, B) coarse steps of the two highest peaks of the margin (C, B) around the turn that are different ones."""
+    """Return the coarse steps (2, B) of the two highest separate peaks of the margin (C, B)."""
     highest = first_most(margin, axis=0)
     separation = np.abs((np.arange(COARSE)[:, None] - highest + COARSE // 2) % COARSE - COARSE // 2)
     second_highest = first_most(
@@ -426,8 +432,9 @@ def _offset_candidates(coefficients: Array, offsets: Array) -> Array:
 
 
 def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) -> Integers:
-    """Return the index (B,) of each bead's candidate: among those close to its largest margin, the
-    nearest to the previous bead.
+    """Return the candidate index (B,) of each bead.
+
+    Among the candidates close to the maximum margin, take the nearest to the previous bead.
     """
     start = _joints_at(task, points, candidates, points.first)
     end = _joints_at(task, points, candidates, np.append(points.first[1:], len(points)) - 1)
@@ -444,7 +451,7 @@ def _least_motion(task: Task, points: Points, candidates: Array, margin: Array) 
 
 
 def _joints_at(task: Task, points: Points, candidates: Array, index: Integers) -> Array:
-    """(C, B, axes) joints at one point of each bead, zero where unreachable."""
+    """Return the joints (C, B, axes) at one point of each bead; 0 where unreachable."""
     bead_points = points.select_points(index)
     value = np.stack([bead_points.polynomial(row) for row in candidates])
     phi = np.stack([task.rotation(bead_points, row)[0] for row in value])
@@ -454,15 +461,15 @@ def _joints_at(task: Task, points: Points, candidates: Array, index: Integers) -
 Place = tuple[int, int]
 
 LOW_CONDITION_RATIO = (
-    3.0  # times the condition asked for; from there it may fall short between two points
+    3.0  # times the threshold; below this ratio the condition may be too low between points
 )
-HALVINGS = 2  # halvings of each segment to check between its points
-CANDIDATES = 12  # rotations of a bead that are checked there
-BEADS_PER_BATCH = 64  # beads; bounds the memory
+HALVINGS = 2  # times that each segment is halved to check between its points
+CANDIDATES = 12  # candidates per bead that are checked between points
+BEADS_PER_BATCH = 64  # beads per batch, to bound memory
 
 
 def find_infeasible(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]) -> list[int]:
-    """Return the beads that exceed a limit at their points or between them.
+    """Return the beads that are infeasible at their points or between them.
 
     Parameters
     ----------
@@ -471,12 +478,12 @@ def find_infeasible(task: Task, beads: Sequence[Bead], paths: Sequence[BeadPath]
     beads : sequence of Bead
         The beads.
     paths : sequence of BeadPath
-        Their paths.
+        The paths of the beads.
 
     Returns
     -------
     list of int
-        Numbers of the beads, sorted.
+        Bead indices, sorted.
     """
     infeasible = [k for k, path in enumerate(paths) if path.margin < MIN_MARGIN]
     low = [
@@ -510,7 +517,7 @@ def replace_infeasible(
     candidates_found: Found,
     report: Callable[[float], None],
 ) -> dict[int, BeadPath | None]:
-    """Replace paths that exceed limits although a candidate did not.
+    """Replace infeasible paths of beads that have a feasible candidate.
 
     Parameters
     ----------
@@ -521,16 +528,16 @@ def replace_infeasible(
     bead_ids : sequence of Place
         Layer and index of each bead.
     paths : sequence of BeadPath
-        Their paths.
+        The paths of the beads.
     candidates_found : Found
-        The candidates of the beads, rated at a few points.
+        Candidates of the beads, rated at a few points.
     report : callable
-        Receives the finished share; may raise to cancel.
+        Receives the completed fraction; may raise to cancel.
 
     Returns
     -------
     dict[int, BeadPath or None]
-        Results of `find_rotations` by number of the bead.
+        Results of `find_rotations` by bead index.
     """
     promising = candidates_found.margin.max(axis=0) >= 0.0
     rows = [k for k in find_infeasible(task, beads, paths) if promising[k]]
@@ -551,10 +558,9 @@ def replace_infeasible(
 def find_rotations(
     task: Task, beads: Sequence[Bead], bead_ids: Sequence[Place], candidates_found: Found
 ) -> list[BeadPath | None]:
-    """Return the path of the best rotation of each bead that serves everywhere.
+    """Return the best path of each bead that is feasible at all points and between them.
 
-    The rotation serves at every point and between points. It is refined from there if the
-    refined path keeps the limits too.
+    The best candidate is refined, unless the refined path is infeasible.
 
     Parameters
     ----------
@@ -565,12 +571,12 @@ def find_rotations(
     bead_ids : sequence of Place
         Layer and index of each bead.
     candidates_found : Found
-        The candidates of the beads, rated at a few points.
+        Candidates of the beads, rated at a few points.
 
     Returns
     -------
     list[BeadPath or None]
-        The paths; None if no rotation serves.
+        The paths; None if no candidate is feasible.
     """
     points, between = gather(beads, task.cell), gather([_finer(bead) for bead in beads], task.cell)
     thresholds = task.thresholds(points)
@@ -601,7 +607,7 @@ def find_rotations(
 def _judged_at(
     task: Task, points: Points, thresholds: Array, candidates: Found, max_count: int
 ) -> Found:
-    """Rate the best serving candidates of each bead, at most `max_count`, at these points."""
+    """Rate up to `max_count` feasible candidates of each bead, the best first, at given points."""
     worth = np.where(candidates.margin >= 0.0, candidates.objective, np.inf)
     count = max(1, min(max_count, int((candidates.margin >= 0.0).sum(axis=0).max())))
     best_rows = np.argsort(worth, axis=0, kind="stable")[:count]

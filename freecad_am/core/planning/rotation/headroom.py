@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The margins of planned beads to limits, condition and joint speeds, and the worst places."""
+"""Margins of planned beads to limits, condition and joint speeds, and their worst values."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ..redundancy_curve import durations
 
 @dataclass(frozen=True)
 class Worst:
-    """A worst value, its layer and the label of its limit or axis, '' for none."""
+    """A worst value, its layer, and the label of its limit or axis ('' for none)."""
 
     value: float
     layer: int
@@ -25,12 +25,12 @@ class Worst:
 
 @dataclass(frozen=True, eq=False)
 class Judgement:
-    """The margins of T points of beads, NaN out of reach.
+    """The margins of T bead points, NaN out of reach.
 
-    margin: (T,) share left to the nearest limit, 1 in the middle, less than 0 beyond. condition:
-    (T,). ratio: (T,) largest joint speed, as a share of the axis limit, on the segment that ends at
-    the point; at the start of a bead the value of its second point. The worst value of each is None
-    if no point is reached.
+    margin: (T,) limit margin, 1 at mid-range, negative beyond a limit. condition: (T,). ratio: (T,)
+    maximum joint speed on the segment that ends at the point, as a fraction of the axis limit; the
+    first point of a bead has the value of the second. The worst values are None if no point is
+    reachable.
     """
 
     margin: Array
@@ -51,12 +51,12 @@ def judge_paths(paths: Sequence[BeadPath], limits: Limits, max_speed: Array) -> 
     limits : Limits
         The limits.
     max_speed : (axes,) array
-        Maximum speed of each axis, rad/s or mm/s.
+        Maximum axis speeds, rad/s or mm/s.
 
     Returns
     -------
     Judgement
-        The margins at all points and the worst places.
+        Margins at all points, and worst values.
     """
     joints = np.concatenate([path.joints for path in paths])
     layer = np.repeat([path.layer for path in paths], [len(path.joints) for path in paths])
@@ -76,7 +76,7 @@ def judge_paths(paths: Sequence[BeadPath], limits: Limits, max_speed: Array) -> 
 
 
 def _speeds(path: BeadPath) -> Array:
-    """(n, axes) speed of each axis, rad/s or mm/s."""
+    """Return the axis speeds (n, axes), rad/s or mm/s."""
     lasts = durations([path.bead])[1:, None]
     speed = np.abs(np.diff(path.joints, axis=0)) / np.maximum(lasts, 1e-12)
     return np.concatenate([speed[:1], speed])
@@ -85,7 +85,7 @@ def _speeds(path: BeadPath) -> Array:
 def _worst(
     values: Array, layer: Integers, labels: Sequence[str], largest: bool = False
 ) -> Worst | None:
-    """Return the worst entry of (T, k) values with k labels."""
+    """Return the worst entry of values (T, k) with k labels."""
     if not np.isfinite(values).any():
         return None
     row, what = np.unravel_index(

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Local optimisation of the polynomials (Chalvin 2020, eqs. 16 to 19), with analytic gradients.
 
-All beads are evaluated together once; those already at a stationary, feasible point are done. The others go
-through SLSQP one by one.
+All beads are first evaluated at once. Beads at a feasible stationary point are finished; SLSQP
+optimises the others one by one.
 """
 
 from __future__ import annotations
@@ -24,40 +24,39 @@ from ..task import Task, condition_margin
 from . import refine_state
 from .refine_state import State, slopes_of, state_of, values_of
 
-# returns values (r,) of the constraints at all points, kept if >= 0, and their derivatives (r, k);
-# None if unreachable
+# returns values (r,) of the constraints at all points, satisfied if >= 0, and their derivatives
+# (r, k); None if unreachable
 Constraints = Callable[[Array], "tuple[Array, Array] | None"]
 
-REACH = 0.3  # of a first step, rad of the polynomial
-MIN_STEP_RAD = 1e-5  # rad, of a step worth trying
-SUFFICIENT_SLACK = 1e-3  # by how much constraints are wanted to be kept
-GAIN = 1e-6  # of the worst constraint, less than which ends the search
+REACH = 0.3  # rad; maximum change of each variable in the first step
+MIN_STEP_RAD = 1e-5  # rad; the search ends at smaller steps
+SUFFICIENT_SLACK = 1e-3  # target value of the worst constraint
+GAIN = 1e-6  # minimum predicted gain of the worst constraint per step
 STEPS = 40
 MOST_ROWS = 600
 
 
 def approached(constraints: Constraints, start: Array) -> Array:
-    """Improve the worst constraint by steps of linear programs.
+    """Improve the worst constraint by a sequence of linear programs.
 
     Parameters
     ----------
     constraints : Constraints
-        Returns values (r,) and derivatives (r, k) at x (k,); None out of reach.
+        Returns values (r,) and derivatives (r, k) at x (k,); None if unreachable.
     start : (k,) array
-        Variables at the start.
+        Start variables.
 
     Returns
     -------
     (k,) array
-        Variables at which the worst constraint is satisfied with SUFFICIENT_SLACK, or does
-        not improve further.
+        Variables at which the worst constraint reaches SUFFICIENT_SLACK or stops improving.
 
     Notes
     -----
-    A trust region bounds each step; its size follows the ratio of actual to predicted gain.
+    A trust region bounds each step. Its size follows the ratio of actual to predicted gain.
     """
     from scipy.optimize import (
-        linprog,  # slow to import, and most jobs on parts of revolution never need it
+        linprog,  # slow to import, and seldom needed for parts of revolution
     )
 
     x, reach, current = start, REACH, constraints(start)
@@ -68,12 +67,12 @@ def approached(constraints: Constraints, start: Array) -> Array:
         worst = float(value.min())
         if worst >= SUFFICIENT_SLACK:
             return x
-        # rows that cannot become the worst within reach are left out
+        # omit rows that cannot become the worst constraint within reach
         lowest = value - reach * np.abs(rate).sum(axis=1)
         rows = np.flatnonzero(lowest < max(SUFFICIENT_SLACK, float(value.min())) + GAIN)
         rows = rows[np.argsort(lowest[rows], kind="stable")[:MOST_ROWS]]
         k = len(x)
-        # the largest t <= SUFFICIENT_SLACK with value + rate step >= t
+        # maximise t <= SUFFICIENT_SLACK with value + rate step >= t
         solved = linprog(
             np.r_[np.zeros(k), -1.0],
             A_ub=np.c_[-rate[rows], np.ones(len(rows))],
@@ -94,20 +93,23 @@ def approached(constraints: Constraints, start: Array) -> Array:
     return x
 
 
-# by how little a constraint may be violated and count as kept: limits and condition have reserves many times as wide
+# violation that counts as satisfied; limits and condition have a much larger reserve
 CONSTRAINT_TOLERANCE = 4e-7
-# runs of the optimiser, each with the constraints added that the one before came close to
+# optimiser runs; each adds the constraints that the previous run came close to
 ROUNDS = 4
-INACTIVE_VALUE = 1.0  # value of an irrelevant constraint; limits and condition have smaller values
-MIN_OBJECTIVE_SCALE = 1e-9  # objective that an objective is set against
+INACTIVE_VALUE = 1.0  # value of an irrelevant constraint; limit and condition values are smaller
+MIN_OBJECTIVE_SCALE = 1e-9  # minimum divisor of the objective
 STATIONARY = "stationary at the start found by the search"
 OUT_OF_LIMITS = "no polynomial found that keeps all limits"
 
 
 @dataclass(frozen=True, eq=False)
 class Refined:
-    """One polynomial per bead: coefficients (B, degree + 1), objective (B,), why and after how many iterations the
-    optimiser stopped."""
+    """One polynomial per bead.
+
+    coefficients: (B, degree + 1). objective: (B,). reason, iterations: stop reason and iteration
+    count of the optimiser.
+    """
 
     coefficients: Array
     objective: Array
@@ -123,24 +125,24 @@ def refine(
     selected: Mask | None = None,
     report: Callable[[float], None] = lambda share: None,
 ) -> Refined:
-    """Improve the coefficients of every bead, or of selected ones.
+    """Improve the coefficients of all beads or of selected beads.
 
-    Closed beads that join up stay joined.
+    Closed beads whose rotation must return to its start keep this property.
 
     Parameters
     ----------
     task : Task
-        The plan, with the objective.
+        The plan, including the objective.
     points : Points
-        All T points of the B beads.
+        T points of B beads.
     thresholds : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     starts : (S, B, degree + 1) array
-        Starts, the preferred one first; NaN where a bead has no further start.
+        Start coefficients, the preferred ones first; NaN where a bead has fewer starts.
     selected : (B,) bool array or None, optional
         Beads to improve; None for all.
     report : callable, optional
-        Receives the finished share before each bead; may raise to cancel.
+        Receives the completed fraction before each bead; may raise to cancel.
 
     Returns
     -------
@@ -189,11 +191,11 @@ def refine(
 
 @dataclass(frozen=True, eq=False)
 class Linear:
-    """Linearised constraints >= 0 at all points of a bead, about the values `at` (T,) of its
-    polynomial.
+    """Linearised constraints >= 0 at all points of a bead.
 
-    value, slope: (r, T); irrelevant constraints have INACTIVE_VALUE and 0. reach: maximum change of
-    the polynomial.
+    at: (T,) polynomial values of the linearisation. value, slope: (r, T) constraint values and
+    derivatives; irrelevant constraints have INACTIVE_VALUE and 0. reach: maximum change of the
+    polynomial, rad.
     """
 
     at: Array
@@ -215,26 +217,26 @@ def refine_along(
     Parameters
     ----------
     task : Task
-        The plan, with the objective.
+        The plan, including the objective.
     points : Points
         The T points of the bead.
     thresholds : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     start : (degree + 1,) array
-        Coefficients at the start, the constant first.
+        Start coefficients in ascending order.
     directions : (degree + 1, degree + 1) array
-        Allowed changes as columns, from `refine_state.changes`.
+        Columns of allowed changes, from `refine_state.changes`.
     extra_constraints : Linear
-        Linearised constraints to keep.
+        Additional linearised constraints.
 
     Returns
     -------
     coefficients : (degree + 1,) array
-        The better coefficients.
+        Improved coefficients.
     reason : str
-        Why the optimiser stopped.
+        Stop reason of the optimiser.
     iterations : int
-        Its iterations.
+        Iteration count.
     """
     used = directions[:, np.abs(directions).any(axis=0)]
     return _slsqp(_Bead(task, points, thresholds, extra_constraints), start, used)
@@ -242,9 +244,7 @@ def refine_along(
 
 @dataclass(frozen=True, eq=False)
 class _Bead:
-    """A single bead with its points, its smallest allowed conditions and optional extra
-    constraints.
-    """
+    """A single bead with its points, its condition thresholds and optional extra constraints."""
 
     task: Task
     points: Points
@@ -255,7 +255,10 @@ class _Bead:
         return state_of(self.task, self.points, self.thresholds, coefficients[None])
 
     def constraints(self, coefficients: Array, free: Array) -> tuple[Array, Array] | None:
-        """All constraints at all points (r,) and their derivatives (r, k) along the free columns; None out of reach."""
+        """Return all constraints at all points (r,) and their derivatives (r, k) along `free`.
+
+        None if a point is unreachable.
+        """
         values_and_rates = _at_all_points(
             self.task, self.points, self.thresholds, coefficients[None], free
         )
@@ -273,8 +276,9 @@ class _Bead:
         )
 
     def rank_solution(self, coefficients: Array) -> tuple[float, float]:
-        """Return the ranking key of a solution: worst violation of a constraint, then the
-        objective; less is better.
+        """Return the ranking key of a solution: the worst violation, then the objective.
+
+        Lower is better.
         """
         state = self.state(coefficients)
         worst = float(np.nan_to_num(state.constraints, nan=-1.0).min())
@@ -283,7 +287,7 @@ class _Bead:
 
 
 def _better(result: tuple[Any, ...], reference: tuple[Any, ...]) -> bool:
-    """Whether (violation, objective, ...) is less than another by more than rounding."""
+    """Whether `result` (violation, objective, ...) is below `reference` by more than rounding."""
     if not is_tied(result[0], reference[0]) or not is_tied(reference[0], result[0]):
         return bool(result[0] < reference[0])
     return not bool(is_tied(reference[1], result[1]))
@@ -292,15 +296,14 @@ def _better(result: tuple[Any, ...], reference: tuple[Any, ...]) -> bool:
 def _optimise_by_degree(
     bead: _Bead, start: Array, directions: Array
 ) -> tuple[float, float, Array, str, int]:
-    """Optimise degree by degree, so that a higher degree is never worse.
+    """Optimise with increasing degree, so that a higher degree is never worse.
 
-    Returns violation, objective, coefficients, why and after how many iterations the last degree
-    stopped.
+    Return violation, objective, coefficients, stop reason and iteration count of the last degree.
     """
     current, worth, reason, iterations = start, bead.rank_solution(start), STATIONARY, 0
     used = np.flatnonzero(np.abs(directions).any(axis=0))
     for count in range(1, len(used) + 1):
-        # the search has covered slope and offset of an open bead of the first degree together
+        # for an open bead, the global search has already covered offset and slope together
         if count == 1 and len(used) > 1 and used[1] == 1:
             continue
         free = directions[:, used[:count]]
@@ -319,7 +322,7 @@ def _optimise_by_degree(
 def _brought_in(
     bead: _Bead, current: Array, free: Array, worth: tuple[float, float]
 ) -> tuple[Array, tuple[float, float]]:
-    """Return coefficients that violate the limits less than `current`, if there are any, and their worth."""
+    """Return coefficients with a smaller violation, if found, and their ranking key."""
     nearer = current + free @ approached(
         lambda x: bead.constraints(current + free @ x, free), np.zeros(free.shape[1])
     )
@@ -328,8 +331,9 @@ def _brought_in(
 
 
 def _slsqp(bead: _Bead, start: Array, directions: Array) -> tuple[Array, str, int]:
-    """Return coefficients, why the optimiser stopped and after how many iterations; run again if it
-    violates constraints that it was not given.
+    """Return coefficients, stop reason and iteration count.
+
+    Run the optimiser again if its result violates constraints that it did not include.
     """
     x, reason, iterations = np.zeros(directions.shape[1]), STATIONARY, 0
     rows = np.zeros(0, dtype=np.int64)
@@ -348,7 +352,7 @@ def _slsqp(bead: _Bead, start: Array, directions: Array) -> tuple[Array, str, in
 
 def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers) -> Any:
     from scipy.optimize import (
-        minimize,  # slow to import, and most jobs on parts of revolution never need it
+        minimize,  # slow to import, and seldom needed for parts of revolution
     )
 
     states: dict[bytes, State] = {}
@@ -374,7 +378,8 @@ def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers)
             )
         return everywhere[key]
 
-    # first steps are as long as the gradient: where constraints turn it aside, one of an objective much below 1 is none
+    # the first steps are as long as the gradient; scale it, so that an objective far below 1 can
+    # still move the solution along extra constraints
     scale = (
         1.0
         if bead.extra_constraints is None
@@ -390,7 +395,7 @@ def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers)
     ]
     if (
         bead.extra_constraints is not None
-    ):  # changes are of the size of a rotation, so that together they stay within reach
+    ):  # bound each change to a fraction of `reach`, so that the sum stays within it
         max_change, unit_matrix = bead.extra_constraints.reach / len(x), np.eye(len(x))
         both_signs = np.concatenate([unit_matrix, -unit_matrix])
         constraint_list.append(
@@ -400,7 +405,7 @@ def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers)
                 "jac": lambda x: -both_signs,
             }
         )
-    # scipy's stubs do not know a list of constraint dictionaries with their own types
+    # the scipy stubs reject a list of constraint dictionaries
     return minimize(  # type: ignore[call-overload]
         objective,
         x,
@@ -417,8 +422,8 @@ def _run(bead: _Bead, start: Array, directions: Array, x: Array, rows: Integers)
 def _tightest(values: Array, points: int) -> Integers:
     """Select the constraints for the optimiser.
 
-    Each row contributes its local minima along the bead and their neighbours, unless they are at
-    least INACTIVE_VALUE.
+    Take the local minima of each constraint along the bead and their neighbours, except values of
+    INACTIVE_VALUE or more.
     """
     value = values.reshape(-1, points)
     padded = np.pad(value, ((0, 0), (1, 1)), constant_values=np.inf)
@@ -459,7 +464,7 @@ def evaluate_paths(
     coefficients: Array,
     refined: Refined,
 ) -> list[BeadPath]:
-    """Return the paths of all beads for coefficients, evaluated at every point.
+    """Return the paths of all beads for given coefficients, evaluated at every point.
 
     Parameters
     ----------
@@ -470,19 +475,18 @@ def evaluate_paths(
     bead_ids : sequence of Place
         Layer and index of each bead.
     points : Points
-        All T points of the beads.
+        T points of the B beads.
     threshold : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     coefficients : (B, degree + 1) array
-        Coefficients, the constant first.
+        Coefficients in ascending order.
     refined : Refined
-        Reason and iterations of each bead.
+        Stop reason and iteration count of each bead.
 
     Returns
     -------
     list of BeadPath
-        The paths; the objective is NaN if it needs the Jacobian and a point is out of
-        reach.
+        The paths. The objective is NaN if it needs the Jacobian and a point is unreachable.
     """
     phi, _ = task.rotation(points, points.polynomial(coefficients))
     joints = task.joints(points, phi)
@@ -499,7 +503,8 @@ def evaluate_paths(
         np.minimum(task.rows.margin(joints), condition_margin(condition, threshold))
     )
     ends = np.append(points.first, len(points))
-    # like the joints: on a bead of few points a steep polynomial makes whole turns between two points, the same at both
+    # remove whole turns as for the joints: a steep polynomial may make a whole turn between two
+    # points of a coarse bead
     turned = phi - whole_turns(np.diff(phi), points)
     return [
         BeadPath(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The rotation that a joint path has along the beads of its toolpath, which it may run from other seams or in pieces."""
+"""The rotation of a joint path along its toolpath beads, also after seam moves and splits."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from ...toolpath import Bead
 from ...types import Array
 from ..joint_path import BeadPath
 
-PARTED = 0.75  # of a turn, from where a step is one between pieces
-END_MM = 1e-6  # mm, of a piece's ends to points of the bead it was cut from
+PARTED = 0.75  # turns; a larger step of the rotation is a jump between pieces
+END_MM = 1e-6  # mm; maximum distance of a piece's ends from points of the original bead
 
 
 def rotation_along(
@@ -23,24 +23,24 @@ def rotation_along(
     bead_ids: Sequence[tuple[int, int]],
     parameters: Mapping[int, Array],
 ) -> dict[int, Array]:
-    """Return the rotation that a joint path has along beads of its toolpath.
+    """Return the rotation of a joint path along beads of its toolpath.
 
     Parameters
     ----------
     paths : sequence of BeadPath
-        The paths, perhaps from other seams or in pieces.
+        The paths; their seams may have moved, and they may be pieces.
     beads : sequence of Bead
         The beads of the toolpath.
     bead_ids : Sequence[tuple[int, int]]
         Layer and index of each bead.
     parameters : mapping of int to Array
-        Bead parameters (n,) by number of the bead.
+        Bead parameters (n,) by bead index.
 
     Returns
     -------
     dict of int to (n,) array
-        Rotation phi, rad, interpolated between the points of the path; 0 where the path has
-        no part of a bead.
+        Rotation phi, rad, interpolated between path points; 0 for a bead that the path does not
+        contain.
     """
     paths_by_layer: dict[int, list[BeadPath]] = {}
     for path in paths:
@@ -70,7 +70,7 @@ def _rotation_along(bead_paths: Sequence[BeadPath], bead: Bead, parameter: Array
     rotation = np.full(len(parameter), np.nan)
     for path in bead_paths:
         path_parameter = sense * path.bead.parameter
-        # the parameter of a bead with another start continues across the old seam
+        # the parameter of a bead with a moved seam continues across the original seam
         for turn in (0.0, span, -span):
             position = sense * (parameter + turn)
             inside = (
@@ -89,7 +89,7 @@ def _rotation_along(bead_paths: Sequence[BeadPath], bead: Bead, parameter: Array
         and abs(float(bead_paths[0].bead.parameter[0] - bead.parameter[0])) < 1e-9
     ):
         return rotation
-    # the rotation jumps by whole turns at pieces and moved seams, and is continuous between them
+    # the rotation jumps by whole turns at pieces and moved seams; elsewhere it is continuous
     step = np.diff(rotation, prepend=rotation[:1])
     whole_turns = np.where(np.abs(step) > PARTED * TURN, TURN * np.round(step / TURN), 0.0)
     return np.asarray(rotation - np.cumsum(whole_turns))

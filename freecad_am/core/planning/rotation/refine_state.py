@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The state for polynomial coefficients: objective, constraints, and their derivatives."""
+"""Objective, constraints and their derivatives for polynomial coefficients."""
 
 from __future__ import annotations
 
@@ -18,13 +18,13 @@ from ..task import Task
 def changes(task: Task, points: Points, degree: int) -> Array:
     """Return independent changes of the coefficients of each bead.
 
-    They are Chebyshev polynomials over the bead's parameter, so that all have the size of a
-    rotation. The column that would separate the ends of a closed bead is zero.
+    They are Chebyshev polynomials over the bead parameter, so all have the size of a rotation. For
+    a closed bead whose rotation must return to its start, the column that prevents this is zero.
 
     Parameters
     ----------
     task : Task
-        The plan; `joined` keeps closed beads closed.
+        The plan; `joined` applies to closed beads.
     points : Points
         Points of B beads.
     degree : int
@@ -33,10 +33,10 @@ def changes(task: Task, points: Points, degree: int) -> Array:
     Returns
     -------
     (B, degree + 1, degree + 1) array
-        One change per column, the constant first.
+        One change per column, with coefficients in ascending order.
     """
     joined = task.joined & points.closed
-    # most beads have their ends where others have them
+    # many beads share the same parameter range
     ends, of_bead = np.unique(np.stack(points.ends, axis=1), axis=0, return_inverse=True)
     result = np.stack([_chebyshev(low, high, degree) for low, high in ends])[of_bead]
     if degree > 0:
@@ -46,7 +46,7 @@ def changes(task: Task, points: Points, degree: int) -> Array:
 
 
 def _chebyshev(low: float, high: float, degree: int) -> Array:
-    """Columns T_0 .. T_degree of the parameter brought from low .. high to -1 .. 1."""
+    """Return the columns T_0 to T_degree for a parameter range low to high mapped to -1 to 1."""
     columns = np.zeros((degree + 1, degree + 1))
     shift = np.array([-(high + low) / (high - low), 2.0 / (high - low)])
     for j in range(degree + 1):
@@ -57,13 +57,13 @@ def _chebyshev(low: float, high: float, degree: int) -> Array:
     return columns
 
 
-# share by which the condition stays above its threshold, so that an optimum on it does not fall below between the points
+# relative reserve of the condition above its threshold, so that it stays above between the points
 CONDITION_RESERVE = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
 class State:
-    """Everything eqs. 17 to 19 need at one set of coefficients; constraints are >= 0 where kept."""
+    """The terms of eqs. 17 to 19 for given coefficients; constraints are satisfied if >= 0."""
 
     objective: Array
     gradient: Array
@@ -75,21 +75,21 @@ class State:
 def state_of(
     task: Task, points: Points, thresholds: Array, coefficients: Array, slopes: bool = True
 ) -> State:
-    """Return objective, constraints and derivatives at coefficients.
+    """Return objective, constraints and derivatives for given coefficients.
 
     Parameters
     ----------
     task : Task
-        The plan, with objective and limits.
+        The plan, including objective and limits.
     points : Points
         T points of B beads.
     thresholds : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     coefficients : (B, degree + 1) array
-        Coefficients, the constant first.
+        Coefficients in ascending order.
     slopes : bool, optional
-        Whether to compute the derivatives of the constraints; otherwise the predicted
-        decrease.
+        Whether to compute the derivatives of the constraints; otherwise compute the predicted
+        decrease of the objective.
 
     Returns
     -------
@@ -144,10 +144,9 @@ def _state_in_pieces(
     joints: Array,
     powers: Array,
 ) -> State:
-    """Return the state of many beads at once, without the derivatives of the constraints.
+    """Return the state of many beads in batches, without derivatives of the constraints.
 
-    A lower bound replaces the condition wherever it proves that the condition is kept: at all but a
-    few points.
+    At all but a few points, a lower bound proves that the condition is kept and replaces it.
     """
     length = task.parameters.characteristic_length
     rates, ratio = np.empty_like(joints), np.empty(len(points))
@@ -178,7 +177,7 @@ def _gradient(points: Points, slope: Array, powers: Array) -> Array:
 def _partly_unreachable(
     task: Task, points: Points, thresholds: Array, coefficients: Array, joints: Array, slopes: bool
 ) -> State:
-    """With one bead there is nothing to say; with several, those within reach are still worth judging."""
+    """Return the state if points are unreachable: evaluate the reachable beads one by one."""
     b, k = coefficients.shape
     rows = len(task.rows.labels) + 1 + _narrow(task)
     state = State(
@@ -212,21 +211,21 @@ def values_of(task: Task, thresholds: Array, phi: Array, joints: Array, ratio: A
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     thresholds : (T,) array
-        Smallest condition allowed.
+        Required minimum condition.
     phi : (T,) array
         Rotations, rad.
     joints : (T, axes) array
         Joints, rad or mm.
     ratio : (T,) array
-        Condition sigma_min / sigma_max.
+        Inverse condition number, sigma_min / sigma_max.
 
     Returns
     -------
     (m + 1, T) array
-        One row per limit and one for the condition; another one if the rotation has a range
-        of less than a turn. Values are >= 0 where kept.
+        One row per limit and one for the condition; another row if the rotation range is less
+        than a full turn. Values are >= 0 if satisfied.
 
     References
     ----------
@@ -244,20 +243,20 @@ def values_of(task: Task, thresholds: Array, phi: Array, joints: Array, ratio: A
 def slopes_of(
     task: Task, phi: Array, phi_rate: Array, joints: Array, rates: Array, matrix: Array
 ) -> Array:
-    """Return the derivatives of the constraint values by the polynomial's value.
+    """Return the derivatives of the constraint values with respect to the polynomial value.
 
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     phi : (T,) array
         Rotations, rad.
     phi_rate : (T,) array
-        d phi / d value of the polynomial.
+        d phi / d polynomial value.
     joints : (T, axes) array
         Joints, rad or mm.
     rates : (T, axes) array
-        d q / d value.
+        d q / d polynomial value.
     matrix : (T, 6, axes) array
         Jacobians at the deposition point.
 
@@ -282,7 +281,7 @@ def _share(task: Task, phi: Array) -> Array:
 
 
 def _find_worst_points(points: Points, values: Array, worst: Array) -> Integers:
-    """(B,) index of the first point of each bead that has the bead's smallest value."""
+    """Return the index (B,) of the first point of each bead at its minimum value."""
     hits = np.flatnonzero(values <= worst[points.bead])
     _, position = np.unique(points.bead[hits], return_index=True)
     return hits[position]
@@ -291,11 +290,10 @@ def _find_worst_points(points: Points, values: Array, worst: Array) -> Integers:
 def _predicted(
     task: Task, points: Points, joints: Array, rates: Array, powers: Array, gradient: Array
 ) -> Array:
-    """Return the predicted fall (B,) of the objective by its second-order model, joined beads staying
-    joined.
+    """Return the predicted decrease (B,) of the objective by its second-order model.
 
-    Eq. 17 is a sum of squares, so its curvature is known (Gauss-Newton); for other objectives only the
-    gradient is used.
+    Joined beads stay joined. Eq. 17 is a sum of squares, so its curvature is known (Gauss-Newton).
+    For other objectives, return the norm of the gradient.
     """
     free = changes(task, points, powers.shape[1] - 1)
     gradient = (gradient[:, None] @ free)[:, 0]
@@ -316,9 +314,7 @@ def _predicted(
 
 
 def _between(values: Array, points: Points) -> Array:
-    """Return the change of the values (T, axes) from the previous point; 0 at the first point of a
-    bead.
-    """
+    """Return the change of values (T, axes) from the previous point; 0 at bead starts."""
     change = np.zeros_like(values)
     np.subtract(values[1:], values[:-1], out=change[1:])
     change[points.starts] = 0.0

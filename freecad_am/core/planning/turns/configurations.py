@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arms with several solutions in one configuration: along a bead the solution follows the previous
-one.
+"""Solution tracking for arms with several solutions per configuration.
 
-Only solutions in the requested configuration count, and among them the nearest one.
+Along a bead, each point takes the solution nearest to the previous point, among the solutions in
+the requested configuration.
 """
 
 from __future__ import annotations
@@ -16,23 +16,23 @@ from ..points import Points
 
 
 def along_beads(arm: SerialArm, flange: Array, branch: int, points: Points) -> Array:
-    """Return joints followed from the first point of each bead.
+    """Return joints tracked from the first point of each bead.
 
     Parameters
     ----------
     arm : SerialArm
         An arm with several solutions per configuration.
     flange : (R, T, 4, 4) array
-        Flange poses, base frame.
+        Flange poses, base_link.
     branch : int
-        Index of the configuration.
+        Configuration index.
     points : Points
         The T points.
 
     Returns
     -------
     (R, T, axes) array
-        The first point of a bead takes the least singular solution; NaN without a solution.
+        Joints; a bead starts with the least singular solution. NaN without a solution.
     """
     found, several = _bearing(arm, flange, branch)
     joints: Array = found[0]
@@ -46,18 +46,18 @@ def along_beads(arm: SerialArm, flange: Array, branch: int, points: Points) -> A
 
 
 def from_before(arm: SerialArm, flange: Array, branch: int, before: Array) -> Array:
-    """Return the joints nearest to previous ones.
+    """Return the joints nearest to previous joints.
 
     Parameters
     ----------
     arm : SerialArm
         An arm with several solutions per configuration.
     flange : (..., 4, 4) array
-        Flange poses, base frame.
+        Flange poses, base_link.
     branch : int
-        Index of the configuration.
+        Configuration index.
     before : (..., axes) array
-        Previous joints, rad; leading dimensions may be missing.
+        Previous joints, rad; leading dimensions broadcast.
 
     Returns
     -------
@@ -70,16 +70,16 @@ def from_before(arm: SerialArm, flange: Array, branch: int, before: Array) -> Ar
 
 
 def step_by_step(arm: SerialArm, flange: Array, branch: int, before: Array) -> Array:
-    """Return joints followed through sequences of moves.
+    """Return joints tracked through sequences of moves.
 
     Parameters
     ----------
     arm : SerialArm
         An arm with several solutions per configuration.
     flange : (k, moves, 4, 4) array
-        Flange poses, base frame.
+        Flange poses, base_link.
     branch : int
-        Index of the configuration.
+        Configuration index.
     before : (k, axes) array
         Joints before the first move, rad.
 
@@ -100,7 +100,7 @@ def _bearing(arm: SerialArm, flange: Array, branch: int) -> tuple[Array, bool]:
     """Return the solutions (solutions, ..., axes) in the configuration, and whether any pose has
     several.
 
-    The least singular comes first; NaN marks other configurations.
+    The least singular solution comes first. Solutions in other configurations are NaN.
     """
     lead = flange.shape[:-2]
     joints, words = arm.solutions(flange.reshape(-1, 4, 4))
@@ -114,9 +114,9 @@ def _bearing(arm: SerialArm, flange: Array, branch: int) -> tuple[Array, bool]:
 
 
 def _nearest(found: Array, before: Array) -> Array:
-    """Select the joints nearest to the joints before (..., axes), apart from whole turns.
+    """Select the solution nearest to the joints `before` (..., axes), up to whole turns.
 
-    found: (solutions, ..., axes). The first solution is taken if the joints before are unknown.
+    found: (solutions, ..., axes). If `before` is unknown, take the first solution.
     """
     step = found - before
     step = shortest(step)

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Axis values of machines on which point and tool axis leave no free coordinate: the courses
-along a bead, and their turns.
+"""Axis values of five-axis machines along a bead, and their whole turns.
 
-Two rotary axes turn the tool axis to the torch, or one if the other is locked; the prismatic axes
+Two rotary axes turn the tool axis to the torch, or one if the other is locked. The prismatic axes
 follow.
 """
 
@@ -25,43 +24,43 @@ from ...toolpath import Bead, Toolpath
 from ...types import Array, Mask
 from ..joint_path import BeadPath
 
-# rad; a direction this near to the pole counts as on it, or the axis would race round to meet it
+# rad; a direction this close to the pole counts as on the pole, where the axis would otherwise race
 AT_POLE = math.radians(0.1)
 
 
 def onto_pole(directions: Array, pole: Array, within: float = AT_POLE) -> Array:
-    """Bring directions near a turning axis onto it.
+    """Move directions close to a revolute axis onto the axis.
 
     Parameters
     ----------
     directions : (n, 3) array
         Unit vectors.
     pole : (3,) array
-        The turning axis, unit vector.
+        Revolute axis, unit vector.
     within : float, optional
-        Largest angle to the axis or its opposite, rad.
+        Maximum angle to the axis or its opposite, rad.
 
     Returns
     -------
     (n, 3) array
-        The directions; near ones equal the axis or its opposite.
+        Directions; those within the angle equal the axis or its opposite.
     """
     near = np.linalg.norm(np.cross(directions, pole), axis=1) < math.sin(within)
     return np.where(near[:, None], np.sign(directions @ pole)[:, None] * pole, directions)
 
 
 def rotary_courses(found: Turns) -> list[Array]:
-    """Return two courses through the turns of directions along a bead.
+    """Return two courses of the rotary axes along a bead.
 
     Parameters
     ----------
     found : Turns
-        The solutions of both rotary axes at n points.
+        Solutions of both rotary axes at n points.
 
     Returns
     -------
     list of (n, 2) array
-        Angles, rad; an axis that is free keeps its previous angle.
+        Angles, rad; a free axis keeps its previous angle.
     """
     turned = np.stack([found.first_turn, found.second_turn], axis=-1)
     for axis, free in enumerate((found.first_free, found.second_free)):
@@ -70,35 +69,35 @@ def rotary_courses(found: Turns) -> list[Array]:
 
 
 def led_over(course: Array, free: Mask, place: Array) -> Array:
-    """Interpolate the free angles evenly between their neighbours along a bead.
+    """Interpolate free angles linearly between their neighbours along a bead.
 
-    The axis has the whole distance to turn, instead of a jump at its end.
+    The axis then uses the whole distance, instead of jumping at its end.
 
     Parameters
     ----------
     course : (n,) array
         Angles of one axis, rad.
     free : (n,) bool array
-        Points at which the angle has no effect.
+        Points where the angle has no effect.
     place : (n,) array
         Position along the bead, mm.
 
     Returns
     -------
     (n,) array
-        Angles, rad; free ones before the first and after the last fixed one stay.
+        Angles, rad; free angles before the first and after the last fixed angle stay.
     """
     known = np.flatnonzero(~free)
     if not len(known):
         return course
-    # even along the path; angles before the first and after the last known one stay
+    # linear along the path; angles before the first and after the last known angle stay
     led = np.interp(place, place[known], course[known])
     inside = free & (np.arange(len(free)) > known[0]) & (np.arange(len(free)) < known[-1])
     return np.where(inside, led, course)
 
 
 def continuous(turned: Array) -> list[Array]:
-    """Return two courses through the branches that go straight on through a pole.
+    """Return two courses through the branches that pass a pole without reversing.
 
     Parameters
     ----------
@@ -108,7 +107,7 @@ def continuous(turned: Array) -> list[Array]:
     Returns
     -------
     list of (n, 2) array
-        One course that begins on each branch, unwrapped.
+        Two unwrapped courses, one starting in each branch.
     """
     step = np.diff(turned, axis=1)
     across = turned[::-1, 1:] - turned[:, :-1]
@@ -121,19 +120,19 @@ def continuous(turned: Array) -> list[Array]:
 
 
 def hold_free_angles(angles: Array, free: Mask) -> Array:
-    """Set free angles to the previous fixed one, at the beginning to the next one.
+    """Set free angles to the previous fixed angle, or to the next one at the start.
 
     Parameters
     ----------
     angles : (2, n) array
         Angles of one axis in two branches, rad.
     free : (n,) bool array
-        Points at which the angle has no effect.
+        Points where the angle has no effect.
 
     Returns
     -------
     (2, n) array
-        The angles; unchanged if all are free.
+        Angles; unchanged if all are free.
     """
     known = np.flatnonzero(~free)
     if not len(known):
@@ -143,7 +142,7 @@ def hold_free_angles(angles: Array, free: Mask) -> Array:
 
 
 def in_turns(course: Array, before: Array, lower: Array, upper: Array) -> Array:
-    """Move a course by whole turns to start near previous values within limits.
+    """Shift a course by whole turns to start near previous values within limits.
 
     Parameters
     ----------
@@ -152,12 +151,12 @@ def in_turns(course: Array, before: Array, lower: Array, upper: Array) -> Array:
     before : (a,) array
         Previous angles, rad.
     lower, upper : (a,) array
-        Limits, rad, perhaps infinite.
+        Limits, rad; may be infinite.
 
     Returns
     -------
     (n, a) array
-        The course; an axis without room is centred between its limits.
+        Shifted course; an axis that cannot fit its limits is centred between them.
     """
     low, high = course.min(axis=0), course.max(axis=0)
     fewest = np.ceil((lower - low) / TURN - 1e-12)
@@ -181,8 +180,7 @@ def chosen_course(
 ) -> Array:
     """Choose the course within the limits that starts nearest to previous values.
 
-    All whole turns of the turning axes are candidates; the distance is measured as time at
-    maximum speed.
+    All whole turns of the revolute axes are candidates. The distance is the time at maximum speed.
 
     Parameters
     ----------
@@ -191,19 +189,19 @@ def chosen_course(
     before : (a,) array
         Previous values.
     lower, upper : (a,) array
-        Limits, perhaps infinite.
+        Limits; may be infinite.
     speed : (a,) array
         Maximum speeds, rad/s or mm/s.
     turning : (a,) bool array
         Axes that may move by whole turns.
     least_motion : bool, optional
-        Whether the least motion comes first, before the start.
+        Whether the motion ranks before the distance of the start.
 
     Returns
     -------
     (n, a) array
-        If no course is within the limits, the one that exceeds them least; if every course
-        has NaN values, the first.
+        The chosen course. If no course is within the limits, the one that exceeds them least; if
+        every course has NaN values, the first.
     """
     ranked = []
     for course in ways:
@@ -225,28 +223,28 @@ def chosen_course(
 
 @dataclasses.dataclass(frozen=True)
 class Lock:
-    """A locked rotary axis. axis: 0 or 1, its index. angle: rad."""
+    """A locked rotary axis: its index, 0 or 1, and its angle, rad."""
 
     axis: int
     angle: float
 
 
 def courses(cell: Cell, lock: Lock | None, bead: Bead, pole: float = AT_POLE) -> list[Array]:
-    """Return all ways to run a bead on a five-axis machine, up to whole turns.
+    """Return all courses of a bead on a five-axis machine, up to whole turns.
 
-    Directions near the turning axis count as along it. With a `pole` larger than the default
-    the axis turns evenly there.
+    Directions close to the pole count as on the pole. If `pole` exceeds its default, the axis
+    rotates evenly there.
 
     Parameters
     ----------
     cell : Cell
         The cell with a five-axis machine.
     lock : Lock or None
-        The locked rotary axis; None without one.
+        The locked rotary axis; None without a lock.
     bead : Bead
         The bead of n points.
     pole : float, optional
-        Angle to the turning axis that counts as along it, rad.
+        Angle to the revolute axis within which a direction counts as on the pole, rad.
 
     Returns
     -------
@@ -286,7 +284,7 @@ def chosen(cell: Cell, ways: Sequence[Array], before: Array) -> Array:
     Returns
     -------
     (n, 5) array
-        The course.
+        The chosen course.
     """
     lower, upper = cell.limits.lower + RESERVE, cell.limits.upper - RESERVE
     return chosen_course(
@@ -295,14 +293,13 @@ def chosen(cell: Cell, ways: Sequence[Array], before: Array) -> Array:
 
 
 def _locked(arm: FiveAxis, lock: Lock, tools: Array, torch: Array) -> Array:
-    """Return the values (n, 2) of the rotary axes, with one of the axes locked."""
+    """Return the rotary axis values (n, 2) with one axis locked."""
     turned = np.full((len(tools), 2), lock.angle)
     turned[:, 1 - lock.axis] = arm.locked(lock.axis, lock.angle, tools, torch).angle
     return turned
 
 
-# ---- Four-axis motion (Dai 2020, section 5): the locked rotary axis, its angle and the resulting
-# tool axes
+# ---- Four-axis motion (Dai 2020, section 5): the locked rotary axis and the resulting tool axes
 
 
 def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock | None:
@@ -313,14 +310,14 @@ def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock
     cell : Cell
         The cell.
     parameters : JointParameters
-        Joint parameters with `lock` and `lock_at`.
+        Joint parameters, including `lock` and `lock_at`.
     toolpath : Toolpath
-        The toolpath, for the angle with the least maximum residual.
+        The toolpath, for the angle with the smallest maximum residual.
 
     Returns
     -------
     Lock or None
-        None without a lock.
+        The lock; None without one.
 
     Raises
     ------
@@ -350,10 +347,9 @@ def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock
 def as_held(
     cell: Cell, paths: Sequence[BeadPath], lock: Lock | None, allowed: float
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Return the paths with the actual tool axes of their beads.
+    """Replace the requested tool axes of beads by the actual ones.
 
-    Actual and requested axes differ at poles and with a locked axis. Robots keep the requested
-    axes.
+    They differ at poles and with a locked axis. Robots keep the requested tool axes.
 
     Parameters
     ----------
@@ -362,7 +358,7 @@ def as_held(
     paths : sequence of BeadPath
         The paths.
     lock : Lock or None
-        The locked axis; None without one.
+        The locked axis; None without a lock.
     allowed : float
         Residual beyond which the issue is an error, rad.
 
@@ -371,7 +367,7 @@ def as_held(
     paths : list of BeadPath
         The paths.
     issues : list of Issue
-        The worst residual with a lock.
+        The worst residual, if an axis is locked.
     """
     if cell.machine.free:
         return list(paths), []

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Unwraps the axes along the whole job, and fits them to the limits.
+"""Unwrap the axes along the whole job and fit them to the limits.
 
-A part of revolution turns one axis by a full turn per layer. A continuous axis accumulates these
+A part of revolution rotates one axis by a full turn per layer. A continuous axis accumulates these
 turns. A limited axis rewinds between beads. If a bead does not fit from its seam, the seam is
-moved; if the stroke of the axis is less than a full turn, the bead is split.
+moved. If the stroke of the axis is less than a full turn, the bead is split.
 """
 
 from __future__ import annotations
@@ -27,30 +27,30 @@ from ..rotation import global_search, local_optimisation
 from ..rotation.local_optimisation import evaluate_paths
 from ..task import MIN_MARGIN, Task
 
-# an axis that moves this much between two beads is said to turn back, rad
+# rad; joint change between two beads that counts as a rewind
 TURNS_BACK = 1.5 * math.pi
-# rad; an axis that ends no farther from where it started has come back
+# rad; maximum difference between start and end of an axis that has returned
 ROUNDING = 1e-6
-# share of the stroke a piece of a split bead may use
+# fraction of the stroke that a piece of a split bead may use
 USABLE = 0.98
 
 
 def unwrapped(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[Issue]]:
     """Add whole turns so that each path starts near the end of the previous one.
 
-    The margin of each path to the limits limits the turns.
+    Whole turns never reduce the limit margin of a path.
 
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     paths : list of BeadPath
         The paths in print order.
 
     Returns
     -------
     paths : list of BeadPath
-        The paths.
+        The unwrapped paths.
     issues : list of Issue
         Notes on axes that rewind between beads.
     """
@@ -65,7 +65,7 @@ def unwrapped(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[I
             ):
                 back.setdefault(int(axis), []).append(path.layer)
         elif path.reachable and following is not None and following.reachable:
-            # nothing comes before the first bead: it is turned towards the second
+            # no bead precedes the first one, so bring it near the second
             towards = following.joints[0] - (path.joints[-1] - path.joints[0])
             path = replace(path, joints=path.joints + _turns(task, path, towards) * TURN)
         if path.reachable:
@@ -90,7 +90,10 @@ def unwrapped(task: Task, paths: list[BeadPath]) -> tuple[list[BeadPath], list[I
 
 
 def _turns(task: Task, path: BeadPath, before: Array) -> Array:
-    """(axes,) whole turns that bring a bead nearest to the joints before without costing it any of its margin."""
+    """Return the whole turns (axes,) that bring a bead nearest to the joints `before`.
+
+    They do not reduce the margin of the bead.
+    """
     limits = task.cell.limits
     half = np.where(task.continuous, 0.0, 0.5 * (limits.upper - limits.lower))
     kept = 0.0 if path.margin < 0.0 else (path.margin - 1e-9) * half
@@ -106,12 +109,12 @@ def _turns(task: Task, path: BeadPath, before: Array) -> Array:
 
 
 def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
-    """Return a closed bead from a start at which the turning axis has enough stroke.
+    """Move the seam of a closed bead to where the turning axis has enough stroke.
 
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     bead : Bead
         The bead of n points.
     joints : (n, axes) array
@@ -120,10 +123,10 @@ def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
     Returns
     -------
     bead : Bead
-        The bead; unchanged if no axis turns, no start helps, or an external axis waits at
-        its limit and does not close.
+        The bead; unchanged if no axis makes a whole turn, if the bead is not closed, or if its
+        external axes do not return to their start.
     index : int
-        Index of the start; 0 for an unchanged bead.
+        Index of the new start; 0 for an unchanged bead.
     """
     axis = turning_axis(task, joints)
     if axis is None or not bead.closed or not _come_round(bead):
@@ -138,28 +141,26 @@ def moved_seam(task: Task, bead: Bead, joints: Array) -> tuple[Bead, int]:
 
 
 def _come_round(bead: Bead) -> bool:
-    """Return whether the external axes of a closed bead end at their start values, apart from whole
-    turns.
-    """
+    """Whether the external axes of a closed bead return to their start, up to whole turns."""
     return bead.external is None or bool(
         (np.abs(shortest(bead.external[-1] - bead.external[0])) < ROUNDING).all()
     )
 
 
 def turning_axis(task: Task, joints: Array) -> int | None:
-    """Return the limited axis that ends a whole turn or more from its start.
+    """Return the limited axis that makes at least one whole turn.
 
     Parameters
     ----------
     task : Task
-        The task, with the axes without limits.
+        The plan, including the continuous axes.
     joints : (n, axes) array
         Joint values of a path, rad or mm.
 
     Returns
     -------
     int or None
-        The axis that turns most; None without one, or if a value is not finite.
+        The axis with the most turns; None if no axis makes a turn or a value is not finite.
     """
     if not np.isfinite(joints).all():
         return None
@@ -168,28 +169,27 @@ def turning_axis(task: Task, joints: Array) -> int | None:
 
 
 def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
-    """Divide a bead so that the turning axis stays within its limits.
+    """Split a bead so that the turning axis stays within its limits.
 
-    A piece ends where the axis would pass a limit; the next one starts with the axis turned
-    back. An axis without the stroke for a full turn gets pieces of equal length, which then
-    need rotations of their own.
+    A piece ends where the axis would exceed a limit. The axis rewinds before the next piece. An
+    axis with a stroke below a full turn gets pieces of equal length; each piece then needs its own
+    rotation.
 
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     bead : Bead
         The bead of n points.
     joints : (n, axes) array
         Joints unwrapped over the bead, rad or mm.
     more : int, optional
-        Number of pieces beyond the fewest.
+        Number of pieces beyond the minimum.
 
     Returns
     -------
     list of slice
-        The points of each piece; one piece if points are out of reach or cutting does not
-        help.
+        Points of each piece; a single piece if points are unreachable or splitting does not help.
     """
     axis = int(np.argmax(np.ptp(joints, axis=0) * ~task.unturned))
     low, high = task.rows_of_axis(axis)
@@ -198,20 +198,21 @@ def pieces(task: Task, bead: Bead, joints: Array, more: int = 0) -> list[slice]:
         if not np.isfinite(along).all():
             return [slice(0, len(bead))]
         count = int(np.ceil(np.ptp(along) / (USABLE * (high - low)))) + more
-        count = min(count, len(bead) - 1)  # a piece has two points at least
+        count = min(count, len(bead) - 1)  # a piece has at least two points
         ends = np.round(np.linspace(0, len(bead) - 1, count + 1)).astype(int)
         return [slice(int(start), int(end) + 1) for start, end in zip(ends[:-1], ends[1:])]
     if abs(along[-1] - along[0]) > ROUNDING:
         return _cut(along, bool(along[-1] > along[0]), low, high)
-    # an axis that comes back may start from either side: take the side with fewer pieces; a single
-    # piece does not help
+    # an axis that returns may start from either limit: use the one with fewer pieces, but not with
+    # a single piece, which does not help
     both = [_cut(along, rising, low, high) for rising in (True, False)]
     return min(both, key=lambda parts: (len(parts) == 1, len(parts)))
 
 
 def _cut(along: Array, rising: bool, low: float, high: float) -> list[slice]:
-    """Return the pieces of an axis (n,) that runs up or down, each as long as its stroke; one if
-    cutting does not help.
+    """Return pieces of an axis path (n,) that each use the full stroke, rising or falling.
+
+    Return a single piece if splitting does not help.
     """
     cuts = [0]
     while True:
@@ -230,22 +231,22 @@ def _cut(along: Array, rising: bool, low: float, high: float) -> list[slice]:
 
 
 def is_spiral(bead: Bead) -> bool:
-    """True for an open bead that runs more than one turn about the axis."""
+    """Whether an open bead makes more than one turn about the axis."""
     return not bead.closed and abs(bead.parameter[-1] - bead.parameter[0]) > 1.01 * TURN
 
 
 def is_otherwise(bead: Bead, pieces: Sequence[Bead]) -> bool:
-    """Return whether a bead has another seam or several pieces."""
+    """Whether planning moved the seam of a bead or split the bead."""
     return len(pieces) > 1 or bool((pieces[0].points[0] != bead.points[0]).any())
 
 
 def seam_notes(moved: list[int], split: list[int]) -> list[Issue]:
-    """Return the notes on layers with moved seams and on layers with split beads."""
+    """Return notes on layers with moved seams and with split beads."""
     return ([seam_note(moved)] if moved else []) + ([split_note(split)] if split else [])
 
 
 def seam_note(layers: list[int]) -> Issue:
-    """Return the note that seams were moved to suit a limited axis."""
+    """Return a note that seams were moved to suit a limited axis."""
     return Issue(
         NOTE,
         "SEAM_MOVED",
@@ -255,7 +256,7 @@ def seam_note(layers: list[int]) -> Issue:
 
 
 def split_note(layers: list[int]) -> Issue:
-    """Return the warning that beads were split because an axis lacks the stroke."""
+    """Return a warning that beads were split because an axis lacks the stroke."""
     return Issue(
         WARNING,
         "BEAD_SPLIT",
@@ -274,15 +275,15 @@ MOVED, SPLIT = "seam moved for a limited axis", "split for a limited axis"
 def for_beads(
     task: Task, beads: Sequence[Bead], places: Sequence[Place]
 ) -> list[list[BeadPath] | None]:
-    """Find another seam or pieces for beads that exceed limits.
+    """Find a new seam or a split for beads that exceed limits.
 
-    The search treats the robot's last axis and the external axes as continuous; then a start or
-    cuts are chosen that suit their limits.
+    The search treats the last robot axis and the external axes as continuous. It then chooses a
+    seam or pieces that suit their limits.
 
     Parameters
     ----------
     task : Task
-        The plan, with limits.
+        The plan, including limits.
     beads : sequence of Bead
         The beads.
     places : sequence of Place
@@ -291,8 +292,7 @@ def for_beads(
     Returns
     -------
     list[list[BeadPath] or None]
-        The path from another seam, or the paths of the pieces; None if neither keeps all
-        limits.
+        The path from a new seam, or the paths of the pieces; None if neither is feasible.
     """
     result: list[list[BeadPath] | None] = [None] * len(beads)
     left = [k for k, bead in enumerate(beads) if not is_spiral(bead)]
@@ -302,12 +302,12 @@ def for_beads(
     for most in (
         global_search.POINTS_PER_BEAD,
         None,
-    ):  # what suits few points may not suit those between them
+    ):  # a solution for few points may fail between them, so retry with all points
         if not left:
             break
         points = gather([beads[k] for k in left], task.cell, most)
         threshold = task.thresholds(points)
-        # only with slopes of whole turns can a seam be moved after the planning
+        # a seam can move after planning only if slopes are integers
         found = global_search.everywhere(
             free, points, threshold, global_search.CLOSING_SLOPES, OFFSETS, best_alone=True
         )
@@ -324,7 +324,7 @@ def for_beads(
 def insert_replacements(
     task: Task, paths: Sequence[BeadPath], helped: Mapping[int, list[BeadPath]]
 ) -> tuple[list[BeadPath], list[Issue]]:
-    """Insert replacements of paths and renumber the beads.
+    """Insert replacement paths and renumber the beads.
 
     Parameters
     ----------
@@ -333,14 +333,14 @@ def insert_replacements(
     paths : sequence of BeadPath
         The paths.
     helped : Mapping[int, list[BeadPath]]
-        Replacements by index of the path.
+        Replacements by path index.
 
     Returns
     -------
     paths : list of BeadPath
         The paths in print order.
     issues : list of Issue
-        Notes on moved seams and split beads; an error for a spiral on a limited axis.
+        Notes on moved seams and split beads; an error if a spiral exceeds a limited axis.
     """
     result: list[BeadPath] = []
     issues: list[Issue] = []
@@ -363,10 +363,11 @@ def insert_replacements(
 
 
 def _would_fit_continuous(task: Task, path: BeadPath) -> bool:
-    """Return whether the limits of the last axis are why a spiral breaks a limit.
+    """Whether a spiral exceeds limits because its last axis is limited.
 
-    The limited axis makes a whole turn, or a continuous last axis would keep every limit. The
-    search chooses the least violation, which may be at another axis.
+    This holds if a limited axis makes a whole turn, or if a continuous last axis would keep all
+    limits. The second test is needed because the search minimises the violation, which may shift it
+    to another axis.
     """
     if turning_axis(task, path.joints) is not None:
         return True
@@ -400,7 +401,7 @@ def _fitted(
 
 
 def _piece(task: Task, bead: Bead, place: Place, coefficients: Array) -> BeadPath:
-    """A piece with the rotation of the whole bead, or where that does not serve with one of its own."""
+    """Plan a piece with the rotation of the whole bead, or with its own rotation if needed."""
     path = _one(task, bead, place, coefficients, SPLIT)
     if path.margin >= MIN_MARGIN:
         return path
