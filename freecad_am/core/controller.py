@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What planning must know of the controller that a program is for. Every post has one such record and hands it down."""
+"""Controller requirements that planning must meet. Every post provides one such record."""
 
 from __future__ import annotations
 
@@ -8,23 +8,22 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Controller:
-    """The requirements of a controller on planning; the defaults describe a controller without any.
+    """Requirements of a controller on planning; the defaults describe a controller without any.
 
-    external: whether axes next to the robot are written, and positioner: its default name for the
-    first one that carries the part (mechanical unit, motion group, number of MACHINE_DEF).
-    configurations: whether Cartesian positions name the configuration of the arm, in words of a
-    spherical wrist. flange: whether programs with the part on the robot count on the pose of the
-    flange. pulses: whether positions are in pulses of the axes, and Cartesian speeds in the unit of
-    the controller. whole_beads: whether a program of several files is loaded file by file, each
-    with whole beads. straight_in_part: whether linear moves with the part on the robot run straight
-    as the part sees them, so that beads need no points in between. least_step: s, shorter moves of
-    a bead are not taken, 0 where there is no limit. least_blend: mm next to a point, by controllers
-    that blend by a share of it at 100 % and stop where that is too little. arc_moves: whether arc
-    instructions are linear moves themselves, the one onto the start of a bead and its last one.
-    linear_triggers: whether the deposit is switched ahead of a place on linear moves, in Cartesian
-    programs on the one onto a bead too. point_bytes: about how many bytes of the program a point
-    takes. memory_mb: MB of programs that a user of such a controller was known to have room for, 0
-    if unknown.
+    external: whether the post writes external axes. positioner: default name of the first
+    mechanism that carries the part (mechanical unit, motion group, number of MACHINE_DEF).
+    configurations: whether Cartesian positions name the arm configuration, in terms of a spherical
+    wrist. flange: whether programs with the part on the robot need the flange pose. pulses: whether
+    positions are in axis pulses, and Cartesian speeds in the controller's unit. whole_beads:
+    whether a program of several files is loaded file by file, each with whole beads.
+    straight_in_part: whether linear moves with the part on the robot are straight in the part
+    frame, so that beads need no intermediate points. least_step: s, minimum duration of a bead
+    move, 0 without a limit. least_blend: mm next to a point, for controllers whose blend at 100 %
+    is a fraction of that distance and which stop if it is too short. arc_moves: whether arc
+    instructions are themselves linear moves, namely the move onto the start of a bead and its last
+    move. linear_triggers: whether the deposit can be switched ahead of a point on linear moves; in
+    Cartesian programs this includes the move onto a bead. point_bytes: approximate program bytes
+    per point. memory_mb: MB, known program memory of such a controller, 0 if unknown.
     """
 
     external: bool = False

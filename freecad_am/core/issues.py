@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Issues and errors: what is wrong, where, and the remedy.
 
-A problem of a valid job (unreachable point, limit exceeded) is an `Issue` with its place. Unusable
-input is an `InputError`. A user's mistake raises nothing else from this package.
+A problem of a valid job (unreachable point, limit exceeded) is an `Issue` with its location.
+Unusable input is an `InputError`. A user's mistake raises no other exception from this package.
 """
 
 from __future__ import annotations
@@ -16,16 +16,16 @@ from typing import Any
 from .number_texts import number_text
 
 ERROR, WARNING, NOTE = "error", "warning", "note"
-MAX_RANGES = 6  # of layers that a merged issue names
+MAX_RANGES = 6  # maximum number of layer ranges in the message of a merged issue
 
 
 class Text(str):
     """An English sentence with its template and values, for translation.
 
     `Text("it has {} faces of {:.3g} mm", count, width)` behaves like the formatted string.
-    `template` has numbered places, '{0} faces of {1} mm', and `values` holds their formatted
-    contents; a value that is a Text keeps its own parts. Without values the text is used unchanged,
-    including braces.
+    `template` has numbered placeholders, '{0} faces of {1} mm', and `values` holds the formatted
+    values. A value that is a Text keeps its template and values. Without values the text is used
+    unchanged, including braces.
     """
 
     __slots__ = ("template", "values")
@@ -56,7 +56,7 @@ class Text(str):
 
     @staticmethod
     def joined(between: str, texts: Iterable[str]) -> str:
-        """Several in a row: pairs of '{0}, {1}', however many there are; '' for none."""
+        """Join any number of texts by nested pairs of '{0}, {1}'; '' for none."""
         some, pair = list(texts), f"{{}}{between}{{}}"
         while len(some) > 1:
             some = [
@@ -67,7 +67,7 @@ class Text(str):
 
 
 def values_in(text: str) -> Iterator[str]:
-    """Return the values of a text and of the texts among its values; empty for a plain string."""
+    """Yield the values of a text and of nested texts; a plain string has none."""
     for value in getattr(text, "values", ()):
         yield value
         yield from values_in(value)
@@ -75,15 +75,16 @@ def values_in(text: str) -> Iterator[str]:
 
 @dataclass(frozen=True)
 class Word:
-    """A word or part of a sentence that the code selects, such as a plural; part of the template,
-    not a value.
+    """A word or phrase that the code selects, such as a plural.
+
+    It becomes part of the template, not a value.
     """
 
     text: str
 
 
 def _pieces(text: str, values: tuple[object, ...]) -> Iterator[tuple[str, str | None]]:
-    """Yield the text before each place and the value at the place; None after the last one."""
+    """Yield the text before each placeholder and its value; None if no placeholder follows."""
     given = iter(values)
     for literal, place, form, conversion in Formatter().parse(text):
         if place is None:
@@ -105,7 +106,7 @@ def _pieces(text: str, values: tuple[object, ...]) -> Iterator[tuple[str, str | 
 
 
 def _write(value: object, form: str) -> str:
-    """A value in a form; a number that a `g` form rounds has no exponent where it is of ordinary size."""
+    """Format a value; with a `g` form, numbers of ordinary size have no exponent."""
     if form.endswith("g") and isinstance(value, (int, float)):
         return number_text(value, form)
     return format(value, form)
@@ -113,8 +114,9 @@ def _write(value: object, form: str) -> str:
 
 @dataclass(frozen=True)
 class Issue:
-    """A problem of a job. `layer`, `bead` and `point` count from 0 and are None if they do not
-    apply.
+    """A problem of a job.
+
+    `layer`, `bead` and `point` count from 0 and are None if they do not apply.
     """
 
     level: str
@@ -125,12 +127,12 @@ class Issue:
     point: int | None = None
 
     def as_dict(self) -> dict[str, Any]:
-        """The form used in report.json."""
+        """Return the issue as stored in report.json."""
         return asdict(self)
 
     @property
     def where(self) -> str:
-        """Return the place in words, '' without one."""
+        """Location in words, '' if there is none."""
         named = (("layer {}", self.layer), ("bead {}", self.bead), ("point {}", self.point))
         known = [(word, index) for word, index in named if index is not None]
         return (
@@ -141,19 +143,19 @@ class Issue:
 
 
 def summarised(issues: Iterable[Issue]) -> list[Issue]:
-    """Merge issues of the same kind in several layers into one each, for people; reports keep every issue.
+    """Merge all issues of the same kind into one issue for display; reports keep every issue.
 
     Parameters
     ----------
     issues
-        Issues in any order. Two are of the same kind when level, code and message template agree.
+        Issues in any order. Two are of the same kind if level, code and message template agree.
 
     Returns
     -------
     list of Issue
-        In the order of the first of each kind. A merged issue has the worst place, which is the one
-        whose message has the largest leading figure, and its message names the count and the
-        layers.
+        One issue per kind, in the order of first occurrence. A merged issue has the location of the
+        worst issue, whose message has the largest leading number. Its message gives the count and
+        the layers.
     """
     kinds: dict[tuple[str, str, str], list[Issue]] = {}
     for issue in issues:
@@ -163,7 +165,7 @@ def summarised(issues: Iterable[Issue]) -> list[Issue]:
 
 
 def _merged(issues: list[Issue]) -> Issue:
-    """Merge issues of one kind; a single one, or several in fewer than two layers, stay as the first is."""
+    """Merge issues of one kind at the location of the worst issue."""
     layers = sorted({issue.layer for issue in issues if issue.layer is not None})
     worst = max(issues, key=_leading_figure)
     if len(issues) == 1:
@@ -181,7 +183,7 @@ def _merged(issues: list[Issue]) -> Issue:
 
 
 def _leading_figure(issue: Issue) -> float:
-    """Return the first number that was put into the message, -inf without one."""
+    """Return the first numeric value of the message, -inf if there is none."""
     for value in getattr(issue.message, "values", ()):
         try:
             return float(value)
@@ -191,7 +193,10 @@ def _leading_figure(issue: Issue) -> float:
 
 
 def ranges(numbers: Sequence[int]) -> str:
-    """Write ascending numbers as ranges, `2 to 5, 9`; after the first six ranges with the number of further ones."""
+    """Format ascending numbers as ranges, `2 to 5, 9`.
+
+    After MAX_RANGES ranges, give the count of the remaining numbers.
+    """
     runs: list[list[int]] = []
     for number in numbers:
         if runs and number == runs[-1][-1] + 1:
@@ -204,20 +209,20 @@ def ranges(numbers: Sequence[int]) -> str:
 
 
 def has_errors(issues: tuple[Issue, ...] | list[Issue]) -> bool:
-    """True when one of the issues forbids writing a program."""
+    """Whether any issue is an error, so that no program may be written."""
     return any(issue.level == ERROR for issue in issues)
 
 
 class AmError(Exception):
-    """Base of the errors that the package raises on purpose.
+    """Base class of the errors that the package raises deliberately.
 
-    `exit_status` is the status of the headless command.
+    `exit_status` is the exit status of the headless command.
     """
 
     exit_status = 1
 
     def __init__(self, code: str, where: str, message: str, *values: object) -> None:
-        """Create the error; `values` fill the places of the message, see Text."""
+        """Create the error; `values` fill the placeholders of the message, see Text."""
         self.code = code
         self.where = where
         self.message = Text(message, *values) if values else message
@@ -225,14 +230,14 @@ class AmError(Exception):
         super().__init__(self.sentence)
 
     def line(self) -> str:
-        """The single line printed to stderr: error[CODE] where: what, and what to do."""
+        """Return the line printed to stderr: error[CODE] where: problem and remedy."""
         return f"error[{self.code}] {self.where}: {self.message}"
 
 
 class InputError(AmError):
-    """The job, the part, a machine file or the usage is wrong; the message says what to do.
+    """The job, the part, a machine file or the usage is wrong; the message gives the remedy.
 
-    `mended_by`: parameters by key, with values that mend it, where these are known.
+    `mended_by`: parameter values by key that fix the problem, if known.
     """
 
     exit_status = 2
@@ -250,7 +255,7 @@ class InputError(AmError):
 
 
 class InfeasibleError(AmError):
-    """A sound job that cannot be carried out. `issues` names every place."""
+    """A valid job is infeasible; `issues` gives every location."""
 
     exit_status = 3
 

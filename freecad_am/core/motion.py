@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The motion: every point the machine passes, in order, as columns.
+"""The motion: every point that the machine passes, in order, as columns.
 
-Each bead has its rapid rows (retract from the previous bead, travel, approach onto the start) and
-then its deposit rows. The first deposit row repeats the position of the last rapid row and takes no
-time, so that a bead's rows are complete. After the last bead the tool is retracted.
+Each bead has rapid rows (retract from the previous bead, travel, approach onto the start) followed
+by deposit rows. The first deposit row repeats the position of the last rapid row and takes no time,
+so that a bead's rows are complete. After the last bead the tool retracts.
 
-A rapid is straight in the joints and stops at each row. A bead passes through its rows and stops at
-its end. The program decides whether joints or the tip are straight within a bead.
+A rapid is straight in joint space and stops at each row. A bead passes through its rows and stops
+at its end. The program decides whether bead moves are straight in joint space or in the tip path.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ import numpy as np
 
 from .types import Array, Integers, Mask
 
-# purpose of the move that ends at a row: deposit; away from the previous bead; over to the next
-# bead; onto its start
+# roles of the move that ends at a row: deposit; away from the previous bead; to the next bead; onto
+# the start of that bead
 DEPOSIT, RETRACT, TRAVEL, APPROACH = range(4)
 UNKNOWN = -1  # unknown class of a bead
 MIDDLE, AT_START, AT_END = PHASES = range(3)  # phase of the bead segment that ends at a row
@@ -27,18 +27,18 @@ MIDDLE, AT_START, AT_END = PHASES = range(3)  # phase of the bead segment that e
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Columns of n rows. Points and directions in the part's own frame, mm; joints serial, rad.
+    """Columns of n rows. Points and directions in the part frame, mm; serial joint values, rad.
 
-    deposit: (n,) bool. layer, bead, point: (n,) int from 0; a rapid row carries the bead it leads
-    to. position, build, tool: (n, 3). speed: (n,) mm/s at the deposition point on the segment that
-    ends at the row. width: (n,) mm, NaN without a bead model. joints: (n, axes) unwrapped along the
-    whole job, NaN where unreachable. duration: (n,) s of the segment that ends at the row. wire:
-    (n,) mm/s of the wire on that segment if it follows the travel speed, else NaN, the default.
-    role: (n,) DEPOSIT, RETRACT, TRAVEL or APPROACH; by default, as in documents of older versions,
-    one retract and one approach row between beads, or none with too few rows. bead_class: (n,)
-    index in `parameters.bead_classes.CLASSES` for the bead that the row belongs or leads to;
-    UNKNOWN by default. phase: (n,) phase, see PHASES. halt: (n,) bool, the rows within beads at
-    which the machine stops, for example to reverse; none by default.
+    deposit: (n,) bool. layer, bead, point: (n,) int from 0; a rapid row has the indices of the bead
+    that it leads to. position, build, tool: (n, 3). speed: (n,) mm/s at the deposition point on the
+    segment that ends at the row. width: (n,) mm, NaN without a bead model. joints: (n, axes)
+    unwrapped along the whole job, NaN where unreachable. duration: (n,) s of the segment that ends
+    at the row. wire: (n,) wire speed on that segment, mm/s, if the wire follows the travel speed,
+    else NaN (default). role: (n,) DEPOSIT, RETRACT, TRAVEL or APPROACH. By default, as in documents
+    of older versions, there is one retract and one approach row between beads, or none with too few
+    rows. bead_class: (n,) index in `parameters.bead_classes.CLASSES` for the bead that the row
+    belongs or leads to; UNKNOWN by default. phase: (n,) phase, see PHASES. halt: (n,) bool, rows
+    within beads at which the machine stops, for example to reverse; none by default.
     """
 
     deposit: Mask
@@ -81,15 +81,13 @@ class Motion:
 
     @property
     def moves(self) -> Mask:
-        """(n,) bool: the rows a controller moves to; the first row of a bead repeats the present
-        position.
-        """
+        """Rows that need a move, (n,) bool; the first row of a bead repeats the current position."""
         return np.asarray(~(self.deposit & (self.point == 0)), dtype=np.bool_)
 
     @cached_property
     def stops(self) -> Mask:
-        """(n,) bool: the rows at which the machine comes to a stop: all of a rapid, ends of beads, and where it halts."""
-        # kept, as every bead of a program asks for its own rows
+        """Rows at which the machine stops, (n,) bool: rapid rows, bead ends and halts."""
+        # cached because the program reads this column once per bead
         last = np.append(~self.deposit[1:] | (self.point[1:] == 0), True)[: len(self)]
         stops: Mask = ~self.deposit | last | self.halt
         stops.setflags(write=False)
@@ -97,7 +95,7 @@ class Motion:
 
     @property
     def reachable(self) -> Mask:
-        """(n,) bool: rows with joint values."""
+        """Rows with joint values, (n,) bool."""
         return np.asarray(np.isfinite(self.joints).all(axis=1), dtype=np.bool_)
 
     @property
@@ -107,7 +105,7 @@ class Motion:
 
 
 def _roles(deposit: Mask) -> Integers:
-    """Return the roles (n,) of the rows, derived from the rows before and after them."""
+    """Return the default roles (n,), derived from the sequence of deposit and rapid rows."""
     role = np.where(deposit, DEPOSIT, TRAVEL).astype(np.int64)
     edges = np.concatenate([[0], np.flatnonzero(deposit[1:] != deposit[:-1]) + 1, [len(deposit)]])
     for start, end in zip(edges[:-1].tolist(), edges[1:].tolist()):

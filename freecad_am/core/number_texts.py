@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Numbers and quantities in texts for people.
+"""Numbers and quantities in user-facing texts.
 
 Texts of this package are in mm, mm/s, cm3 and kg. `in_other_units` rewrites such a text for a
-window with other units; the caller chooses them.
+window with other units, which the caller chooses.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import re
 from collections.abc import Callable, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal
 
-# units of our texts: as they are written, and as FreeCAD reads them
+# units as written in our texts, and the same units as FreeCAD parses them
 SPEEDS = ("mm/min", "mm/s", "m/min")
 UNITS = {
     **{unit: unit for unit in (*SPEEDS, "m/s", "mm", "cm", "m", "kg", "g")},
@@ -34,14 +34,14 @@ UNITS = {
         f"{unit}/min": f"{base}^3/min" for base in ("mm", "cm") for unit in (f"{base}3", f"{base}³")
     },
 }
-# examples of input, and the formula of bead models, whose coefficients are in mm
+# marks of input examples and of the bead model formula, whose coefficients are in mm
 _EXAMPLE = re.compile(r"such as|for instance|, as (?:in )?[\d{]|v\^\(-1/3\)")
 _ALONE = re.compile(r"[-+]?\d[\d,]*(?:\.\d+)?(?:e[-+]?\d+)?")
-# of `core.geometry.formatting.place`
+# output of `core.geometry.formatting.place`
 _PLACE = re.compile(r"\(-?[\d.]+(?:e-?\d+)?(?:, -?[\d.]+(?:e-?\d+)?){2}\)")
-_PRIVATE = 0xE000  # code points without a meaning in any language
-LARGEST_PLAIN, SMALLEST_PLAIN = 1e15, 1e-9  # beyond these an exponent is easier to read
-LEAST_DIGITS, MOST_DIGITS = 3, 7  # significant ones of a converted number
+_PRIVATE = 0xE000  # first private-use code point
+LARGEST_PLAIN, SMALLEST_PLAIN = 1e15, 1e-9  # numbers outside this range keep an exponent
+LEAST_DIGITS, MOST_DIGITS = 3, 7  # limits of the significant digits of a converted number
 
 _NUMBER = r"[-+−]?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?:e[-+]?\d+)?"
 _EXPONENT = re.compile(r"(?<![\w.])-?\d(?:\.\d+)?e[-+]\d+(?![\w.])")
@@ -58,7 +58,10 @@ Convert = Callable[[float, str], tuple[float, str] | None]
 
 
 def number_text(value: float, form: str) -> str:
-    """A number in a form such as '.3g', without an exponent where it is of ordinary size: 190 for 1.9e+02."""
+    """Format a number with a form such as '.3g', but write 190 instead of 1.9e+02.
+
+    Very large and very small numbers keep the exponent.
+    """
     text = format(value, form)
     if "e" not in text or not SMALLEST_PLAIN <= abs(value) < LARGEST_PLAIN:
         return text
@@ -66,7 +69,7 @@ def number_text(value: float, form: str) -> str:
 
 
 def expand_exponents(text: str) -> str:
-    """A text with numbers such as 1.2e+04 written out where they are of ordinary size."""
+    """Write numbers such as 1.2e+04 in a text without exponent, unless very large or small."""
     return _EXPONENT.sub(_written_out, text)
 
 
@@ -76,12 +79,12 @@ def _written_out(match: re.Match[str]) -> str:
 
 
 def significant(value: float, digits: int, rounding: str = ROUND_HALF_EVEN) -> str:
-    """Return a number rounded to significant digits, without an exponent or zeros at its end.
+    """Round a number to significant digits, without an exponent or trailing zeros.
 
     Parameters
     ----------
     value : float
-        The number; not finite, very small and very large ones keep an exponent.
+        The number. Very small and very large numbers keep an exponent.
     digits : int
         Number of significant digits.
     rounding : str, optional
@@ -102,7 +105,11 @@ def significant(value: float, digits: int, rounding: str = ROUND_HALF_EVEN) -> s
 
 
 def exact_or_rounded(value: float) -> str:
-    """A number for a field: whole where it has few digits, else with three decimals and four digits at least."""
+    """Format a number for an input field.
+
+    Numbers with up to nine significant digits are exact. Others are rounded to three decimals, but
+    to at least four significant digits.
+    """
     for digits in range(1, 10):
         short = f"{value:.{digits}g}"
         if math.isclose(float(short), value, rel_tol=1e-12):
@@ -123,13 +130,13 @@ def in_other_units(text: str, convert: Convert) -> str:
     text : str
         A text with quantities such as '5 mm', '2 to 3 mm/s' and '1, 2, 3 mm'.
     convert : callable
-        `convert(value, unit)` returns the other unit's size in our unit, and its name; None to keep
-        the quantity.
+        `convert(value, unit)` returns the factor from our unit to the other unit and the other
+        unit's name; None keeps the quantity.
 
     Returns
     -------
     str
-        The text; numbers after 'at most' or 'at least' are rounded to the allowed side.
+        The text. Numbers after 'at most' are rounded down, numbers after 'at least' up.
     """
 
     def converted(match: re.Match[str]) -> str:
@@ -166,7 +173,7 @@ def _digits(number: str) -> int:
 
 
 def is_example(template: str) -> bool:
-    """Return whether a template gives examples of input, whose quantities must not change."""
+    """Whether a template gives input examples, whose quantities must not be converted."""
     return _EXAMPLE.search(template) is not None
 
 
@@ -176,16 +183,17 @@ def put_values(template: str, values: Sequence[str], in_units: Callable[[str], s
     Parameters
     ----------
     template : str
-        With numbered places, as in `core.issues.Text`.
+        A template with numbered placeholders, as in `core.issues.Text`.
     values : sequence of str
-        `in_units` does not see values other than numbers, units and places: they may be names such
-        as 'Plate 5 mm'.
+        The values. Only numbers, units and coordinates are passed to `in_units`: other values may
+        be names such as 'Plate 5 mm'.
     in_units : callable
-        Returns a text of numbers with its quantities in other units.
+        Converts the quantities in a text to other units.
 
     Returns
     -------
     str
+        The filled template.
     """
     if is_example(template):
         return template.format(*values)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Limits the linear algebra libraries below numpy and scipy to one thread.
+"""Limit the linear algebra libraries of numpy and scipy to one thread.
 
 With more threads OpenBLAS rounds differently, even for six equations, and our small matrices take
-many times as long: docs/decisions/0016-one-thread.md. A process of our own gets the limit by
-`ENVIRONMENT`, before it loads numpy. In FreeCAD numpy may be loaded already and other code uses it
-too, so the limit is set for our work and then reset. threadpoolctl finds the libraries if it is
-installed.
+many times as long: docs/decisions/0016-one-thread.md. A process that we start gets the limit from
+`ENVIRONMENT` before it loads numpy. In FreeCAD, numpy may already be loaded and is shared with
+other code, so we set the limit for our work and then restore it. threadpoolctl finds the libraries
+if it is installed.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ import threading
 from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
-# settings of the libraries that numpy may be built on: OpenBLAS, any with OpenMP, MKL, BLIS,
-# Apple's
+# environment variables of the libraries that numpy may use: OpenBLAS, OpenMP, MKL, BLIS and Apple
+# Accelerate
 ENVIRONMENT = dict.fromkeys(
     (
         "OPENBLAS_NUM_THREADS",
@@ -32,8 +32,8 @@ ENVIRONMENT = dict.fromkeys(
     ),
     "1",
 )
-# functions that get and set the number of threads in OpenBLAS (renamed in the wheels of numpy and
-# scipy), MKL and OpenMP, where each calling thread has its own number
+# getter and setter of the thread count in OpenBLAS (renamed in the wheels of numpy and scipy), MKL
+# and OpenMP. OpenMP has a separate thread count for each calling thread
 _FUNCTIONS = (
     *(
         (f"{before}openblas_get_num_threads{after}", f"{before}openblas_set_num_threads{after}")
@@ -46,14 +46,14 @@ _FUNCTIONS = (
 
 
 class _Number(NamedTuple):
-    """The thread limit of a library: its functions to get and set it."""
+    """Getter and setter of a library's thread count."""
 
     get: Callable[[], int]
     set: Callable[[int], None]
 
 
 class _Limit:
-    """The limit of this process, and who holds it."""
+    """The thread limit of this process, with a count of its holders."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -89,24 +89,24 @@ def one_thread() -> Iterator[None]:
 
 
 def hold() -> None:
-    """Run linear algebra in one thread until `release` was called as many times as this."""
+    """Run linear algebra in one thread until each `hold` has a matching `release`."""
     _limit.hold()
 
 
 def release() -> None:
-    """End one `hold`; the last one restores the numbers of threads."""
+    """End one `hold`; the last `release` restores the thread counts."""
     _limit.release()
 
 
 def limit_calling_thread() -> None:
-    """Set one thread for the calling thread too: OpenMP has a number for each thread."""
+    """Limit the calling thread too: OpenMP has a separate thread count for each thread."""
     for number in _numbers():
         number.set(1)
 
 
 @functools.cache
 def _numbers() -> tuple[_Number, ...]:
-    """Return the thread limits of the libraries below numpy and scipy."""
+    """Return the thread counts of the libraries that numpy and scipy use."""
     try:
         from threadpoolctl import ThreadpoolController
     except ImportError:
@@ -120,8 +120,10 @@ def _numbers() -> tuple[_Number, ...]:
 
 
 def _search_numbers() -> tuple[_Number, ...]:
-    """Return the thread limits without threadpoolctl, where the linker looks up functions in the
-    dependencies of a module (not on Windows).
+    """Find the thread counts without threadpoolctl.
+
+    This needs a linker that searches the dependencies of a module for functions, so it does not
+    work on Windows.
     """
     numbers: dict[int, _Number] = {}
     for file in _linked_modules():
@@ -136,7 +138,7 @@ def _search_numbers() -> tuple[_Number, ...]:
 
 
 def _linked_modules() -> list[str]:
-    """Return the modules of numpy and scipy that use linear algebra, without importing scipy."""
+    """Return the linear algebra modules of numpy and scipy, without importing scipy."""
     files = []
     for package, module in (("numpy", "_umath_linalg"), ("scipy", "_fblas")):
         spec = importlib.util.find_spec(package)

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Conversions between rotations and numbers: angles about three axes, quaternions and rotation
-vectors.
+"""Conversions from rotation matrices to angles, quaternions and rotation vectors, and back.
 
-Each formula exists once, here. Posts use them under the name of their controller, with the letters
-of its pendant.
+Posts share these formulas and add the pendant's letters.
 
-Rotations are (n, 3, 3), numbers (n, 3) or (n, 4), angles in rad. Readers of programs have formulas
-of their own, to detect errors here.
+Rotations are (n, 3, 3), numbers (n, 3) or (n, 4), angles in rad. Program readers deliberately have
+separate formulas, to detect errors here.
 """
 
 from __future__ import annotations
@@ -22,7 +20,7 @@ from .types import Array
 
 @dataclass(frozen=True, eq=False)
 class Orientation:
-    """A pair of conversions.
+    """A pair of inverse conversions.
 
     numbers: from rotations (n, 3, 3) to numbers. rotations: from numbers to rotations. degrees:
     whether pendants show degrees.
@@ -35,7 +33,11 @@ class Orientation:
 
 @dataclass(frozen=True)
 class Pendant:
-    """How a controller's pendant shows what turns a frame: whose it is, the letters behind X Y Z, of how many decimals."""
+    """How a controller's pendant shows orientations.
+
+    maker: manufacturer. letters: labels of the orientation values, after X Y Z. digits: number of
+    decimals.
+    """
 
     maker: str
     letters: tuple[str, ...]
@@ -52,16 +54,17 @@ def _from_bryant(angles: Array) -> Array:
 
 
 def about_fixed(rotation: Array, still: str) -> Array:
-    """Return the angles about the fixed X, Y and Z axes of rotations Rz Ry Rx.
+    """Return the angles about the fixed X, Y and Z axes for rotations Rz Ry Rx.
 
-    If the angle about Y is a right angle, only the sum or difference of the others counts.
+    If the angle about Y is a right angle (gimbal lock), only the sum or the difference of the
+    angles about X and Z is defined.
 
     Parameters
     ----------
     rotation : (n, 3, 3) array
         Rotation matrices.
     still : str
-        'x' or 'z': the axis whose angle is then 0.
+        'x' or 'z': the axis whose angle is 0 in gimbal lock.
 
     Returns
     -------
@@ -90,7 +93,8 @@ def _from_fixed(angles: Array) -> Array:
 def quaternions(rotation: Array) -> Array:
     """Return the unit quaternions of rotations.
 
-    Each is scaled from the largest of its four numbers, which is sound near half turns too.
+    Each quaternion is computed from its largest component, so that rotations near 180 deg are
+    accurate too.
 
     Parameters
     ----------
@@ -100,14 +104,14 @@ def quaternions(rotation: Array) -> Array:
     Returns
     -------
     (n, 4) array
-        The cosine of half the angle first, not negative.
+        Quaternions, scalar component first and not negative.
     """
     r = np.ascontiguousarray(rotation)
     trace = r[:, 0, 0] + r[:, 1, 1] + r[:, 2, 2]
     squares = np.stack([1.0 + trace, *(1.0 - trace + 2.0 * r[:, k, k] for k in range(3))], axis=1)
     wx, wy, wz = r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]
     xy, xz, yz = r[:, 1, 0] + r[:, 0, 1], r[:, 0, 2] + r[:, 2, 0], r[:, 2, 1] + r[:, 1, 2]
-    # each row is the quaternion times four times one of its numbers
+    # row k is the quaternion times four times its component k
     rows = np.stack([
         np.stack([squares[:, 0], wx, wy, wz], axis=1), np.stack([wx, squares[:, 1], xy, xz], axis=1),
         np.stack([wy, xy, squares[:, 2], yz], axis=1), np.stack([wz, xz, yz, squares[:, 3]], axis=1),
@@ -127,7 +131,7 @@ def _from_quaternions(numbers: Array) -> Array:
 
 
 def _vectors(rotation: Array) -> Array:
-    """(n, 3) rad, none longer than half a turn."""
+    """Return rotation vectors, (n, 3) rad, of at most pi length."""
     found = quaternions(rotation)
     sine = np.linalg.norm(found[:, 1:], axis=1)
     turn = 2.0 * np.arctan2(sine, np.ascontiguousarray(found[:, 0]))
@@ -142,7 +146,7 @@ def _from_vectors(vectors: Array) -> Array:
 
 
 def _about(axes: Array, angles: Array) -> Array:
-    """The rotations by angles (n,) about axes (n, 3) of any length; about one of no length there is no turn."""
+    """Return the rotations by angles (n,) about axes (n, 3) of any length; identity for zero axes."""
     return np.asarray(
         frames.rotation_about(frames.unit(axes), np.where(axes.any(axis=-1), angles, 0.0))
     )
@@ -152,7 +156,7 @@ def _reversed(numbers: Callable[[Array], Array]) -> Callable[[Array], Array]:
     return lambda given: numbers(given)[..., ::-1]
 
 
-# R = Rx Ry Rz, as poses are here; Rz Ry Rx with the angle about X first, and with that about Z first
+# R = Rx Ry Rz, as for poses in this package; R = Rz Ry Rx, angle about X first or angle about Z first
 MOVING_XYZ = Orientation(frames.to_bryant, _from_bryant)
 FIXED_XYZ = Orientation(lambda rotation: about_fixed(rotation, "x"), _from_fixed)
 MOVING_ZYX = Orientation(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a reader finds in a controller's files."""
+"""Moves and events that a reader extracts from a controller's files."""
 
 from __future__ import annotations
 
@@ -7,21 +7,20 @@ from dataclasses import dataclass
 
 from .types import Array, Index, Mask
 
-ARC = (
-    "ARC"  # in place of the word of an output, where the deposit is switched by an arc instruction
-)
+ARC = "ARC"  # replaces the output word in an event if an arc instruction switches the deposit
 
 
 @dataclass(frozen=True)
 class Event:
-    """An event of a text between its moves: before the move `row`, n after the last.
+    """An event between two moves of a text.
 
-    kind and value: 'on' and 'off', number and word of the output, or the schedule named by an arc
-    instruction, and ARC; 'schedule', number and value of the output; 'wait', s; 'input', number;
-    'below', number and value of an analogue input; 'weave', its number, 0 at its end; 'call', the
-    program's name; 'layer', its number in a remark. digits: half of the last digit. ahead: s before
-    the end of the previous move, with `digits`; before: mm of the tip's path, with `digits` too, in
-    texts that use a distance; both None at standstill.
+    row: index of the next move, n after the last move. kind and value: 'on' and 'off', number and
+    word of the output, or the schedule of an arc instruction and ARC; 'schedule', number and value
+    of the output; 'wait', s; 'input', number; 'below', number and value of an analogue input;
+    'weave', weave number, 0 at the end; 'call', program name; 'layer', layer number in a remark.
+    digits: half of the last digit of the value. ahead: s before the end of the previous move, with
+    `digits`. before: mm of tip path before that end, with `digits`, in texts that use a distance.
+    Both are None at standstill.
     """
 
     row: int
@@ -34,10 +33,10 @@ class Event:
 
 @dataclass(frozen=True, eq=False)
 class Configuration:
-    """The arm configuration of a text at each of n positions.
+    """Arm configuration in a text at n positions.
 
-    flip: (n,) bool, joint 5 above zero; up: (n,) the elbow; front: (n,) the shoulder; turns: (n, 3)
-    of axes, the last column for the last axis.
+    flip: (n,) bool, whether joint 5 is above zero. up: (n,) bool, elbow. front: (n,) bool, shoulder.
+    turns: (n, 3) turn numbers of axes; the last column is the last axis.
     """
 
     flip: Mask
@@ -48,8 +47,9 @@ class Configuration:
 
 @dataclass(frozen=True, eq=False)
 class TextLines:
-    """The locations of n moves in a text. files: names; file: (n,) index into them; line: (n,) from
-    1.
+    """Locations of n moves in a text.
+
+    files: file names. file: (n,) index into `files`. line: (n,) line numbers from 1.
     """
 
     files: tuple[str, ...]
@@ -57,51 +57,53 @@ class TextLines:
     line: Index
 
     def at(self, move: int) -> tuple[str, int]:
-        """File and line of a move."""
+        """Return the file name and line number of a move."""
         return self.files[self.file[move]], int(self.line[move])
 
 
 @dataclass(frozen=True, eq=False)
 class ReadMoves:
-    """The moves that a post's reader finds in a program's text, in the order of execution.
+    """Moves that a post's reader extracts from a program text, in execution order.
 
-    joints: (n, axes) controller joint values, rad, and mm of linear axes, with exactly the digits
-    of the text; rows with Cartesian positions are NaN, and None replaces an array with only such
-    rows. A row may have both: at an arc start the text repeats the position. In texts with
+    joints: (n, axes) controller joint values, rad, and mm for linear axes, with exactly the digits
+    of the text. Rows with Cartesian positions are NaN; None if all rows are Cartesian. A row may
+    have joint values and a position: at an arc start the text repeats the position. In texts with
     positions and rotary axes, only the linear axes are NaN. digits: half of the last digit of the
-    joint values, rad, one or (axes,); linear_digits: of linear axes, mm.
+    joint values, rad, scalar or (axes,). linear_digits: half of the last digit of linear axes, mm.
 
-    duration: (n,) s, NaN if the text gives a speed; duration_digits: (n,) s, its possible rounding
-    error, for milliseconds and tenths by default. deposit: (n,) bool, whether the deposit is on
-    during the move that ends at the point. position, rotation, position_digits (mm),
-    rotation_digits (rad): the same for Cartesian texts; direction (n, 3), as in `Moves`, and
-    direction_digits, half of the last digit of its numbers, for texts without a rotation. speed:
-    (n,) mm/s at the deposition point, NaN if the text gives a time or a percentage; speed_digits:
-    mm/s. share: (n,) of the axes' largest speeds, for the fastest axis, NaN if the text gives a
-    time or a path speed; share_digits: half of its last digit. shorter_way: (axes,) rotary axes of
-    machine tools that the text sends the shorter way, so that it has no turns.
+    duration: (n,) s, NaN if the text gives a speed. duration_digits: (n,) s, possible rounding
+    error of the duration, for milliseconds and tenths by default. deposit: (n,) bool, whether the
+    deposit is on during the move that ends at the point. position, rotation, position_digits (mm),
+    rotation_digits (rad): as for joints, in Cartesian texts. direction (n, 3), as in `Moves`, and
+    direction_digits, half of the last digit of a component, for texts without a rotation. speed:
+    (n,) mm/s at the deposition point, NaN if the text gives a time or a percentage. speed_digits:
+    mm/s. share: (n,) speed as a fraction of the maximum axis speed, for the fastest axis, NaN if
+    the text gives a time or a path speed. share_digits: half of the last digit of the fraction.
+    shorter_way: (axes,) bool, rotary axes of machine tools that take the shorter way, so that the
+    text has no turns.
 
-    For texts with their own frames: frame (4, 4), in the manufacturer's base frame, is the frame of
-    `position`; tool (n, 4, 4) on the flange is the frame that moves there, with the digits of the
-    positions. lever: (n,) distance of a tool from another one that carries it. All mm. held: linear
-    moves are straight in the frame of the held part; otherwise they are straight in `frame`.
+    For texts with explicit frames: `position` is relative to frame (4, 4) in the manufacturer's
+    base frame. The moving frame is tool (n, 4, 4) on the flange, with the digits of the positions.
+    lever: (n,) distance of a tool from the tool that carries it. All mm. held: linear moves are
+    straight in the frame of the held part; otherwise they are straight in `frame`.
 
-    wire: (n,) value of the analogue output during each move, NaN before the first; None in texts
-    that do not set it. wire_digits: (n,) half of its last digit. wire_output: its number, from 1.
-    linear: (n,) bool, moves with a straight tip path, as opposed to straight joints. stops: (n,)
-    bool, moves that end at standstill. blend, percent, or rounding, mm: (n,) corner rounding at
-    other points, if the text gives it; rounding is NaN at stops without a value. level: (n,) of the
-    controller's eight levels of corner rounding, 0 at a stop. blend_radius: (n,) mm about the end
-    of a move within which the path may leave it for the next one, 0 at a stop, measured along the
-    path of the tool in `tool`. near: (n, axes) rad, joint values close to which those of a position
-    must be, NaN if the text gives none, with near_digits.
+    wire: (n,) value of the analogue output during each move, NaN before it is first set; None in
+    texts that do not set it. wire_digits: (n,) half of the last digit of the value. wire_output:
+    number of the output, from 1. linear: (n,) bool, moves with a straight tip path; other moves are
+    straight in joint space. stops: (n,) bool, moves that end at standstill. blend, percent, or
+    rounding, mm: (n,) corner rounding at other points, if the text gives it; rounding is NaN at
+    stops without a value. level: (n,) index among the controller's eight levels of corner rounding,
+    0 at a stop. blend_radius: (n,) mm about the end of a move within which the path may blend into
+    the next move, 0 at a stop, measured along the path of the tool in `tool`. near: (n, axes) rad,
+    reference joint values for the solution at a position, NaN if the text gives none, with
+    near_digits.
 
-    events: between the moves, in order. configuration: for positions of robots. user_frame,
-    tool_frame: (n,) numbers of the selected frame and tool, NaN without a selection; moves of bare
-    axes do not depend on a frame and have none. unit: the text's name for the mechanism that
-    carries the part and holds the frame of its positions, or for the track; first_external: the
-    number of the first external axis. Both as in `Program`. lines: the locations of the moves, with
-    all moves of a loop on its line; None if they do not come from a text.
+    events: events between the moves, in order. configuration: for positions of robots. user_frame,
+    tool_frame: (n,) numbers of the selected frame and tool, NaN without a selection; axis moves do
+    not depend on a frame and have none. unit: name in the text of the mechanism that carries the
+    part and the frame of the positions, or of the track. first_external: number of the first
+    external axis. Both as in `Program`. lines: locations of the moves, with all moves of a loop on
+    the line of the loop; None if the moves do not come from a text.
     """
 
     joints: Array | None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads, layers and the toolpath: the deposit with its order and directions.
+"""Beads, layers and the toolpath: deposit geometry, print order and directions.
 
 Frames and units: points in mm and unit vectors in the part's own frame (the coordinates of the part
 file); angles in rad; speeds in mm/s.
@@ -26,7 +26,7 @@ from .geometry.toolpath_records import Fitted, PredictedShape
 from .issues import Issue
 from .types import Array, Index
 
-PREDICTED = ("width", "height")  # columns of a bead that a bead model gives
+PREDICTED = ("width", "height")  # columns of a bead that a bead model predicts
 
 
 def _frozen(values: Any, shape: tuple[int | None, ...], name: str) -> Array:
@@ -43,13 +43,13 @@ def _frozen(values: Any, shape: tuple[int | None, ...], name: str) -> Array:
 
 @dataclass(frozen=True)
 class BeadRole:
-    """What a bead is in its layer.
+    """Role of a bead in its layer.
 
-    kind: its role in the filling: 'contour', 'line', 'zigzag', 'spiral', 'centre' (in the middle of
-    contours or thin regions), 'closing' (a gap between other beads); '' for strategies without
-    fillings. ring: number of contours outside of the bead. closing: whether it fills a gap between
-    beads, nearer to them than a layer height. returns: whether it is the first bead of a layer on a
-    solid that already has a layer. bead_class: of `bead_classes.CLASSES`, or ''.
+    kind: role in the filling: 'contour', 'line', 'zigzag', 'spiral', 'centre' (centreline of
+    contours or thin regions), 'closing' (fills a gap between beads); '' for strategies without
+    fillings. ring: number of contours outside of the bead. closing: whether the bead fills a gap
+    and is less than a layer height from adjacent beads. returns: whether the bead is the first of a
+    layer on a solid that already has a layer. bead_class: one of `bead_classes.CLASSES`, or ''.
     """
 
     kind: str = ""
@@ -61,8 +61,9 @@ class BeadRole:
 
 @dataclass(frozen=True)
 class BeadEnds:
-    """Start and end of a bead with speeds of their own: lengths and ramps in mm, speeds in mm/s; speed 0
-    is the speed of the bead.
+    """Separate speeds at the start and the end of a bead.
+
+    Lengths and ramps in mm, speeds in mm/s. Speed 0 means the bead speed.
     """
 
     start_length: float
@@ -74,29 +75,30 @@ class BeadEnds:
 
     @property
     def has_ramps(self) -> bool:
-        """Whether the speed changes gradually at an end."""
+        """Whether the speed ramps at either end."""
         return self.start_ramp > 0.0 or self.end_ramp > 0.0
 
     @property
     def length(self) -> float:
-        """Length of both ends with their ramps, mm."""
+        """Total length of both ends and their ramps, mm."""
         return self.start_length + self.end_length + (self.start_ramp + self.end_ramp)
 
 
 @dataclass(frozen=True, eq=False)
 class Bead:
-    """One uninterrupted deposit of n points, n >= 2. A closed bead repeats its first point as its
-    last.
+    """One uninterrupted deposit of n points, n >= 2.
+
+    A closed bead repeats its first point as its last point.
 
     points: (n, 3) mm. build, tool: (n, 3) unit vectors, the build direction and the tool axis (from
-    the deposit towards the tool). parameter: (n,) strictly monotonic, the variable of the layer's
-    polynomial (the unwrapped angle about the axis on parts of revolution, else the arc length,
-    normalised to 2 pi). speed: (n,) mm/s of the segment that ends at the point. width, height: (n,)
-    mm as predicted, or None without a bead model. wire_share: mm of wire per mm of bead if the wire
-    follows the travel speed, else None. tangents: (n, 2, 3) unit vectors along which the bead
-    arrives at and leaves each point, equal except at corners; None if a strategy does not provide
-    them. ends: None without speeds of their own. external: (n, k) rad of external axes, once
-    planned. phase: (n,) PHASES of segments, if planned.
+    the deposit towards the tool). parameter: (n,) strictly monotonic variable of the layer's
+    polynomial: the unwrapped angle about the axis on parts of revolution, else the arc length
+    normalised to 2 pi. speed: (n,) mm/s on the segment that ends at the point. width, height: (n,)
+    mm, predicted; None without a bead model. wire_share: mm of wire per mm of bead if the wire feed
+    follows the travel speed, else None. tangents: (n, 2, 3) unit tangents on arrival at and
+    departure from each point, equal except at corners; None if the strategy does not provide them.
+    ends: separate speeds at the ends, or None. external: (n, k) external axis values, rad; None
+    until planned. phase: (n,) segment phases, see `motion.PHASES`; None until planned.
     """
 
     points: Array
@@ -147,20 +149,22 @@ class Bead:
         return float(lengths(np.diff(self.points, axis=0)).sum())
 
     def _predicted(self, change: Callable[[Array], Array]) -> dict[str, Any]:
-        """Predicted width and height, changed alike."""
+        """Return the predicted width and height, each passed through `change`."""
         held = {name: getattr(self, name) for name in PREDICTED}
         return {name: None if column is None else change(column) for name, column in held.items()}
 
     @cached_property
     def outline(self) -> Outline:
-        """The curve that the points outline: by the tangents where they are known, else by the circles through
-        neighbouring points. Corners are kept."""
+        """Smooth curve through the points.
+
+        Without tangents it is estimated from circles through adjacent points. Corners stay sharp.
+        """
         if self.tangents is not None:
             return outline(self.points, self.tangents)
         return estimate_outline(self.points, self.closed)
 
     def reversed(self) -> Bead:
-        """The same bead run the other way."""
+        """Return the bead in the opposite direction."""
         return dataclasses.replace(
             self,
             points=self.points[::-1],
@@ -174,8 +178,9 @@ class Bead:
         )
 
     def started_at(self, index: int) -> Bead:
-        """Return the closed bead started at another point; the parameter continues across the old
-        seam.
+        """Return the closed bead with its seam at point `index`.
+
+        The parameter continues across the old seam.
         """
         if not self.closed:
             raise ValueError("only a closed bead can be started elsewhere")
@@ -199,8 +204,9 @@ class Bead:
         )
 
     def _external_from(self, index: int) -> Array | None:
-        """Return the external axis values of the closed bead started at another point; they
-        continue across the old seam.
+        """Return the external axis values of the closed bead with its seam at point `index`.
+
+        The values continue across the old seam.
         """
         if self.external is None:
             return None
@@ -210,20 +216,20 @@ class Bead:
         )
 
     def halved(self, segments: Index) -> Bead:
-        """Return the bead with a point in the middle of segments.
+        """Return the bead with a point added at the midpoint of segments.
 
-        It is on the curve that the points outline, not on its chords, with directions halfway
-        between its neighbours'.
+        The point is on the bead's smooth curve, not on the chord. Its directions are the mean of
+        the adjacent points' directions.
 
         Parameters
         ----------
         segments : (k,) array of int
-            Numbers of the segments, rising.
+            Indices of the segments, ascending.
 
         Returns
         -------
         Bead
-            k points more.
+            The bead with k more points.
         """
         at = segments + 1
 
@@ -250,7 +256,7 @@ class Bead:
         )
 
     def run_on(self, overlap: float) -> Bead:
-        """Return a closed bead as an open one that repeats up to `overlap` mm of its start."""
+        """Open a closed bead and extend it past the seam by up to `overlap` mm."""
         if overlap <= 0.0 or not self.closed:
             return self
         along = np.r_[0.0, np.cumsum(lengths(np.diff(self.points, axis=0)))]
@@ -291,7 +297,7 @@ class Bead:
         )
 
     def _tangents_run_on(self, count: int, last: Array) -> Array:
-        """Tangents of the bead gone on to its point `count`, but ending along `last` (1, 3)."""
+        """Return the tangents of the bead extended to its point `count`, ending along `last` (1, 3)."""
         assert self.tangents is not None
         seam = np.stack([self.tangents[-1, 0], self.tangents[0, 1]])[None]
         return np.concatenate(
@@ -299,38 +305,38 @@ class Bead:
         )
 
     def part(self, rows: slice) -> Bead:
-        """Some of its points, two or more in a row, as an open bead of their own."""
+        """Return two or more consecutive points of the bead as an open bead."""
         role = dataclasses.replace(self.role, returns=self.role.returns and not rows.start)
         return dataclasses.replace(self, **self._rows(rows), closed=False, role=role)
 
     def thinned(self, index: Index) -> Bead:
-        """Return the bead with some of its points.
+        """Return the bead with only the given points.
 
         Parameters
         ----------
         index : (k,) array of int
-            Numbers of the points, rising, the first and the last included.
+            Indices of the points, ascending, including the first and the last point.
 
         Returns
         -------
         Bead
-            k points.
+            The bead with k points.
         """
         return dataclasses.replace(self, **self._rows(index))
 
     def _rows(self, which: slice | Index) -> dict[str, Any]:
-        """Some of the rows of each column."""
+        """Return the selected rows of each column."""
         columns = [(entry.name, getattr(self, entry.name)) for entry in dataclasses.fields(self)]
         return {name: column[which] for name, column in columns if isinstance(column, np.ndarray)}
 
 
 @dataclass(frozen=True)
 class SpeedLaw:
-    """How beads respond to their travel speed v, mm/s.
+    """Bead width and height against travel speed v, mm/s.
 
-    width, height: mm gained per (mm/s)^(-1/3) of v^(-1/3), at a constant wire feed; beads with a
-    wire share keep their section instead. slowest: mm/s, the lowest measured speed. acceleration:
-    mm/s^2, the maximum change of speed.
+    width, height: coefficients of v^(-1/3), mm (mm/s)^(1/3), at a constant wire feed. Beads with a
+    wire share keep their section instead. slowest: mm/s, lowest measured speed. acceleration:
+    mm/s^2, maximum rate of change of speed.
     """
 
     width: float
@@ -339,19 +345,19 @@ class SpeedLaw:
     acceleration: float
 
     def applied(self, bead: Bead, speed: Array) -> Bead:
-        """Return the bead at other speeds, as wide and as high as it gets there.
+        """Return the bead at other speeds, with the resulting width and height.
 
         Parameters
         ----------
         bead : Bead
             The bead, n points.
         speed : (n,) array
-            Speeds of the segments that end at the points, mm/s.
+            Speeds on the segments that end at the points, mm/s.
 
         Returns
         -------
         Bead
-            Width and height change only if both are predicted.
+            The bead. Width and height change only if both are predicted.
         """
         root = np.cbrt(1.0 / speed[1:]) - np.cbrt(1.0 / bead.speed[1:])
         more = 0.5 * (np.r_[root[:1], root] + np.r_[root, root[-1:]])
@@ -368,13 +374,13 @@ class SpeedLaw:
 
 @dataclass(frozen=True)
 class Layer:
-    """The beads at one index of the slicing, in print order.
+    """The beads of one slice, in print order.
 
-    wait: pause of the machine before the layer, s, for the deposit below to cool. first: no layer
-    of the feature is below, as at the start of another solid. feature: number of the layer's
-    feature, in a toolpath with several. section: of the part in its plane, None if not known;
-    coverage: how well the beads fill it, once measured. A layer without room for a bead is empty
-    and keeps its number.
+    wait: pause of the machine before the layer, s, for the deposit below to cool. first: whether
+    the feature has no layer below, as at the start of another solid. feature: index of the layer's
+    feature in a toolpath with several features. section: section of the part in the layer's plane,
+    None if unknown. coverage: how well the beads fill the section, None until measured. A layer too
+    small for a bead is empty and keeps its index.
     """
 
     beads: tuple[Bead, ...]
@@ -387,13 +393,14 @@ class Layer:
 
 @dataclass(frozen=True, eq=False)
 class Checks:
-    """What planning measured of a deposit; None if it is not checked or unknown.
+    """Measurements of a deposit made during planning; None if not checked or unknown.
 
-    unsupported: mm of bead without support. on_part: number of checked points on the part, their
-    largest distance from it and the allowed one, mm. volumes: mm3 of a filled part, of the volume
-    that beads miss, and of stray beads. uneven: (k, 3) number, least and largest height, mm, of
-    layers with uneven height. twice: mm3 of beads, as wide as their spacing, over other beads in
-    their layer. fitted: the fit to a scan. predicted: the predicted deposit against the part.
+    unsupported: length of bead without support, mm. on_part: number of checked points on the part,
+    their maximum distance from the part and the allowed distance, mm. volumes: volume of a filled
+    part, volume missed by the beads and volume of stray beads, mm3. uneven: (k, 3) layers of uneven
+    height: index, minimum and maximum height, mm. twice: over-deposition, mm3, of beads as wide as
+    their spacing on other beads of the layer. fitted: fit to a scan. predicted: comparison of the
+    predicted deposit with the part.
     """
 
     unsupported: float | None = None
@@ -407,7 +414,7 @@ class Checks:
 
 @dataclass(frozen=True)
 class MotionRules:
-    """What a motion along the beads keeps.
+    """Rules for the motion along the beads.
 
     overlap: seam overlap of closed beads, mm. retreat: mm, at bead ends. max_from_vertical: rad,
     maximum angle of the tool axis from the vertical in a cell with a positioner.
@@ -420,8 +427,9 @@ class MotionRules:
 
 @dataclass(frozen=True, eq=False)
 class SequencedFeature:
-    """One of several features in a toolpath. values: its toolpath without layers, which carry the
-    number of their feature.
+    """One of several features in a toolpath.
+
+    values: the feature's toolpath without layers. Each layer stores the index of its feature.
     """
 
     label: str
@@ -433,11 +441,11 @@ class Toolpath:
     """All layers from the platform up.
 
     frame: (4, 4) pose of the feature frame in part coordinates (interface.md, `mount`). chord_error
-    and layer_height: mm. issues: of slicing and strategy (spacing, tilt-back, clearance).
-    surroundings: bodies in part coordinates that the nozzle must not touch. law: the bead model at
-    other speeds, None without one. bead_width: mm, for beads without a width of their own.
-    wire_feed: mm/s, None if unknown. features: several features printed together, else empty; the
-    other fields then describe the first one.
+    and layer_height: mm. issues: from slicing and strategy (spacing, tilt-back, clearance).
+    surroundings: obstacles in part coordinates. law: bead size against travel speed, None without a
+    bead model. bead_width: mm, for beads without a predicted width. wire_feed: mm/s, None if
+    unknown. features: features printed together, empty if there is only one; the other fields then
+    describe the first feature.
     """
 
     layers: tuple[Layer, ...]
@@ -458,19 +466,20 @@ class Toolpath:
         object.__setattr__(self, "frame", _frozen(self.frame, (4, 4), "frame"))
 
     def __iter__(self) -> Iterator[tuple[int, int, Bead]]:
-        """(layer index, bead index, bead) in the order of deposit."""
+        """Yield (layer index, bead index, bead) in print order."""
         for i, layer in enumerate(self.layers):
             for j, bead in enumerate(layer.beads):
                 yield i, j, bead
 
     def add_checks(self, **results: Any) -> Toolpath:
-        """Return the toolpath with further results of checks, fields of `Checks`."""
+        """Return the toolpath with more check results; `results` are fields of `Checks`."""
         return dataclasses.replace(self, checks=dataclasses.replace(self.checks, **results))
 
     @property
     def deposited(self) -> Toolpath:
-        """Return the toolpath without empty layers, for checks that compare each layer with its
-        supporting layer.
+        """Return the toolpath without empty layers.
+
+        For checks that compare each layer with its supporting layer.
         """
         if all(layer.beads for layer in self.layers):
             return self
@@ -485,8 +494,8 @@ class Toolpath:
         Returns
         -------
         tuple of tuple of Toolpath and (n,) array of int
-            Toolpaths, and numbers of their layers in this one; this toolpath itself for one
-            feature.
+            Toolpaths, and the indices of their layers in this toolpath. With a single feature, this
+            toolpath itself.
         """
         if not self.features:
             return ((self, np.arange(len(self.layers))),)
@@ -499,19 +508,19 @@ class Toolpath:
 
     @property
     def layer_heights(self) -> Array:
-        """Return the height of each layer.
+        """Return the nominal height of each layer.
 
         Returns
         -------
         (layers,) array
-            mm.
+            Heights, mm.
         """
         heights = [one.values.layer_height for one in self.features] or [self.layer_height]
         return np.array([heights[layer.feature if self.features else 0] for layer in self.layers])
 
     @property
     def traits(self) -> Family:
-        """Return what holds for toolpaths of this family."""
+        """Return the properties of the toolpath's family."""
         return KINDS[self.family]
 
     @property
@@ -531,7 +540,7 @@ class Toolpath:
         Returns
         -------
         (n,) array
-            mm; 0 if unknown, as in old documents: such beads count as lines.
+            Widths, mm; 0 if unknown, as in old documents. Such beads count as lines.
         """
         known = [one.values.bead_width or 0.0 for one in self.features] or [self.bead_width or 0.0]
         return np.concatenate(
@@ -550,7 +559,7 @@ class Toolpath:
         Returns
         -------
         (n,) array
-            mm: predicted, else the layer height; 0 if not even the bead width is known.
+            Predicted heights, else layer heights, mm; 0 if the bead width is also unknown.
         """
         known = self.layer_heights if self.bead_width else np.zeros(len(self.layers))
         return np.concatenate(

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Array types used throughout the package.
 
-numpy.typing is imported only for type checking: it takes as long to import as thirty of our
+numpy.typing is imported only for type checking, because it takes as long to import as thirty of our
 modules.
 """
 

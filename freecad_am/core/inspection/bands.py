@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Bands of deviations and their colours: green within tolerance, to red outside of it and to blue inside, symmetric."""
+"""Deviation bands and their colours.
+
+Green is within tolerance. Excess goes to red and missing material to blue, symmetrically.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,9 @@ import numpy as np
 from ..geometry.formatting import round_step
 from ..types import Array, Integers, Mask
 
-STEPS = 3  # tolerances at which bands end
-NICE = (1.0, 2.0, 5.0, 10.0)  # tolerances, times powers of ten
-IN_BANDS = 0.95  # of the deviations are within the outermost limit, if no tolerance is given
+STEPS = 3  # number of band limits on each side, at multiples of the tolerance
+NICE = (1.0, 2.0, 5.0, 10.0)  # round band widths, times powers of ten
+IN_BANDS = 0.95  # fraction of deviations within the outermost limit if no tolerance is given
 _COLOURS = (
     (0.19, 0.21, 0.58),
     (0.10, 0.45, 0.82),
@@ -27,14 +30,14 @@ PAST_EDGES = (0.55, 0.55, 0.57)
 
 @dataclass(frozen=True)
 class Band:
-    """A band of deviations: what a legend says, its colour (red, green, blue 0..1)."""
+    """A deviation band with its legend text and colour (red, green, blue from 0 to 1)."""
 
     text: str
     colour: tuple[float, float, float]
 
 
 def bands(tolerance: float) -> tuple[Band, ...]:
-    """The bands from the most inside to the most outside."""
+    """Return the bands from most negative to most positive deviation."""
     limits = [f"{step * tolerance:g}" for step in range(1, STEPS + 1)]
     inside = [
         f"< -{limits[-1]}",
@@ -46,19 +49,19 @@ def bands(tolerance: float) -> tuple[Band, ...]:
 
 
 def band_of(deviation: Array, tolerance: float) -> Integers:
-    """Return the bands of deviations.
+    """Return the band of each deviation.
 
     Parameters
     ----------
     deviation : (n,) array
-        mm.
+        Deviations, mm.
     tolerance : float
-        mm.
+        Width of a band, mm.
 
     Returns
     -------
     (n,) array of int
-        Numbers in `bands`.
+        Indices in `bands`.
     """
     step = np.clip(np.ceil(np.abs(deviation) / tolerance - 1e-12) - 1.0, 0.0, STEPS)
     band: Integers = (STEPS + np.sign(deviation) * step).astype(np.int64)
@@ -66,19 +69,19 @@ def band_of(deviation: Array, tolerance: float) -> Integers:
 
 
 def css(colour: tuple[float, float, float]) -> str:
-    """A colour as #rrggbb."""
+    """Format a colour as #rrggbb."""
     return "#" + "".join(f"{round(255 * component):02x}" for component in colour)
 
 
 def colours(deviation: Array, within: Mask, tolerance: float) -> Array:
-    """Return the colours of deviations.
+    """Return the colour of each deviation.
 
     Parameters
     ----------
     deviation : (n,) array
         Deviations, mm.
     within : (n,) bool array
-        Deviations that count; the others are grey.
+        Deviations that count; uncounted deviations are grey.
     tolerance : float
         Width of a band, mm.
 
@@ -93,16 +96,16 @@ def colours(deviation: Array, within: Mask, tolerance: float) -> Array:
 
 
 def step_of(deviation: Array) -> float:
-    """Return the width of the bands without a tolerance, so that STEPS bands hold most deviations.
+    """Choose a band width if no tolerance is given, so that STEPS bands cover most deviations.
 
     Parameters
     ----------
     deviation : (n,) array
-        mm.
+        Deviations, mm.
 
     Returns
     -------
     float
-        mm, a round figure.
+        Band width, a round number, mm.
     """
     return round_step(max(float(np.quantile(np.abs(deviation), IN_BANDS)), 1e-3) / STEPS, NICE)

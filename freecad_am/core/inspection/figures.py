@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Figures of deviations: their spread, sphericity, roundness, circularity at heights, thickness
-(Chalvin 2020, table 2)."""
+"""Statistics of deviations: spread, sphericity, roundness, circularity at heights, thickness.
+
+After Chalvin 2020, table 2.
+"""
 
 from __future__ import annotations
 
@@ -17,15 +19,17 @@ from ..types import Array, Integers, Mask
 from .planned import Planned
 
 ROUNDS = 60
-MIN_EXTENT_RATIO = 1e-6  # of the largest extent; collinear or coplanar points have no centre
-STILL = 1e-13  # of the radius
+MIN_EXTENT_RATIO = (
+    1e-6  # of the maximum extent; flatter points are collinear or coplanar and have no centre
+)
+STILL = 1e-13  # fraction of the radius; improvement of the zone at which the iteration ends
 
 
 @dataclass(frozen=True, eq=False)
 class Round:
     """A circle (two coordinates) or sphere (three) fitted to points.
 
-    centre: (d,) mm. radius: mm. inner, outer: mm, the smallest and largest distance of a point from the centre.
+    centre: (d,) mm. radius: mm. inner, outer: minimum and maximum distance of a point from the centre, mm.
     """
 
     centre: Array
@@ -35,7 +39,7 @@ class Round:
 
     @property
     def zone(self) -> float:
-        """Width of the zone that holds all points, mm."""
+        """Width of the zone that contains all points, mm."""
         return self.outer - self.inner
 
 
@@ -52,12 +56,12 @@ def least_squares_round(points: Array, where: str) -> Round:
     Returns
     -------
     Round
-        In the frame of the points.
+        The circle or sphere, in the frame of the points.
 
     Raises
     ------
     InputError
-        TOO_FEW_POINTS or FLAT_POINTS if none exists.
+        TOO_FEW_POINTS or FLAT_POINTS if no circle or sphere exists.
     """
     start, scale = _algebraic(points, where)
 
@@ -75,11 +79,11 @@ def least_squares_round(points: Array, where: str) -> Round:
 
 
 def narrowest(points: Array, where: str) -> Round:
-    """Find the centre about which the zone of points is narrowest.
+    """Find the centre with the minimum zone (Chebyshev approximation).
 
-    Found from the least-squares centre by linear programs for the change of the centre, each within
-    a box about the last centre that shrinks when the zone does not (Chebyshev approximation by
-    trust region); the narrowest zone near it, which is the global one for points all round.
+    A trust region method starts at the least-squares centre. Each iteration solves a linear program
+    for the step of the centre within a box, which shrinks if the zone does not. The result is a
+    local minimum, and the global minimum for points all round.
 
     Parameters
     ----------
@@ -91,7 +95,7 @@ def narrowest(points: Array, where: str) -> Round:
     Returns
     -------
     Round
-        Its radius is the middle of the zone.
+        The minimum zone; the radius is the mean of inner and outer radius.
 
     Raises
     ------
@@ -125,7 +129,7 @@ def narrowest(points: Array, where: str) -> Round:
 
 
 def _unit(offsets: Array) -> Array:
-    """Unit vectors; zero for a point at the centre, which may move anywhere."""
+    """Return unit vectors; zero for a point at the centre, which may move in any direction."""
     return np.asarray(
         offsets / np.maximum(np.linalg.norm(offsets, axis=1, keepdims=True), np.finfo(float).tiny)
     )
@@ -137,7 +141,7 @@ def _round(points: Array, centre: Array, radius: float) -> Round:
 
 
 def _algebraic(points: Array, where: str) -> tuple[Array, float]:
-    """Centre and radius (d + 1,) from the linear equations of the circle or sphere, and the extent of the points."""
+    """Fit a circle or sphere by linear equations; return centre and radius (d + 1,) and the extent of the points."""
     dimension = points.shape[1]
     name = "circle" if dimension == 2 else "sphere"
     if len(points) < dimension + 1:
@@ -168,17 +172,19 @@ def _algebraic(points: Array, where: str) -> tuple[Array, float]:
     return np.concatenate([centre + middle, [radius]]), float(np.ptp(points, axis=0).max())
 
 
-BARS = 40  # of a histogram at most
-ZONE_SIZE = 600  # points from each end and from all over that a narrowest zone is begun with
-ROUND = 1e-3  # of the radius: a planned zone within this is a sphere
-MIN_RADIAL_NORMAL = 0.1  # of a normal along the radius: a flatter surface has no circle at a height
-ALL_ROUND = 0.25  # turns between neighbours on a circle beyond which it is not measured all round
+BARS = 40  # maximum number of histogram bars
+ZONE_SIZE = 600  # innermost, outermost and evenly distributed points each in the first subset for a minimum zone
+ROUND = 1e-3  # fraction of the radius; maximum zone of a planned sphere
+MIN_RADIAL_NORMAL = 0.1  # radial component of a normal; a flatter surface has no circle at a height
+ALL_ROUND = 0.25  # turns; maximum gap between adjacent points of a circle measured all round
 
 
 @dataclass(frozen=True, eq=False)
 class Spread:
-    """The deviations that count: number, mean, standard deviation, root mean square, extremes, and the 95 % quantile of their
-    amounts, mm; the share within tolerance. edges: (k + 1,) mm of the bars of a histogram with counts (k,).
+    """Statistics of the deviations that count, mm.
+
+    deviation: standard deviation. least, most: minimum and maximum. within_95: 95 % quantile of the absolute
+    deviations. within: fraction within tolerance. edges: (k + 1,) histogram edges. counts: (k,) histogram counts.
     """
 
     count: int
@@ -195,8 +201,10 @@ class Spread:
 
 @dataclass(frozen=True)
 class Circle:
-    """Circularity of count points at a height, mm: the least-squares circle and the narrowest zone in the plane there, relative to
-    the part's axis. gap: the largest angle between neighbours, rad.
+    """Circularity of count points at a height, mm.
+
+    fitted, zone: least-squares circle and minimum zone in the plane at the height, relative to the part's axis. gap:
+    maximum angle between adjacent points, rad.
     """
 
     height: float
@@ -213,8 +221,9 @@ class Circle:
 
 @dataclass(frozen=True)
 class Ball:
-    """The least-squares and minimum-zone spheres, with centres in part coordinates. planned:
-    planned radius, mm.
+    """Least-squares and minimum-zone spheres, with centres in part coordinates.
+
+    planned: planned radius, mm.
     """
 
     count: int
@@ -225,7 +234,7 @@ class Ball:
 
 @dataclass(frozen=True)
 class Thickness:
-    """A wall measured on both sides, at count pairs of points, mm."""
+    """Thickness of a wall measured at count pairs of points on both sides, mm."""
 
     count: int
     mean: float
@@ -235,24 +244,24 @@ class Thickness:
 
 
 def summarise(deviation: Array, tolerance: float) -> Spread:
-    """Return the figures of deviations.
+    """Return the statistics of deviations.
 
     Parameters
     ----------
     deviation : (n,) array
-        mm, n >= 1.
+        Deviations, mm; n >= 1.
     tolerance : float
-        mm.
+        Tolerance, mm.
 
     Returns
     -------
     Spread
-        Figures and histogram.
+        Statistics and histogram.
     """
     low, high = float(deviation.min()), float(deviation.max())
     step = _nice(
         max(high - low, 1e-9, 1e-12 * max(-low, high)) / BARS
-    )  # so that its multiples are apart
+    )  # large enough for distinct multiples in floating point
     first_bar, last_bar = np.floor(low / step), max(np.floor(low / step) + 1, np.ceil(high / step))
     edges = step * np.arange(first_bar, last_bar + 1)
     edges[0], edges[-1] = min(edges[0], low), max(edges[-1], high)
@@ -279,14 +288,14 @@ def ball(points: Array, feet: Array, where: str) -> Ball | None:
     points : (n, 3) array
         Measured points, mm.
     feet : (n, 3) array
-        Their feet on the planned surface, mm.
+        Foot points on the planned surface, mm.
     where : str
         Name of the points, for messages.
 
     Returns
     -------
     Ball or None
-        None if the feet are not on a sphere.
+        None if the foot points are not on a sphere.
 
     References
     ----------
@@ -299,7 +308,7 @@ def ball(points: Array, feet: Array, where: str) -> Ball | None:
         return Ball(
             len(points), least_squares_round(points, where), zone_of(points, where), planned.radius
         )
-    except InputError:  # too few, or in a plane
+    except InputError:  # too few points, or coplanar
         return None
 
 
@@ -308,9 +317,9 @@ def circle(
 ) -> Circle:
     """Return the circularity of points at a height.
 
-    Points in the band are moved to the height by the change of the planned radius, along the
-    meridian of a part of revolution, else along the slope of the planned surface, so that a
-    point at the height does not move.
+    Points in the band are projected to the height along the planned surface. Their radius changes
+    like the planned radius: along the meridian on parts of revolution, else along the surface
+    slope.
 
     Parameters
     ----------
@@ -319,7 +328,7 @@ def circle(
     points : (n, 3) array
         Measured points, mm.
     normal : (n, 3) array
-        Planned normals there.
+        Planned normals at the points.
     height : float
         Height above the base, mm.
     band : float
@@ -330,7 +339,7 @@ def circle(
     Returns
     -------
     Circle
-        The fitted circle and the narrowest zone.
+        The fitted circle and the minimum zone.
 
     Raises
     ------
@@ -372,8 +381,10 @@ def circle(
 
 
 def _radius_change(meridian: Meridian, heights: Array, radius: Array, height: float) -> Array:
-    """Change (n,) of the planned radius between heights (n,) and a height, on the stretch of the meridian nearest to the measured
-    radius (n,); 0 if it does not reach both.
+    """Return the change (n,) of the planned radius from heights (n,) to a height.
+
+    It is taken from the stretch of the meridian nearest to the measured radius (n,), and 0 if the meridian does not
+    reach both heights.
     """
     end_arcs = meridian.s_at_height([height])[0]
     grown = np.zeros(len(heights))
@@ -391,20 +402,20 @@ def _radius_change(meridian: Meridian, heights: Array, radius: Array, height: fl
 def thickness(
     feet: Array, deviation: Array, outer: Mask, planned: float, reach: float
 ) -> Thickness | None:
-    """Return the thickness of a wall that was measured on both sides.
+    """Return the thickness of a wall measured on both sides.
 
     Parameters
     ----------
     feet : (n, 3) array
-        Feet of the points on the planned surface, mm.
+        Foot points on the planned surface, mm.
     deviation : (n,) array
         Deviations of the points, mm.
     outer : (n,) bool array
-        Points of the outer side.
+        Points on the outer side.
     planned : float
         Planned thickness, mm.
     reach : float
-        Largest distance between the feet of a pair, mm.
+        Maximum distance between the foot points of a pair, mm.
 
     Returns
     -------
@@ -430,10 +441,9 @@ def thickness(
 
 
 def zone_of(points: Array, where: str) -> Round:
-    """Find the narrowest zone of points as `narrowest`, on a subset of many.
+    """Find the minimum zone like `narrowest`, using a subset of a large set of points.
 
-    The subset grows until its zone holds every point, which makes it the narrowest zone of the
-    whole.
+    The subset grows until its zone contains all points. It is then the minimum zone of all points.
 
     Parameters
     ----------
@@ -445,7 +455,7 @@ def zone_of(points: Array, where: str) -> Round:
     Returns
     -------
     Round
-        Its inner and outer radii are over all points.
+        The minimum zone, with inner and outer radius over all points.
 
     Raises
     ------
@@ -470,7 +480,7 @@ def zone_of(points: Array, where: str) -> Round:
 
 
 def default_heights(planned: Planned, points: Array) -> tuple[float, ...]:
-    """Return a sixth, a half and five sixths of the height of points.
+    """Return heights at one sixth, one half and five sixths of the extent of the points.
 
     Parameters
     ----------
@@ -486,7 +496,7 @@ def default_heights(planned: Planned, points: Array) -> tuple[float, ...]:
 
     Notes
     -----
-    The paper has 15, 25 and 35 mm for heights of 10 to 40 mm.
+    Chalvin 2020 has 15, 25 and 35 mm for heights of 10 to 40 mm.
     """
     height = (points - planned.frame[:3, 3]) @ planned.frame[:3, 2]
     low, high = float(height.min()), float(height.max())
@@ -494,7 +504,7 @@ def default_heights(planned: Planned, points: Array) -> tuple[float, ...]:
 
 
 def warnings_of(circles: Sequence[Circle]) -> list[str]:
-    """Warnings about circles that were not measured all round."""
+    """Return warnings about circles that were not measured all round."""
     return [
         Text(
             "the circle at {:g} mm was not measured all around: neighbouring points are {:.0f} "
@@ -508,7 +518,7 @@ def warnings_of(circles: Sequence[Circle]) -> list[str]:
 
 
 def _nice(step: float) -> float:
-    """The next of 1, 2, 5 times a power of ten."""
+    """Round up to 1, 2 or 5 times a power of ten."""
     power = 10.0 ** np.floor(np.log10(step))
     return float(
         next(power * nice for nice in (1.0, 2.0, 5.0, 10.0) if power * nice >= step * (1.0 - 1e-9))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers fitted to a scan: the first one is on it, and the next ones lead back to the plan.
+"""Layers fitted to a scan: the first layer follows the scan, and later layers blend back to the plan.
 
-Points move along the direction in which layers grow, by less from layer to layer; where layers get thinner or thicker, the
-torch is faster or slower, so that the deposit fills its room.
+Points move along the growth direction of the layers, by less from layer to layer. Where layers get thinner or thicker,
+the torch is faster or slower, so that the deposit volume fits.
 """
 
 from __future__ import annotations
@@ -24,18 +24,18 @@ from ..types import Array, Index, Mask
 from .scan_heights import Scan
 
 Ways = Callable[[Bead], Array]
-Off = Callable[[Array, Array], Array]  # points (n, 3) and directions (n, 3): mm (n,) along these
+Off = Callable[[Array, Array], Array]  # (points (n, 3), directions (n, 3)) -> offsets (n,), mm
 
-MAX_SEGMENT_MM, MIN_SEGMENT_MM = 8.0, 0.5  # mm between points, where the scan bends between them
+MAX_SEGMENT_MM, MIN_SEGMENT_MM = 8.0, 0.5  # mm; limits of the segment length in refinement
 NOISE_MM = 0.02  # mm; noise of a scan between points
-STEP = 0.25  # mm between samples
+STEP = 0.25  # mm; maximum distance between samples
 ROUNDS = 12
-CORNER = 1e-6  # of the cosine: tangents that differ by more make a corner
+CORNER = 1e-6  # 1 - cosine between arriving and leaving tangent; above it a point is a corner
 
 
 @dataclass(frozen=True, eq=False)
 class Scanned:
-    """A bead with directions (n, 3) and offsets (n,) mm of the scan along them."""
+    """A bead with growth directions (n, 3) and scan offsets (n,) along them, mm."""
 
     bead: Bead
     directions: Array
@@ -49,7 +49,7 @@ class Scanned:
         points : (k, 3) array
             Points, mm.
         off : (k,) array
-            Offsets of the scan there, mm.
+            Scan offsets at the points, mm.
         """
         arc = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(self.bead.points, axis=0), axis=1))]
         samples_ = np.linspace(0.0, arc[-1], max(2, int(np.ceil(arc[-1] / STEP)) + 1))
@@ -62,20 +62,20 @@ class Scanned:
 def along_beads(
     beads: Sequence[Bead], directions_of: Ways, off: Off, share: float, tolerance: float
 ) -> list[Scanned]:
-    """Return beads with enough points for the scan offset to be linear between them.
+    """Refine beads until the scan offset is linear between points.
 
     Parameters
     ----------
     beads : sequence of Bead
         The beads.
     directions_of : Ways
-        Returns the directions (n, 3) in which layers grow along a bead.
+        Returns the growth directions (n, 3) at the points of a bead.
     off : Off
         Returns the scan offsets (n,) of points (n, 3) along directions (n, 3).
     share : float
-        Share of the offset that counts.
+        Fraction of the offset that is applied.
     tolerance : float
-        Largest departure from linear, mm.
+        Maximum deviation from linear, mm.
 
     Returns
     -------
@@ -121,7 +121,7 @@ def _between(directions: Array, segments: Index) -> Array:
 def _halved(
     bead: Bead, off: Array, segments: Index, middle: Array, share: float, close: float
 ) -> tuple[Bead, Array, Mask]:
-    """The bead with the needed segments halved, its scan offsets, and the segments to check next."""
+    """Halve the segments that need it; return the bead, its scan offsets and the segments to check next."""
     length = np.linalg.norm(bead.points[segments + 1] - bead.points[segments], axis=1)
     bent = share * np.abs(middle - 0.5 * (off[segments] + off[segments + 1])) > close
     cut = (length > 2.0 * MIN_SEGMENT_MM) & (bent | (length > MAX_SEGMENT_MM))
@@ -135,19 +135,19 @@ def _halved(
 
 
 def move_bead(scanned: Scanned, share: float, thinner: float, height: float) -> Bead:
-    """Return a bead moved by a share of the scan offset.
+    """Move a bead by a fraction of the scan offset.
 
     Parameters
     ----------
     scanned : Scanned
         The bead with directions and offsets.
     share : float
-        The share.
+        The fraction.
     thinner : float
-        Relative reduction of the layer height per mm of offset, 1/mm; the bead is deposited
-        as much faster.
+        Relative reduction of the layer height per mm of offset, 1/mm. The speed increases in
+        proportion.
     height : float
-        Layer height of beads without their own, mm.
+        Layer height of beads without a predicted height, mm.
 
     Returns
     -------
@@ -171,7 +171,7 @@ def move_bead(scanned: Scanned, share: float, thinner: float, height: float) -> 
 
 
 def _tangents(bead: Bead, shift: Array) -> Array | None:
-    """Tangents of the bead when its points are shifted (n, 3); equal on both sides without a corner."""
+    """Return the tangents of the bead after a shift (n, 3) of its points; smooth points stay smooth."""
     if bead.tangents is None:
         return None
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)[:, None]
@@ -186,14 +186,16 @@ def _tangents(bead: Bead, shift: Array) -> Array | None:
     return np.asarray(turned / np.linalg.norm(turned, axis=2, keepdims=True))
 
 
-RUN = 20  # steps over which a slope is measured
-LOOKED = 20_000  # places of the first layer that are kept for pictures
+RUN = 20  # number of steps over which a slope is measured
+LOOKED = 20_000  # maximum number of points of the first layer kept for charts
 
 
 @dataclass(frozen=True)
 class _Course:
-    """Shares of the scan deviation by which layers move: 1 in the layer `first_layer`, 0 `layers` later. Layers below were scanned from
-    above: they move in proportion to their height.
+    """Fraction of the scan offset by which each layer moves.
+
+    It is 1 in layer `first_layer` and falls to 0 over `layers` layers. Layers below `first_layer` were scanned from
+    above, so they move in proportion to their height.
     """
 
     first_layer: int
@@ -206,7 +208,7 @@ class _Course:
 
 
 def refuse_family(toolpath: Toolpath, where: str) -> None:
-    """InputError NOT_YET for families whose layers are not fitted to scans."""
+    """Raise InputError NOT_YET for families whose layers cannot be fitted to scans."""
     if not toolpath.traits.fits_scans(PLANES):
         raise InputError(
             "NOT_YET",
@@ -222,7 +224,7 @@ def fit_layers(
 ) -> Toolpath:
     """Return the toolpath with its layers fitted to a scan.
 
-    The first layer above the scan is on it, and the next ones lead back to the plan.
+    The first layer above the scan follows the scan. The next layers blend back to the plan.
 
     Parameters
     ----------
@@ -235,7 +237,7 @@ def fit_layers(
     left_out : int
         Number of points of the file that were dropped.
     motion : (4, 4) array
-        Motion from the measuring coordinates to the part.
+        Motion from measuring to part coordinates.
 
     Returns
     -------
@@ -314,7 +316,7 @@ def fit_layers(
 
 
 def max_moves(record: Fitted, layers: Index) -> Array:
-    """Return how far points of layers were moved at most to fit them to a scan.
+    """Return the maximum displacement of points by the fit to a scan, by layer.
 
     Parameters
     ----------
@@ -326,12 +328,12 @@ def max_moves(record: Fitted, layers: Index) -> Array:
     Returns
     -------
     (n,) array
-        mm.
+        Maximum displacements, mm.
     """
     largest = float(np.abs(record.off).max(initial=0.0))
     reduction = 1.0 - (
         record.remains / largest if largest else 0.0
-    )  # share of the way back at the last layer
+    )  # fraction of the blend back to the plan completed at the last layer
     count = (
         (record.layers - 1) / reduction if record.remains and record.layers > 1 else record.layers
     )
@@ -343,7 +345,7 @@ def max_moves(record: Fitted, layers: Index) -> Array:
 
 
 def ways_of(toolpath: Toolpath) -> Ways:
-    """Directions (n, 3) in which layers grow at points of a bead."""
+    """Return a function that gives the growth directions (n, 3) at the points of a bead."""
     if toolpath.traits.stacks_layers:
         up = toolpath.frame[:3, 2]
         return lambda bead: np.tile(up, (len(bead), 1))
@@ -351,8 +353,10 @@ def ways_of(toolpath: Toolpath) -> Ways:
 
 
 def _refusing(scan: Scan, layer: int, height: float) -> Off:
-    """Offset of the scan from points of the first layer on it.
-    Raises InputError if it does not cover them, or is too far off."""
+    """Return a function that gives the scan offset at points of the first layer above the scan.
+
+    The function raises InputError SCAN_MISSES if the scan does not cover the points, SCAN_OFF if it is too far away.
+    """
 
     def off(points: Array, directions: Array) -> Array:
         heights = scan.heights(points, directions)
@@ -390,7 +394,7 @@ def _refusing(scan: Scan, layer: int, height: float) -> Off:
 
 
 class _Above:
-    """Offset of the scan for layers above or below its layer, from the points of that layer below or above them."""
+    """Scan offset for other layers than the first, from the points of the first layer below or above."""
 
     def __init__(
         self, toolpath: Toolpath, planned: Sequence[Scanned], directions_of: Ways, scan: Scan
@@ -409,7 +413,7 @@ class _Above:
         sure = heights.covered & (
             np.abs(np.where(heights.covered, heights.off, np.inf)) <= np.abs(self.off).max() + 1e-9
         )
-        # beyond the first layer the offset at its edge continues
+        # outside the first layer, use the offset at the layer's edge
         return np.where(sure, heights.off, self.off[self.tree.query(feet)[1]])
 
 
@@ -426,7 +430,7 @@ def _record(
 ) -> Fitted:
     beads: list[Bead] = [
         bead.halved(np.arange(len(bead) - 1)) for bead in layer.beads
-    ]  # between points, too
+    ]  # adds the midpoints of the segments
     deposited = np.concatenate([bead.points for bead in beads])
     heights = scan.heights(deposited, np.concatenate([directions_of(bead) for bead in beads]))
     sample = np.unique(np.linspace(0, len(deposited) - 1, LOOKED).astype(np.intp))
@@ -450,7 +454,7 @@ def _record(
 
 
 def _motion_words(motion: Array) -> str:
-    """The motion that aligned a scan with the plan, in words."""
+    """Describe the motion that aligned a scan with the plan."""
     if np.array_equal(motion, np.eye(4)):
         return Text("; it was used as measured, in part coordinates")
     angle = math.degrees(
@@ -464,7 +468,7 @@ def _motion_words(motion: Array) -> str:
 
 
 def _slope(planned: Sequence[Scanned]) -> float:
-    """The most that the scan rises along a bead against the plan, per mm."""
+    """Return the maximum slope of the scan offset along a bead, mm/mm."""
     rises = [0.0]
     for scanned_bead in planned:
         off = scanned_bead.samples()[1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Measured points against the plan: alignment and the figures of their deviations."""
+"""Alignment of measured points with the plan, and statistics of the deviations."""
 
 from __future__ import annotations
 
@@ -31,8 +31,10 @@ from .registration import (
 
 Report = Callable[[float, str], None]
 
-PREDICTED = "predicted deposit"  # in place of a file, where nothing was measured
-UNLIKE = 8.0  # ratio of part to points from which a unit is suspected; cm, inches and m are 10 times and more
+PREDICTED = "predicted deposit"  # replaces the file name if nothing was measured
+UNLIKE = (
+    8.0  # size ratio of part to points that suggests a wrong unit; cm, inch and m give 10 or more
+)
 SHIFTS = np.vstack([np.zeros((3, 3)), np.eye(3)])
 
 
@@ -40,13 +42,13 @@ SHIFTS = np.vstack([np.zeros((3, 3)), np.eye(3)])
 class Inspected:
     """Measured points aligned with the part.
 
-    points: (n, 3) mm in part coordinates, on the touched surface: a ball's radius from the centre
+    points: (n, 3) mm in part coordinates, on the touched surface, one probe radius from the centre
     of the ball. deviation: (n,) mm from the planned surface, positive for excess. counted: (n,)
-    False for points past the edges of the plan, which no figure counts. fitted: (n,) False for
-    uncounted points and those left out of the fit. motion: (4, 4) from the measuring coordinates.
-    free: motions without influence on the deviations. tolerance: mm. file, against: the compared
-    objects. laid: (m, 5) pieces of a predicted deposit, with their middles, mm, their layers, and
-    the height of the surface above them, mm; None for a measurement.
+    False for points past the edges of the plan, which the statistics ignore. fitted: (n,) False for
+    uncounted points and for points excluded from the fit. motion: (4, 4) from measuring to part
+    coordinates. free: motions without influence on the deviations. tolerance: mm. file, against:
+    names of the measured and the planned object. laid: (m, 5) pieces of a predicted deposit: centre,
+    mm, layer, and height of the surface above the piece, mm; None for a measurement.
     """
 
     points: Array
@@ -69,7 +71,7 @@ class Inspected:
 def inspect(
     measured: Measured, planned: Planned, parameters: InspectionParameters, report: Report
 ) -> Inspected:
-    """Align measured points with the planned surface and judge them.
+    """Align measured points with the planned surface and evaluate the deviations.
 
     Parameters
     ----------
@@ -80,12 +82,12 @@ def inspect(
     parameters : InspectionParameters
         Fit, probe, tolerance and heights.
     report : Report
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
     Inspected
-        Points, deviations and figures.
+        Points, deviations and statistics.
 
     Raises
     ------
@@ -102,7 +104,7 @@ def inspect(
     distance, normal = distances(aligned)
     deviation = distance - parameters.probe_radius
     points = aligned - parameters.probe_radius * normal
-    # points farther off than every fitted point were left out, too
+    # points with a larger deviation than all fitted points were excluded from the fit
     fitted = within & (
         np.abs(deviation) <= np.abs(registration.distance[registration.used]).max() + 1e-9
     )
@@ -115,7 +117,7 @@ def inspect(
         *_unlike(measured.points, planned),
         *_issues(registration, planned, within, fitted, ball is not None),
     ]
-    # without a wall nothing says that it is round
+    # only walls of revolution are known to be round
     levels = parameters.levels() or (
         () if planned.wall is None else figures.default_heights(planned, inside_points)
     )
@@ -153,7 +155,7 @@ def inspect(
 def _aligned(
     measured: Measured, planned: Planned, parameters: InspectionParameters
 ) -> tuple[Registration, Mask, Surface]:
-    """The fit, the points within the edges, and the surface of the fit."""
+    """Return the fit, which points are within the edges, and the surface used for the fit."""
     radius, trim, where = parameters.probe_radius, parameters.trim, measured.label
     points = measured.points
     sample = points[np.unique(np.linspace(0, len(points) - 1, planned.max_points).astype(np.intp))]
@@ -163,7 +165,7 @@ def _aligned(
     else:
         nearest = sided(planned.nearest, parameters.side, parameters.thickness)
         start = _start_motion(sample, nearest, exact, planned, parameters, where)
-    for _ in range(2):  # the fit decides which points are past the edges
+    for _ in range(2):  # a second fit, because the first changes which points are past the edges
         on_part = sample[planned.within_edges(sample @ start[:3, :3].T + start[:3, 3])]
         if len(on_part) < LEAST_POINTS:
             raise InputError(
@@ -202,8 +204,11 @@ def _start_motion(
     parameters: InspectionParameters,
     where: str,
 ) -> Array:
-    """The initial motion (4, 4): from pairs of points if given. Else, if it does about as well as the best of many attitudes, from
-    the measured attitude, first by shifts, so that motions without influence on the deviations are not made.
+    """Return the initial motion (4, 4).
+
+    Pairs of points define the motion if given. Otherwise it starts from the measured attitude, if that fits about as
+    well as the best of many attitudes. Translations come first, so that the motion has no component without influence
+    on the deviations.
     """
     trim, radius = parameters.trim, parameters.probe_radius
     if parameters.start_pairs():
@@ -226,7 +231,7 @@ def _start_motion(
 
 
 def _by_pairs(parameters: InspectionParameters, where: str) -> Array:
-    """The motion (4, 4) from pairs of points; the identity without them."""
+    """Return the motion (4, 4) from pairs of points; identity without pairs."""
     pairs = parameters.start_pairs()
     if not pairs:
         return np.eye(4)
@@ -240,7 +245,7 @@ def _by_pairs(parameters: InspectionParameters, where: str) -> Array:
 
 
 def _allowed(planned: Planned, parameters: InspectionParameters) -> Array | None:
-    """The motions that the fit may make, as `register` takes them."""
+    """Return the motions that the fit may make, in the form that `register` takes."""
     if parameters.fit == SHIFT:
         return SHIFTS
     if parameters.fit == AXIS:
@@ -267,7 +272,10 @@ def _thickness(
 
 
 def _unlike(points: Array, planned: Planned) -> list[Issue]:
-    """A warning that the points (n, 3) have another size than the part, probably another unit: small clouds fit anywhere."""
+    """Warn if the points (n, 3) are much smaller than the part.
+
+    The unit is then probably wrong, and a small cloud fits anywhere.
+    """
     measured, part_size = (
         float(np.linalg.norm(np.ptp(cloud, axis=0))) for cloud in (points, planned.spread)
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Planned surfaces for the alignment of measured points: distances from them, and beyond their edges."""
+"""Planned surfaces for the alignment of measured points, with signed distances and edges."""
 
 from __future__ import annotations
 
@@ -23,20 +23,21 @@ from ..toolpath import Bead, Toolpath
 from ..types import Array, Index, Mask
 from .registration import Surface, by_extents, mean_square, register, roughly
 
-PAST = 0.5  # mm past an edge that a point may be and still count
-FACETED = 0.03  # how much a turn of something round is felt at most where its surface is of facets
-TOUCHING = 1e-9  # mm; nearer than this, what leads away from a surface is its normal
+PAST = 0.5  # mm; maximum distance past an edge of a point that counts
+FACETED = 0.03  # maximum relative influence of rotating a round but faceted surface about its axis
+TOUCHING = 1e-9  # mm; below this distance the direction away from a surface is its normal
 
 
 @dataclass(frozen=True, eq=False)
 class Planned:
-    """A surface in part coordinates, mm.
+    """A planned surface in part coordinates, mm.
 
-    name: for messages. nearest: distances from the surface, edges included, for the first alignment. exact: distances along its
-    normals, past its edges from its continuation. past: (n,) how far points (n, 3) are past its edges, mm. spread: (m, 3) points
-    all over it. frame: (4, 4) whose Z is its axis, at the height of its base. wall: if it is of revolution, with its exact
-    meridian. chord: its accuracy, mm. max_points: useful number of points for a fit. free: least influence of a motion on the
-    distances, relative to the largest, because facets have other normals than their surface.
+    name: for messages. nearest: distances from the bounded surface, for the first alignment. exact: distances along the
+    surface normals, where the surface continues past its edges. past: distances (n,) of points (n, 3) past the edges,
+    mm. spread: (m, 3) points distributed over the surface. frame: (4, 4) frame with Z along the surface's axis and the
+    origin at the base. wall: wall of revolution with the exact meridian, if any. chord: accuracy of the surface, mm.
+    max_points: useful number of points for a fit. free: minimum influence of a motion on the distances, relative to the
+    maximum influence. It is larger for facets, because their normals differ from those of the approximated surface.
     """
 
     name: str
@@ -67,21 +68,21 @@ class Planned:
 
 
 def sided(surface: Surface, side: str, thickness: float) -> Surface:
-    """Return the surface of a side of a wall, half a thickness off its planned surface.
+    """Return one side of a wall, offset by half a thickness from the planned surface.
 
     Parameters
     ----------
     surface : Surface
         Returns signed distances (n,) and normals (n, 3) at points.
     side : str
-        OUTER, INNER, or BOTH for the nearer one.
+        OUTER, INNER, or BOTH for the nearer side.
     thickness : float
         Thickness of the wall, mm.
 
     Returns
     -------
     Surface
-        Such a function for the side.
+        Distances and normals of the side.
     """
     if side == BOTH:
 
@@ -109,7 +110,7 @@ def triangle_surface(
     chord: float = 0.0,
     max_points: int = 20_000,
 ) -> Planned:
-    """Return a planned surface of triangles.
+    """Build a planned surface from triangles.
 
     Parameters
     ----------
@@ -118,11 +119,11 @@ def triangle_surface(
     vertices : (n, 3) array
         Vertices in part coordinates, mm.
     triangles : (m, 3) int array
-        Counter-clockwise seen from outside for a solid.
+        Vertex indices, counter-clockwise seen from outside for a solid.
     frame : (4, 4) array or None, optional
-        Frame of the surface; None for the part's.
+        Frame of the surface; None for the part frame.
     exact : Surface or None, optional
-        The surface that the triangles approximate; None for the triangles themselves.
+        The surface that the triangles approximate; None to use the triangles.
     chord : float, optional
         Accuracy of the triangles, mm.
     max_points : int, optional
@@ -169,7 +170,7 @@ def triangle_surface(
 
 
 def bead_surface(name: str, samples: Array, normals: Array, frame: Array, step: float) -> Planned:
-    """Return planned beads as a surface.
+    """Build a planned surface from beads.
 
     Parameters
     ----------
@@ -178,11 +179,11 @@ def bead_surface(name: str, samples: Array, normals: Array, frame: Array, step: 
     samples : (n, 3) array
         Points along the beads, mm.
     normals : (n, 3) array
-        Unit normals of the wall there.
+        Unit normals of the wall at the points.
     frame : (4, 4) array
         Frame of the surface.
     step : float
-        Largest distance between the points, mm.
+        Maximum distance between the points, mm.
 
     Returns
     -------
@@ -222,8 +223,10 @@ def bead_surface(name: str, samples: Array, normals: Array, frame: Array, step: 
 
 
 def revolution_surface(wall: RevolvedWall) -> Planned:
-    """A wall of revolution by its exact meridian; its normals lead to the right of the meridian, away from the axis where
-    it rises."""
+    """Build a planned surface from the exact meridian of a wall of revolution.
+
+    The normals point to the right of the meridian: away from the axis where the meridian rises.
+    """
     meridian = _Meridian(wall)
 
     def exact(points: Array) -> tuple[Array, Array]:
@@ -261,7 +264,7 @@ def revolution_surface(wall: RevolvedWall) -> Planned:
 
 
 class _Meridian:
-    """The nearest places of the meridian of a wall."""
+    """Projection of points onto the meridian of a wall."""
 
     def __init__(self, wall: RevolvedWall) -> None:
         self.wall, self.curve = wall, wall.meridian
@@ -273,7 +276,7 @@ class _Meridian:
         self.tree = cKDTree(np.column_stack([radius, height]))
 
     def local(self, points: Array) -> tuple[Array, Array, Array, Array]:
-        """Radius, height, azimuth (n,) kept within the wall's turn, and how far (n,) past that in mm."""
+        """Return radius, height, azimuth limited to the wall's sector, and distance past the sector, mm; (n,) each."""
         frame = self.wall.frame
         local_points = (points - frame[:3, 3]) @ frame[:3, :3]
         radius = np.hypot(local_points[:, 0], local_points[:, 1])
@@ -289,14 +292,14 @@ class _Meridian:
         return radius, local_points[:, 2], middle + clipped, over
 
     def nearest(self, radius: Array, height: Array) -> Array:
-        """Arc lengths (n,) of the nearest places of the meridian."""
+        """Return the arc lengths (n,) of the nearest points on the meridian."""
         nearest_row = self.tree.query(np.column_stack([radius, height]))[1]
         start = self.s[nearest_row]
         low = np.maximum(start - self.step, 0.0)
         high = np.minimum(start + self.step, self.curve.length)
         f_low, f_high = self._slope(low, radius, height), self._slope(high, radius, height)
         s = start
-        for _ in range(3):  # false position; the slope of the distance is nearly linear so close by
+        for _ in range(3):  # false position; the slope of the distance is locally almost linear
             straddled = (f_low > 0.0) & (f_high < 0.0)
             s = np.where(
                 straddled, low + (high - low) * f_low / np.where(straddled, f_low - f_high, 1.0), s
@@ -320,8 +323,11 @@ class _Meridian:
         return np.asarray(np.hypot(radius - r, height - z))
 
     def along_normals(self, points: Array) -> tuple[Array, Array, Array, Array]:
-        """Distances (n,) along the normals at the nearest places, these normals (n, 3), how far points are past the edges,
-        mm, and the nearest places (n, 3)."""
+        """Project points onto the wall.
+
+        Returns distances (n,) along the normals, normals (n, 3) at the nearest points, distances (n,) past the edges,
+        mm, and the nearest points (n, 3).
+        """
         radius, height, azimuth, off_plane = self.local(points)
         s = self.nearest(radius, height)
         r, z, tangent = self.curve.at(s)
@@ -332,7 +338,8 @@ class _Meridian:
             (s >= self.curve.length) & (not self.curve.closed_top)
         )
         past = np.hypot(np.where(at_end, over, 0.0), off_plane)
-        # a corner is the foot of all points between its two normals: their direction from it is a normal
+        # all points between the two normals of a corner project onto the corner; the normal of such a point is the
+        # direction from the corner
         inside = ~at_end & (over > 1e-6) & (over > 1e-3 * np.abs(distance))
         off = np.hypot(radius - r, height - z)
         side = np.where(distance < 0.0, -1.0, 1.0)
@@ -351,7 +358,7 @@ class _Meridian:
 
 
 def _directions_away(points: Array, foot: Array, distance: Array, normal: Array) -> Array:
-    """Unit vectors (n, 3) along which signed distances from feet grow."""
+    """Return the unit vectors (n, 3) along which the signed distances from the foot points increase."""
     off = np.abs(distance)[:, None]
     sense = np.where(distance < 0.0, -1.0, 1.0)[:, None]
     return np.asarray(
@@ -360,26 +367,26 @@ def _directions_away(points: Array, foot: Array, distance: Array, normal: Array)
 
 
 NEIGHBOURS = 8
-ALONE = (
-    3.0  # times farther from its neighbours than points are as a rule: it is none of the surface
-)
-FITTED = 3000  # points
+ALONE = 3.0  # times the median distance to neighbours; points beyond this are outliers
+FITTED = 3000  # maximum number of points in the fit
 TRIAL_POINTS, HOPEFUL = (
     300,
     12,
-)  # points that distinguish attitudes, and attitudes that are tried
-OUTLYING = 5.0  # standard deviations, by the median, that an aligned point may be off
-EQUAL_RATIO = 1.1  # times the least mean square: attitudes that points do not distinguish
-LOOSE = 0.1  # of the largest influence: motions with less are along a flat face, whose rims hardly show them
-STILL = 0.01  # mm: on a bent body's flat faces the minimum of distances is flat
-MIN_DIFFERENCE_RAD = np.radians(10.0)  # between attitudes that are not the same
+)  # points for the comparison of attitudes; attitudes that are refined
+OUTLYING = (
+    5.0  # standard deviations, estimated from the median; maximum residual of an aligned point
+)
+EQUAL_RATIO = 1.1  # times the minimum mean square; attitudes within this are equivalent
+LOOSE = 0.1  # of the maximum influence; a motion with less slides along a flat face
+STILL = 0.01  # mm; maximum last step of a valid fit, which converges slowly on flat faces of a bent body
+MIN_DIFFERENCE_RAD = np.radians(10.0)  # minimum angle between different attitudes
 PLAIN = np.radians(
     45.0
-)  # from as it was measured: an attitude that is taken though others are alike
+)  # maximum angle from the measured attitude of an attitude chosen among equivalent attitudes
 
 
 def align_scan(points: Array, body: Body, label: str) -> Array:
-    """Return the motion that moves measured points onto a body.
+    """Align measured points with a body.
 
     Parameters
     ----------
@@ -393,7 +400,7 @@ def align_scan(points: Array, body: Body, label: str) -> Array:
     Returns
     -------
     (4, 4) array
-        The motion.
+        Rigid motion of the points onto the body.
 
     Raises
     ------
@@ -423,9 +430,9 @@ def align_scan(points: Array, body: Body, label: str) -> Array:
 
 
 def _attitude(points: Array, surface: Surface, starts: Array, label: str) -> Array:
-    """The attitude nearest to the measured one among those that fit the points about best.
-    Raises InputError SCAN_AMBIGUOUS if several
-    are equivalent and none is near the measured one.
+    """Return the best attitude; among equivalent attitudes, the nearest to the measured attitude.
+
+    Raises InputError SCAN_AMBIGUOUS if several attitudes are equivalent and none is near the measured attitude.
     """
     sample = points[:: max(1, len(points) // TRIAL_POINTS)]
     order = np.argsort([mean_square(sample, surface, start) for start in starts], kind="stable")
@@ -457,17 +464,17 @@ def _attitude(points: Array, surface: Surface, starts: Array, label: str) -> Arr
 
 
 def _turn(rotation: Array) -> float:
-    """Angle of a rotation (3, 3), rad."""
+    """Return the angle of a rotation (3, 3), rad."""
     return float(np.arccos(np.clip(0.5 * (np.trace(rotation) - 1.0), -1.0, 1.0)))
 
 
 def as_pairs(motion: Array, size: float) -> str:
-    """Return a motion as the pairs of points that start an inspection.
+    """Format a motion as pairs of points for the start of an inspection.
 
     Parameters
     ----------
     motion : (4, 4) array
-        Pose that moves measured points into the part, mm.
+        Rigid motion from measuring to part coordinates, mm.
     size : float
         Distance of the points from the origin, mm.
 
@@ -486,18 +493,18 @@ def as_pairs(motion: Array, size: float) -> str:
     )
 
 
-# ---- Walls, solids and toolpaths of the plan as surfaces to inspect
+# ---- Planned surfaces of walls, solids and toolpaths
 
 ROWS, COLUMNS = (
     80,
     240,
-)  # of the triangles by which points find their place on a wall of one surface
-PLAIN_LOOP = 0.2  # of normals away from the middle of a loop: with less, its neighbour decides which side is outside
-FINE = 0.25  # mm between samples of beads
+)  # size of the triangle grid that locates points on a wall of one surface
+PLAIN_LOOP = 0.2  # mean radial component of a loop's normals; below it the adjacent bead decides which side is outside
+FINE = 0.25  # mm; maximum distance between samples of a bead
 
 
 def solids_surface(solids: SolidsOnHub) -> Planned:
-    """The surface of all solids, by their triangles."""
+    """Build a planned surface from the triangles of all solids."""
     bodies = [body for group in solids.groups for body in group.bodies]
     counts = np.cumsum([0, *(len(body.vertices) for body in bodies)])
     triangles = np.concatenate(
@@ -510,7 +517,7 @@ def solids_surface(solids: SolidsOnHub) -> Planned:
 
 
 def wall_surface(wall: SurfaceWall | PatchWall) -> Planned:
-    """The surface of a wall on a part."""
+    """Build a planned surface from a wall on a part."""
     return _tube_surface(wall) if wall.closes_around else _patches_surface(wall)
 
 
@@ -565,13 +572,16 @@ def _normals(derivatives: tuple[Array, Array, Array]) -> Array:
 
 
 def _outward(loop: Array, normals: Array) -> float:
-    """1 where normals (n, 3) lead out of a loop of points (n, 3), -1 where into it."""
+    """Return 1 if normals (n, 3) point out of a loop of points (n, 3), -1 if they point into it."""
     return 1.0 if float(dot(loop - loop.mean(axis=0), normals).sum()) >= 0.0 else -1.0
 
 
 def toolpath_surface(toolpath: Toolpath, name: str) -> Planned:
-    """The wall formed by adjacent beads, in the plane of each bead and its build direction.
-    Raises InputError NOT_FOR_FAMILY naming it."""
+    """Build a planned surface from the wall that the beads form.
+
+    At each bead the wall is tangential to the bead and its build direction. Raises InputError NOT_FOR_FAMILY for `name`
+    if the beads fill solids.
+    """
     if toolpath.traits.is_filled:
         raise InputError(
             "NOT_FOR_FAMILY",
@@ -598,15 +608,16 @@ def toolpath_surface(toolpath: Toolpath, name: str) -> Planned:
 
 
 def _turning(points: Array, frame: Array) -> float:
-    """1 if a course of points (n, 3) goes round the Z of a frame counter-clockwise, so that its normals are the meridian's; -1 if
-    clockwise.
+    """Return 1 if points (n, 3) run counter-clockwise about Z of a frame, -1 if clockwise.
+
+    The normals of a counter-clockwise bead agree with the meridian's normals.
     """
     x, y = ((points - frame[:3, 3]) @ frame[:3, :2]).T
     return 1.0 if float((x[:-1] * y[1:] - y[:-1] * x[1:]).sum()) >= 0.0 else -1.0
 
 
 def _is_radial(loop: Array, normals: Array) -> bool:
-    """Whether normals (n, 3) lead out of a loop of points (n, 3), or into it, rather than along its axis."""
+    """Whether normals (n, 3) of a loop of points (n, 3) are radial rather than axial."""
     offsets = loop - loop.mean(axis=0)
     return bool(
         abs(float(dot(offsets, normals).sum()))
@@ -615,7 +626,7 @@ def _is_radial(loop: Array, normals: Array) -> bool:
 
 
 def _sampled(bead: Bead) -> tuple[Array, Array]:
-    """Points along a bead, no farther apart than FINE, with unit normals of the wall there."""
+    """Sample a bead at most FINE apart; return points and unit normals of the wall."""
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     count = np.maximum(np.ceil(length / FINE).astype(np.intp), 1)
     segment = np.repeat(np.arange(len(count)), count)

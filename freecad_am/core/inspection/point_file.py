@@ -36,7 +36,7 @@ _STL_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("mo
 
 
 def stl(data: bytes, where: str) -> Array:
-    """Return the vertices of an STL file, each once.
+    """Return the unique vertices of an STL file.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def stl(data: bytes, where: str) -> Array:
     Returns
     -------
     (n, 3) array
-        In the unit of the file.
+        Vertices in the unit of the file.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def stl(data: bytes, where: str) -> Array:
     points = corners.astype(np.float64)
     points = points[
         np.lexsort(points.T[::-1])
-    ]  # as np.unique of rows has them, which holds up other threads meanwhile
+    ]  # same order as np.unique by rows, which would block other threads
     differs: Mask = np.ones(len(points), dtype=bool)
     differs[1:] = (points[1:] != points[:-1]).any(axis=1)
     unique: Array = points[differs]
@@ -83,7 +83,7 @@ def obj(data: bytes, where: str) -> Array:
     Returns
     -------
     (n, 3) array
-        In the unit of the file.
+        Vertices in the unit of the file.
 
     Raises
     ------
@@ -106,7 +106,7 @@ def ply(data: bytes, where: str) -> Array:
     Returns
     -------
     (n, 3) array
-        In the unit of the file.
+        Vertices in the unit of the file.
 
     Raises
     ------
@@ -172,11 +172,11 @@ TABLES, MESHES = (
     (".csv", ".txt", ".xyz", ".asc"),
     {".stl": stl, ".obj": obj, ".ply": ply},
 )
-MAX_POINTS = 200_000  # points that are kept of a larger scan, evenly
+MAX_POINTS = 200_000  # maximum number of points kept, evenly selected
 MAX_FILE_MB = 1000  # MB
-SAMPLE_ROWS = 200  # rows that decide the signs of a table
-HEAD = 10_000  # bytes of a mesh that may mention a unit
-LONGEST_REMARK = 60  # characters of one that a message shows
+SAMPLE_ROWS = 200  # number of rows that decide the separators of a table
+HEAD = 10_000  # bytes; start of a mesh file that is searched for a unit
+LONGEST_REMARK = 60  # maximum number of characters of a remark in a message
 _MARKS = ("#", "//", "%", "!", "'", '"#')
 _SIGNS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
 _NAMES = {None: "blanks", ";": "semicolons", "\t": "tabs", ",": "commas"}
@@ -191,7 +191,10 @@ _UNIT_NAMES = {"in": "inch", "inches": "inch", "µm": "um", "μm": "um"}
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Points (n, 3) in mm as they were measured; label: the file's name; issues: how the file was understood."""
+    """Measured points (n, 3) in measuring coordinates, mm.
+
+    label: file name. issues: notes on the interpretation of the file.
+    """
 
     points: Array
     label: str
@@ -201,9 +204,9 @@ class Measured:
 def read(path: str | Path, unit: str = AUTO) -> Measured:
     """Read the points of a CSV, TXT, XYZ or ASC table, or the vertices of an STL, OBJ or PLY mesh.
 
-    unit: of the coordinates; auto takes the unit that the file names, else mm.
-    Raises InputError NO_FILE, EMPTY_FILE, UNSUPPORTED_FILE,
-    BAD_FILE, NO_POINTS, AMBIGUOUS.
+    unit: unit of the coordinates; `auto` takes the unit stated in the file, else mm.
+
+    Raises InputError NO_FILE, EMPTY_FILE, UNSUPPORTED_FILE, BAD_FILE, NO_POINTS, AMBIGUOUS.
     """
     file = Path(path)
     suffix = file.suffix.lower()
@@ -227,7 +230,7 @@ def read(path: str | Path, unit: str = AUTO) -> Measured:
 
 
 def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
-    """Return the points of a file's content.
+    """Parse measured points from the content of a file.
 
     Parameters
     ----------
@@ -236,7 +239,7 @@ def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
     label : str
         Name of the file; its suffix decides the format.
     unit : str, optional
-        Unit of the coordinates; AUTO for the one that the file names, else mm.
+        Unit of the coordinates; AUTO takes the unit stated in the file, else mm.
 
     Returns
     -------
@@ -294,7 +297,7 @@ def _text(data: bytes) -> str:
 
 
 def _table(text: str, label: str) -> tuple[Array, list[str], str]:
-    """Points (n, 3) of a table in its unit, notes on its interpretation, and the unit that it names, '' for none."""
+    """Parse a table; return points (n, 3) in its unit, notes on the interpretation, and the stated unit or ''."""
     lines = [line.strip() for line in text.splitlines()]
     remarks = [line for line in lines if line.startswith(_MARKS)]
     rows = [
@@ -342,7 +345,7 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
 
 
 def _unit_of_remarks(texts: list[str], label: str) -> str:
-    """The unit that remarks or headings name, '' for none. Raises InputError BAD_UNIT for one that is not read."""
+    """Return the unit stated in remarks or headings, or ''. Raises InputError BAD_UNIT for unsupported units."""
     unit = next((name for name in map(_unit_in, texts) if name), "")
     for text in texts:
         if not unit and _OTHER_UNIT.search(text.lower().replace("_", " ")) is not None:
@@ -356,7 +359,7 @@ def _unit_of_remarks(texts: list[str], label: str) -> str:
 
 
 def _remarks_of_mesh(data: bytes, suffix: str) -> list[str]:
-    """Lines of the head of a PLY file, or remarks of an OBJ file, that mention a unit."""
+    """Return the header lines of a PLY file, or remarks of an OBJ file, that mention a unit."""
     marks: tuple[str, ...]
     if suffix == ".ply":
         head, marks = data[: max(data.find(b"end_header"), 0)], ("comment", "obj_info")
@@ -371,7 +374,10 @@ def _remarks_of_mesh(data: bytes, suffix: str) -> list[str]:
 def _check_widths(
     rows: list[tuple[int, list[str]]], width: int, delimiter: str | None, label: str
 ) -> None:
-    """InputError BAD_FILE for a row with more cells than the first: its commas may be decimal signs."""
+    """Raise InputError BAD_FILE for a row with more cells than the first row.
+
+    Its commas may be decimal separators.
+    """
     if delimiter != ",":
         return
     for number, row in rows:
@@ -387,7 +393,10 @@ def _check_widths(
 
 
 def _signs(lines: list[str], label: str) -> tuple[str | None, str]:
-    """The separator of columns, None for blanks, and the decimal sign: the pair with the most rows of numbers."""
+    """Detect the column separator, None for blanks, and the decimal separator.
+
+    The pair with the most numeric rows wins.
+    """
     tail = lines[max(0, len(lines) - SAMPLE_ROWS) :]
     scores = []
     for delimiter, comma in _SIGNS:
@@ -434,7 +443,7 @@ def _columns(
     comma: str,
     label: str,
 ) -> tuple[list[int], list[str], list[str]]:
-    """The columns of x, y and z, their headings, and notes on their choice."""
+    """Return the columns of x, y and z, their headings, and notes on the choice."""
     for head in reversed(heads):
         plain = [re.sub(r"[^a-z].*", "", cell.strip().lower()) for cell in head]
         if len(head) == width and {"x", "y", "z"} <= set(plain):
@@ -476,18 +485,18 @@ def _columns(
 
 
 def _is_name(cell: str) -> bool:
-    """Whether a heading is a name, not a number or a remark."""
+    """Whether a heading is a name rather than a number or remark."""
     return re.fullmatch(r"[^\W\d][\w .:/()\[\]°µ-]*", cell) is not None
 
 
 def _are_of_points(names: list[str]) -> bool:
-    """Whether headings are from ParaView, points:0 to points:2, which come in this order."""
+    """Whether headings are ParaView's points:0 to points:2, in this order."""
     numbered = [name[-1] for name in names if re.fullmatch(r"points?[:_ ][012]", name)]
     return numbered == ["0", "1", "2"]
 
 
 def _check_units(names: list[str], label: str) -> None:
-    """InputError BAD_UNIT for a unit that is not read, or units that differ."""
+    """Raise InputError BAD_UNIT for an unsupported unit or for different units."""
     for name in names:
         bracket = re.search(r"\[(.*)\]", name)
         is_unknown = bracket is not None and bool(bracket[1].strip()) and not _unit_in(bracket[1])
@@ -509,14 +518,14 @@ def _check_units(names: list[str], label: str) -> None:
 
 
 def _running(cells: list[str]) -> bool:
-    """Whether cells count up by one."""
+    """Whether the cells count up by one."""
     if len(cells) < 2 or not all(cell.isdecimal() for cell in cells):
         return False
     return bool((np.diff([int(cell) for cell in cells]) == 1).all())
 
 
 def _unit_in(text: str) -> str:
-    """The unit that a heading or remark names, '' for none."""
+    """Return the unit stated in a heading or remark, or ''."""
     names = _UNIT.findall(text.lower().replace("_", " "))
     if not names:
         return ""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Registration of measured points on a surface: the rigid motion with the least sum of squared distances.
 
-Rounds of Gauss-Newton on the distances along the surface's normals (Chen and Medioni 1992), damped as Levenberg and
-Marquardt do. Motions without influence on the distances, such as turning a round part about its axis, are not made; they are
-reported.
+Gauss-Newton iterations minimise the distances along the surface normals (Chen and Medioni 1992), with
+Levenberg-Marquardt damping. Motions without influence on the distances, such as rotating a round part about its axis,
+are not made but reported.
 """
 
 from __future__ import annotations
@@ -20,13 +20,13 @@ from ..geometry.frames import pose, rotation_about
 from ..issues import InfeasibleError, InputError
 from ..types import Array, Mask
 
-# ---- Small rigid motions in words
+# ---- Descriptions of small rigid motions
 
-NO_TURN = 1e-6  # rad per mm of shift: no turn
+NO_TURN = 1e-6  # rad per mm of shift; below it a motion is a pure shift
 
 
 def motion_text(turn: Array, shift: Array, middle: Array) -> str:
-    """Return a motion in words: a turn about an axis, or a shift.
+    """Describe a motion as a rotation about an axis or as a shift.
 
     Parameters
     ----------
@@ -35,12 +35,12 @@ def motion_text(turn: Array, shift: Array, middle: Array) -> str:
     shift : (3,) array
         Shift of the point `middle`, mm.
     middle : (3,) array
-        The point, mm.
+        Reference point, mm.
 
     Returns
     -------
     str
-        The text.
+        The description.
     """
     angle, distance = float(np.linalg.norm(turn)), float(np.linalg.norm(shift))
     if angle <= NO_TURN * distance:
@@ -50,31 +50,29 @@ def motion_text(turn: Array, shift: Array, middle: Array) -> str:
 
 
 def _upward(direction: Array) -> Array:
-    """The direction or its opposite, so that its largest part is positive."""
+    """Return the direction or its opposite, so that the largest component is positive."""
     return np.asarray(direction * np.sign(direction[np.argmax(np.abs(direction))]))
 
 
-# distance (n,) of points (n, 3), outside with a plus, and unit vectors (n, 3) along which it grows
+# signed distances (n,) of points (n, 3), positive outside, and unit vectors (n, 3) along which they increase
 Surface = Callable[[Array], tuple[Array, Array]]
 
-TRIAL_POINTS = 400  # points that each start is tried with
+TRIAL_POINTS = 400  # points used to compare the starts
 FIRST_ROUNDS, TRIAL_ROUNDS, ROUNDS = 4, 10, 100
-HOPE = 30.0  # starts whose mean square is more than this of the best are tried no longer
-EQUAL_RATIO = 1.02  # mean squares that differ by no more are alike
-CONVERGED = 1e-9  # mm; the fit has converged if the last iteration moves no point farther
-STILL = 1e-6  # mm; the fit is valid if the last iteration moved no point farther
-MIN_INFLUENCE = (
-    1e-5  # of the stiffest motion's: a singular value of a motion that distances do not feel
-)
+HOPE = 30.0  # times the best mean square after the first rounds; worse starts are dropped
+EQUAL_RATIO = 1.02  # maximum ratio of equivalent mean squares
+CONVERGED = 1e-9  # mm; the iteration ends at a displacement of all points below this
+STILL = 1e-6  # mm; maximum displacement of a point in the last iteration of a valid fit
+MIN_INFLUENCE = 1e-5  # relative singular value; motions below it have no influence on the distances
 LEAST_POINTS = 6
 
 
 @dataclass(frozen=True, eq=False)
 class Registration:
-    """The fit of n measured points.
+    """Fit of n measured points.
 
-    motion: (4, 4), from the measuring coordinates to the part. points: (n, 3) there. distance: (n,) mm from the surface, positive
-    outside. used: (n,) bool, the counted points. free: motions without influence on the distances.
+    motion: (4, 4) from measuring to part coordinates. points: (n, 3) in part coordinates. distance: (n,) mm from the
+    surface, positive outside. used: (n,) bool, points that count. free: motions without influence on the distances.
     """
 
     motion: Array
@@ -85,12 +83,12 @@ class Registration:
 
     @property
     def rms(self) -> float:
-        """Root of the mean square distance of the points that counted, mm."""
+        """Root mean square distance of the points that count, mm."""
         return float(np.sqrt((self.distance[self.used] ** 2).mean()))
 
 
 def refuse_too_few(points: Array, where: str) -> None:
-    """Reject points that are too few to locate a part.
+    """Reject a set of points that is too small to locate a part.
 
     Parameters
     ----------
@@ -125,9 +123,9 @@ def register(
     free: float = MIN_INFLUENCE,
     still: float = STILL,
 ) -> Registration:
-    """Return the best fit of points onto a surface from any start.
+    """Fit points to a surface from the best of several starts.
 
-    Each start is tried with a few points, the best with all.
+    A sample of the points selects the start. The final fit uses all points.
 
     Parameters
     ----------
@@ -136,24 +134,24 @@ def register(
     surface : Surface
         Returns signed distances (n,) and normals (n, 3) at points.
     starts : iterable of Array
-        Motions (4, 4) to begin with.
+        Initial motions (4, 4).
     where : str
         Name of the points, for messages.
     trim : float, optional
-        Share of the points, those farthest off, that do not count (outliers, supports, a
-        clamp); from 0 to less than 0.5.
+        Fraction of the points, those with the largest distances, that do not count (outliers,
+        supports, a clamp); from 0 to less than 0.5.
     radius : float, optional
-        Radius of a probe's ball whose centre was measured, mm; distances count from the
+        Radius of the probe ball whose centre was measured, mm. Distances are measured from the
         ball's surface.
     allowed : (6, k) array or None, optional
-        Motions that may be made, as columns: three turns about the part's origin over three
-        shifts; None for all. Their products must be of the same kind, as the turns about
-        and shifts along one axis are.
+        Allowed motions as columns: three rotations about the part origin above three shifts;
+        None for all motions. The set must be closed under composition, like rotations about and
+        shifts along one axis.
     free : float, optional
-        Motions that distances feel by no more than this share of the most influential one
-        are not made.
+        Minimum influence of a motion on the distances, relative to the maximum influence. The fit
+        makes no motions below it.
     still : float, optional
-        Displacement of a point in the last round at which the fit has settled, mm.
+        Maximum displacement of a point in the last iteration of a converged fit, mm.
 
     Returns
     -------
@@ -163,7 +161,7 @@ def register(
     Raises
     ------
     InputError
-        TOO_FEW_POINTS; OUT_OF_RANGE for an excluded share.
+        TOO_FEW_POINTS; OUT_OF_RANGE for an invalid `trim`.
     InfeasibleError
         NOT_SETTLED if the fit does not converge.
     """
@@ -203,8 +201,8 @@ def roughly(
 ) -> Array:
     """Return an approximate motion from a sample of the points.
 
-    It comes from the first of the starts that leads to about the least distances, so that
-    motions without influence are not made.
+    Among starts with equivalent results, the first is chosen, so that the motion has no component
+    without influence on the distances.
 
     Parameters
     ----------
@@ -213,7 +211,7 @@ def roughly(
     surface : Surface
         Returns signed distances (n,) and normals (n, 3) at points.
     starts : iterable of Array
-        Motions (4, 4) to begin with.
+        Initial motions (4, 4).
     trim, radius, allowed, free : float, optional
         As in `register`.
 
@@ -242,7 +240,7 @@ def roughly(
 def mean_square(
     points: Array, surface: Surface, motion: Array, trim: float = 0.0, radius: float = 0.0
 ) -> float:
-    """Return the mean square distance of moved points from a surface.
+    """Return the mean square distance from a surface after a motion.
 
     Parameters
     ----------
@@ -253,20 +251,20 @@ def mean_square(
     motion : (4, 4) array
         The motion.
     trim : float, optional
-        Share of the points that do not count.
+        Fraction of the points that do not count.
     radius : float, optional
-        Radius of a probe's ball, mm.
+        Radius of the probe ball, mm.
 
     Returns
     -------
     float
-        mm2.
+        Mean square distance, mm2.
     """
     return _square(surface(_transform(points, motion))[0] - radius, trim)
 
 
 def as_measured() -> Array:
-    """Return the start for points that were measured in part coordinates.
+    """Return the start for points measured in part coordinates.
 
     Returns
     -------
@@ -277,22 +275,22 @@ def as_measured() -> Array:
 
 
 def by_extents(points: Array, of_surface: Array) -> Array:
-    """Return starts from the extents of points and surface.
+    """Return starts that match the extents of points and surface.
 
-    The first start is as measured; the others place centre on centre with the principal axes of
-    the points along those of the surface, in the 24 orientations.
+    The first start is the identity. The other 24 starts align the centres and the principal axes of
+    points and surface in all orientations.
 
     Parameters
     ----------
     points : (n, 3) array
         Measured points, mm.
     of_surface : (m, 3) array
-        Points all over the surface, mm.
+        Points distributed over the surface, mm.
 
     Returns
     -------
     (25, 4, 4) array
-        Motions.
+        Initial motions.
     """
     centre, surface_centre = points.mean(axis=0), of_surface.mean(axis=0)
     axes_of_points = np.linalg.svd(points - centre, full_matrices=False)[2]
@@ -309,7 +307,7 @@ def by_extents(points: Array, of_surface: Array) -> Array:
 
 
 def by_pairs(measured: Array, planned: Array, where: str) -> Array:
-    """Return the start that moves measured points onto corresponding points of the part.
+    """Return the start that aligns measured points with corresponding points of the part.
 
     Parameters
     ----------
@@ -366,7 +364,11 @@ def _converged(
     allowed: Array | None,
     free: float,
 ) -> tuple[Array, float, float]:
-    """Motion, mean square distance of the counted points, and the last round's largest displacement of a point, mm."""
+    """Iterate from a start.
+
+    Returns the motion, the mean square distance of the points that count, mm2, and the maximum displacement of a point
+    in the last iteration, mm.
+    """
     motion, damping, moved = start, 0.0, np.inf
     aligned = _transform(points, motion)
     distance, normal = surface(aligned)
@@ -380,7 +382,7 @@ def _converged(
         next_square = _square(next_distance - radius, trim)
         if next_square > square * (1.0 + 1e-12):
             damping = max(10.0 * damping, 1e-3)
-            if damping > 1e9:  # no step reduces the distance, as on facets
+            if damping > 1e9:  # no step reduces the distances; this happens on facets
                 moved = 0.0
                 break
             continue
@@ -404,7 +406,7 @@ def _step(
     allowed: Array | None,
     free: float,
 ) -> Array:
-    """The small motion (4, 4) that reduces the distances of points most; the smallest if several do."""
+    """Return the damped least-squares step (4, 4), of minimum norm if several steps are equivalent."""
     system, middle, size = _felt(points, normal)
     basis = _basis(allowed, middle, size)
     u_matrix, stretch, right = np.linalg.svd(system @ basis, full_matrices=False)
@@ -413,9 +415,9 @@ def _step(
     share[firm] = stretch[firm] / (stretch[firm] ** 2 + damping * stretch[0] ** 2)
     solved = -(basis @ right.T @ (share * (u_matrix.T @ distance)))
     turn, shift = solved[:3] / size, solved[3:]
-    if allowed is not None:  # only a screw motion stays among those allowed
+    if allowed is not None:  # only a screw motion stays within the allowed motions
         twist = np.zeros((4, 4))
-        twist[:3, :3] = np.cross(np.eye(3), turn)  # its product with v is turn x v
+        twist[:3, :3] = np.cross(np.eye(3), turn)  # twist[:3, :3] @ v = turn x v
         twist[:3, 3] = shift - np.cross(turn, middle)
         return np.asarray(expm(twist))
     angle = float(np.linalg.norm(turn))
@@ -424,7 +426,7 @@ def _step(
 
 
 def _basis(allowed: Array | None, middle: Array, size: float) -> Array:
-    """The motions allowed (6, k), orthonormal, as `_felt` counts them."""
+    """Return an orthonormal basis (6, k) of the allowed motions, in the coordinates of `_felt`."""
     if allowed is None:
         return np.eye(6)
     turn, shift = allowed[:3], allowed[3:]
@@ -433,7 +435,11 @@ def _basis(allowed: Array | None, middle: Array, size: float) -> Array:
 
 
 def _felt(points: Array, normal: Array) -> tuple[Array, Array, float]:
-    """How distances (n, 6) grow with three turns about the points' middle, in mm at their mean radius, and three shifts."""
+    """Return the derivatives (n, 6) of the distances by three rotations and three shifts.
+
+    Rotations are about the points' centroid and in mm at the root mean square radius. Also returns the centroid and
+    this radius.
+    """
     middle = points.mean(axis=0)
     arm = points - middle
     size = float(np.sqrt((arm**2).sum(axis=1).mean())) or 1.0
@@ -451,7 +457,7 @@ def _free(
 
 
 def _counting(distance: Array, trim: float) -> Mask:
-    """The points that count: all but the share farthest off."""
+    """Return which points count: all but the fraction `trim` with the largest distances."""
     count = len(distance) - int(trim * len(distance))
     used = np.zeros(len(distance), dtype=np.bool_)
     used[np.argsort(np.abs(distance), kind="stable")[:count]] = True

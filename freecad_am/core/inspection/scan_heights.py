@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Heights of a scanned surface along given directions: a smooth patch through the points around each position.
+"""Heights of a scanned surface along given directions, from local smooth patches.
 
-Patches are of second order and fitted with weights that fall with the distance (Cleveland 1979) and with Tukey's biweight,
-so that outliers such as spatter and reflections have no weight.
+Patches are quadratic. The weights of the fit fall with the distance (Cleveland 1979) and with Tukey's biweight, so that
+outliers such as spatter and reflections have no weight.
 """
 
 from __future__ import annotations
@@ -21,17 +21,15 @@ from ..parameters.inspection import UNITS
 from ..types import Array, Mask
 from .inspect import UNLIKE
 
-# ---- Whether a scan is of the part that it is said to be of, and in the unit that it is read in
+# ---- Checks of a scan's unit and of the scanned part
 
-LOOKED = 10_000  # points
-LEAST_ON_PART = 0.8  # share of the points of a scan that have to be on the scanned body
-SCALE_RATIO = (
-    1.5  # times that a scan may be larger or smaller than a part for its unit to be guessed
-)
+LOOKED = 10_000  # maximum number of points to check
+LEAST_ON_PART = 0.8  # minimum fraction of a scan's points on the scanned body
+SCALE_RATIO = 1.5  # maximum size ratio of scan and part, in either direction, for a unit to match
 
 
 def share_near(points: Array, body: Body, within: float) -> float:
-    """Return the share of points near a body.
+    """Return the fraction of points near a body.
 
     Parameters
     ----------
@@ -40,18 +38,18 @@ def share_near(points: Array, body: Body, within: float) -> float:
     body : Body
         The body.
     within : float
-        Largest distance, mm.
+        Maximum distance, mm.
 
     Returns
     -------
     float
-        From 0 to 1.
+        Fraction from 0 to 1.
     """
     return float((_distances(points, body) <= within).mean())
 
 
 def refuse_size(points: Array, label: str, body: Body) -> None:
-    """Reject points of another size than a body.
+    """Reject a scan whose size differs too much from a body.
 
     Parameters
     ----------
@@ -65,7 +63,7 @@ def refuse_size(points: Array, label: str, body: Body) -> None:
     Raises
     ------
     InputError
-        SCAN_UNIT, naming the unit that would match.
+        SCAN_UNIT, with the unit that would match, if any.
     """
     size, body_size = extent(points), extent(body.vertices)
     if body_size <= size * UNLIKE and size <= UNLIKE * body_size:
@@ -105,7 +103,7 @@ def refuse_other(points: Array, label: str, body: Body, within: float) -> None:
     body : Body
         The body.
     within : float
-        Largest distance of a point on the body, mm.
+        Maximum distance from the body of a point on it, mm.
 
     Raises
     ------
@@ -135,7 +133,7 @@ def refuse_other(points: Array, label: str, body: Body, within: float) -> None:
 
 
 def _distances(points: Array, body: Body) -> Array:
-    """Distance (k,), mm, of a sample of points (n, 3) from the body."""
+    """Return the distances (k,) of a sample of points (n, 3) from a body, mm."""
     sample = points[np.unique(np.linspace(0, len(points) - 1, LOOKED).astype(np.intp))]
     solid = SolidMesh(body.vertices, body.triangles)
     return np.asarray(
@@ -144,17 +142,19 @@ def _distances(points: Array, body: Body) -> Array:
 
 
 def extent(points: Array) -> float:
-    """Return the diagonal of points, of many without the outermost percent on each side.
+    """Return the diagonal of the bounding box of points.
+
+    With more than 500 points, the outermost percent on each side is ignored.
 
     Parameters
     ----------
     points : (n, 3) array
-        mm.
+        Points, mm.
 
     Returns
     -------
     float
-        mm.
+        Diagonal, mm.
     """
     low, high = (
         np.quantile(points, (0.01, 0.99), axis=0)
@@ -165,22 +165,22 @@ def extent(points: Array) -> float:
 
 
 PATCH_POINTS = 64  # points of a patch
-MIN_POINTS = 12  # points of a patch that need weight
-BIWEIGHT = (
-    4.685  # times the spread of points about their patch beyond which they do not count (Tukey)
-)
+MIN_POINTS = 12  # minimum number of points of a patch with weight
+BIWEIGHT = 4.685  # times the standard deviation of residuals; maximum residual with weight (Tukey)
 SPREAD = 1.4826  # ratio of the standard deviation to the median absolute value
 ROUNDS = 4
-OFF_CENTRE = 0.5  # of a patch's radius, offset of its points' middle beyond which the position is past an edge
-MAX_RADIUS_RATIO = 3.0  # times wider than patches are as a rule: a hole in the scan
+OFF_CENTRE = 0.5  # fraction of the patch radius; maximum centroid offset of a position within the scan's edges
+MAX_RADIUS_RATIO = 3.0  # times the usual patch radius; wider patches span a hole in the scan
 PIECE = 4000  # positions in a batch
-TINY_MM = 1e-6  # mm
+TINY_MM = 1e-6  # mm; lower bound of divisors
 
 
 @dataclass(frozen=True, eq=False)
 class Heights:
-    """Heights at m positions: offset (m,) mm of the scan along the direction, its slope there (m,), and whether the scan covers the
-    position (m,). Uncovered positions have the height nan.
+    """Scan heights at m positions.
+
+    off: (m,) offset of the scan along the direction, mm, NaN at uncovered positions. slope: (m,) slope of the scan.
+    covered: (m,) whether the scan covers the position.
     """
 
     off: Array
@@ -190,14 +190,17 @@ class Heights:
 
 @dataclass(frozen=True, eq=False)
 class _Patches(Heights):
-    """wide: (m,) over a hole in the scan."""
+    """Heights with wide: (m,) whether the patch spans a hole in the scan."""
 
     wide: Mask
 
 
 @dataclass(frozen=True, eq=False)
 class Scan:
-    """Scanned points: (n, 3) mm in part coordinates. label: of the file. within: mm from the plan beyond which points are foreign."""
+    """Scanned points, (n, 3) mm in part coordinates.
+
+    label: file name. within: mm, maximum distance from the plan of points of the part.
+    """
 
     points: Array
     label: str
@@ -220,7 +223,7 @@ class Scan:
         )
 
     def heights(self, positions: Array, directions: Array) -> Heights:
-        """Heights above places (m, 3), m >= 1, along unit vectors (m, 3)."""
+        """Return the scan heights at positions (m, 3), m >= 1, along unit vectors (m, 3)."""
         if len(self.points) < MIN_POINTS:
             nothing = np.full(len(positions), np.nan)
             return Heights(nothing, nothing, np.zeros(len(positions), dtype=np.bool_))
@@ -228,7 +231,7 @@ class Scan:
         for begin in range(0, len(positions), PIECE):
             rows = slice(begin, begin + PIECE)
             rough = self._patches(positions[rows], directions[rows], rough=True)
-            # again from the surface, whose nearest points surround it
+            # repeat from the surface, where the nearest points surround the position
             start = np.where(rough.covered, rough.off, 0.0)
             then = self._patches(
                 positions[rows] + start[:, None] * directions[rows], directions[rows]
@@ -243,7 +246,7 @@ class Scan:
         return Heights(np.where(covered, off, np.nan), slope, covered)
 
     def _patches(self, positions: Array, directions: Array, rough: bool = False) -> _Patches:
-        """Fit patches; rough: by planes only."""
+        """Fit patches; `rough` fits planes only."""
         _, neighbours = self._tree.query(positions, k=min(PATCH_POINTS, len(self.points)))
         arm = self.points[neighbours] - positions[:, None]
         along, across = _sideways(directions)
@@ -275,7 +278,7 @@ class Scan:
 
 
 def _sideways(directions: Array) -> tuple[Array, Array]:
-    """Two unit vectors (m, 3) each that are square to unit vectors (m, 3) and to one another."""
+    """Return two unit vectors (m, 3) perpendicular to each direction (m, 3) and to each other."""
     axis = np.eye(3)[np.argmin(np.abs(directions), axis=1)]
     along = np.cross(directions, axis)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
@@ -283,7 +286,7 @@ def _sideways(directions: Array) -> tuple[Array, Array]:
 
 
 def _solved(columns: Array, high: Array, weight: Array) -> Array:
-    """Coefficients (m, c) of the weighted least squares of heights (m, k) in columns (m, k, c)."""
+    """Return the weighted least-squares coefficients (m, c) of heights (m, k) in columns (m, k, c)."""
     weighted = columns * weight[:, :, None]
     system = np.einsum("mkc,mkd->mcd", weighted, columns)
     system += (
@@ -295,21 +298,21 @@ def _solved(columns: Array, high: Array, weight: Array) -> Array:
 
 
 def _median(values: Array, valid: Mask) -> Array:
-    """Medians (m,) of the valid values (m, k); 0 without any."""
+    """Return the medians (m,) of the valid values (m, k); 0 in rows without valid values."""
     ordered = np.sort(np.where(valid, values, np.inf), axis=1)
     count = valid.sum(axis=1)
     middle = ordered[np.arange(len(values)), np.maximum(count - 1, 0) // 2]
     return np.where(count > 0, middle, 0.0)
 
 
-PARTS = 40  # along the longest side of the body, of its triangles once they are divided
-MIN_EDGE_MM = 4.0  # mm
-MAX_TRIANGLES = 100_000  # triangles
-FACING = 0.2  # cosine; faces that lean farther away from where layers grow are not scanned along their normals
+PARTS = 40  # minimum number of triangle edges along the longest side of the refined body
+MIN_EDGE_MM = 4.0  # mm; lower bound of the edge length in refinement
+MAX_TRIANGLES = 100_000  # maximum number of triangles
+FACING = 0.2  # minimum cosine between the normal of a face and a growth direction for the face to be moved
 
 
 def facing(points: Array, body: Body, directions: Array) -> Mask:
-    """Return which points are nearest to triangles that face given directions.
+    """Return which points are nearest to triangles that face one of several directions.
 
     Parameters
     ----------
@@ -323,7 +326,7 @@ def facing(points: Array, body: Body, directions: Array) -> Mask:
     Returns
     -------
     (n,) bool array
-        True for triangles that face one of the directions.
+        True if the nearest triangle faces one of the directions.
     """
     solid = SolidMesh(body.vertices, body.triangles)
     extent = float(np.ptp(body.vertices, axis=0).max())
@@ -333,7 +336,7 @@ def facing(points: Array, body: Body, directions: Array) -> Mask:
 
 
 def scanned(body: Body, scan: Scan, directions: Array) -> Body:
-    """Return the body with its vertices moved to a scan.
+    """Move the vertices of a body to a scan.
 
     Parameters
     ----------
@@ -347,7 +350,7 @@ def scanned(body: Body, scan: Scan, directions: Array) -> Body:
     Returns
     -------
     Body
-        The moved body, perhaps with finer triangles.
+        The moved body, possibly with finer triangles.
     """
     longest = max(float(np.ptp(body.vertices, axis=0).max()) / PARTS, MIN_EDGE_MM)
     owner = np.zeros(len(body.triangles), dtype=np.intp)
@@ -358,7 +361,7 @@ def scanned(body: Body, scan: Scan, directions: Array) -> Body:
     units = SolidMesh(vertices, triangles).units
     sample = directions[np.unique(np.linspace(0, len(directions) - 1, 50).astype(np.intp))]
     level = (units @ sample.T).max(axis=1)
-    order = np.argsort(level, kind="stable")  # the triangle that faces them most is written last
+    order = np.argsort(level, kind="stable")  # the best-facing triangle of a vertex is written last
     normals, best = np.zeros_like(vertices), np.full(len(vertices), -1.0)
     for corner in range(3):
         corner_vertices = triangles[order, corner]

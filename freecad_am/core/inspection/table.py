@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""An inspection in rows of figures, as table 2 of Chalvin 2020 has them, and as data for files."""
+"""Results of an inspection as table rows, as in table 2 of Chalvin 2020, and as data for files."""
 
 from __future__ import annotations
 
@@ -14,8 +14,9 @@ from .inspect import Inspected
 
 
 class Row(NamedTuple):
-    """A figure: its name, value, unit ('' for a count), and short name in a narrow panel, '' to leave it out; there figures of a
-    group are listed under its name.
+    """A result with name, value and unit ('' for a count).
+
+    short: name in a narrow panel, '' to omit the row there. group: heading of the row in the panel.
     """
 
     name: str
@@ -26,14 +27,17 @@ class Row(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The value as it is shown."""
+        """The value as displayed."""
         if self.unit == "":
             return f"{self.value:.0f}"
         return f"{self.value:.1f}" if self.unit == "%" else f"{self.value:.4f}"
 
 
 def rows(inspected: Inspected) -> tuple[Row, ...]:
-    """All figures. Defects are widths of the narrowest zone (ISO 1101), followed by those about the least-squares centre."""
+    """Return all results.
+
+    Defects are minimum zone widths (ISO 1101), followed by the zone widths about the least-squares centre.
+    """
     spread = inspected.spread
     figures_ = [
         Row("Points", spread.count, "", "Points"),
@@ -94,7 +98,7 @@ def rows(inspected: Inspected) -> tuple[Row, ...]:
 
 
 def as_data(inspected: Inspected) -> dict[str, Any]:
-    """The figures by key, in mm, for a JSON file."""
+    """Return the results by key, in mm, for a JSON file."""
     spread = inspected.spread
     data: dict[str, Any] = {
         "measured": inspected.file,
@@ -148,7 +152,7 @@ def as_data(inspected: Inspected) -> dict[str, Any]:
 
 
 def deviations(inspected: Inspected) -> Iterable[str]:
-    """Lines of a CSV file: the points in part coordinates with their deviations."""
+    """Yield the lines of a CSV file with points in part coordinates and deviations."""
     yield "x_mm,y_mm,z_mm,deviation_mm,counted,fitted\n"
     columns = (inspected.points, inspected.deviation, inspected.counted, inspected.fitted)
     for point, deviation, within, fitted in zip(*columns, strict=True):
@@ -161,7 +165,7 @@ def deviations(inspected: Inspected) -> Iterable[str]:
 def compared(
     inspections: list[Inspected],
 ) -> list[tuple[str, str, list[float | None], float | None, float | None]]:
-    """Return the figures of several inspections side by side.
+    """Compare the results of several inspections.
 
     Parameters
     ----------
@@ -171,12 +175,12 @@ def compared(
     Returns
     -------
     list of tuple
-        Name, unit, value in each inspection (None without), mean and standard deviation (n
+        Name, unit, value in each inspection (None if absent), mean and standard deviation (n
         - 1) over the inspections; None for fewer than two values.
 
     References
     ----------
-    Chalvin 2020, table 2, has the latter for three spheres.
+    Chalvin 2020, table 2: mean and standard deviation for three spheres.
     """
     tables = [{row.name: row for row in rows(table)} for table in inspections]
     names = dict.fromkeys(name for table in tables for name in table)

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Width and height of a bead from travel speed and curvature: w = m v^(-1/3) + p / r + t (Dai 2020, section 4).
 
-The model holds the width, not the section: at one wire feed a bead that runs faster in a bend is lower there (ERRATA), so
-the height has its own fit of the same form. Inside the fit the speed is in mm/min, as in the paper; all arguments are mm and
-mm/s. The radius has no sign: inside and outside of a bend are not distinguished. The wire per millimetre makes the bead:
-beads deposited at several wire feeds f count at the speed at which the nominal feed f0 deposits the same, v f0 / f, and
-another feed within their range scales the speeds alike.
+The model predicts the width, not the cross-section. At constant wire feed, a bead that is faster in a bend is lower
+there (ERRATA), so the height has a separate fit of the same form. Inside the fit the speed is in mm/min, as in the
+paper; all arguments are in mm and mm/s. The radius is unsigned: the model does not distinguish the inside and the
+outside of a bend.
+
+The wire length per millimetre determines the bead. A bead measured at wire feed f therefore enters the fit at the
+equivalent speed v f0 / f, where f0 is the nominal feed. For another feed within the measured range, the speeds scale by
+the same ratio.
 """
 
 from __future__ import annotations
@@ -21,15 +24,18 @@ from ..toolpath import SpeedLaw, Toolpath
 from ..types import Array, Mask
 
 MINUTE = 60.0
-MIN_ROWS = 4  # rows; three coefficients and one that says how well they fit
-CONTRADICTING = 0.25  # of their mean; beads deposited alike are measured nearer to each other
-FLATTEST = 1e-8  # least relative singular value of a table that determines the coefficients
+MIN_ROWS = 4  # minimum rows: three coefficients and one degree of freedom for the residual
+CONTRADICTING = 0.25  # fraction of the mean; maximum difference between repeated measurements
+FLATTEST = 1e-8  # minimum relative singular value of a table that determines the coefficients
 
 
 @dataclass(frozen=True)
 class Fit:
-    """coefficients of v^(-1/3) [mm (mm/min)^(1/3)], 1/r [mm^2] and one [mm]; r_squared; rmse in mm with the degrees of
-    freedom left as divisor."""
+    """Coefficients and quality of a fit.
+
+    m, p, t: coefficients of v^(-1/3) [mm (mm/min)^(1/3)], 1/r [mm^2] and 1 [mm]. rmse: mm, root mean square error per
+    residual degree of freedom.
+    """
 
     m: float
     p: float
@@ -45,7 +51,7 @@ class Fit:
         speed : (...) array
             Travel speeds, mm/s.
         radius : (...) array
-            Radii of curvature, mm; infinite where straight.
+            Radii of curvature, mm; infinite for straight segments.
 
         Returns
         -------
@@ -62,7 +68,11 @@ class Fit:
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """speed (n,) mm/s; too_slow, too_fast, too_tight (n,) where the width asked for, or the radius, is outside the table."""
+    """Travel speeds for a requested width.
+
+    speed: (n,) mm/s. too_slow, too_fast: (n,) where the required speed is outside the table. too_tight: (n,) where the
+    radius is below the table's minimum.
+    """
 
     speed: Array
     too_slow: Mask
@@ -72,9 +82,11 @@ class Asked:
 
 @dataclass(frozen=True)
 class BeadModel:
-    """The fits of width and height, and the range of the measured beads: speeds mm/s, radii mm, infinite for straight beads,
-    wire_feed mm/s. feeds: least and largest wire feed, mm/s, speed_ratios: speeds as shares of their wire feed. contradictions:
-    rows of the table that were deposited alike and measured differently, as text.
+    """Fits of width and height, with the range of the measured beads.
+
+    speeds: minimum and maximum, mm/s. radii: minimum and maximum, mm, infinite for straight beads. wire_feed: nominal
+    feed, mm/s. feeds: minimum and maximum wire feed, mm/s. speed_ratios: minimum and maximum ratio of speed to wire
+    feed. contradictions: texts that name table rows with equal settings and different results.
     """
 
     width: Fit
@@ -87,7 +99,7 @@ class BeadModel:
     contradictions: tuple[str, ...] = field(default=(), repr=False)
 
     def at_feed(self, feed: float) -> BeadModel:
-        """The model of beads at another wire feed, mm/s; unchanged if nothing like it was measured."""
+        """Return the model at another wire feed, mm/s; unchanged if the feed is outside the measured range."""
         if (
             self.feeds is None
             or self.speed_ratios is None
@@ -112,12 +124,12 @@ class BeadModel:
         speed : (...) array
             Travel speeds, mm/s.
         radius : (...) array
-            Radii of curvature, mm; those below the table's count as its least.
+            Radii of curvature, mm. Radii below the table's minimum count as the minimum.
 
         Returns
         -------
         (...) array
-            mm.
+            Widths, mm.
         """
         return self.width.value_at(speed, np.maximum(radius, self.radii[0]))
 
@@ -129,29 +141,29 @@ class BeadModel:
         speed : (...) array
             Travel speeds, mm/s.
         radius : (...) array
-            Radii of curvature, mm; those below the table's count as its least.
+            Radii of curvature, mm. Radii below the table's minimum count as the minimum.
 
         Returns
         -------
         (...) array
-            mm.
+            Heights, mm.
         """
         return self.height.value_at(speed, np.maximum(radius, self.radii[0]))
 
     def law(self, acceleration: float) -> SpeedLaw:
-        """What the model says of beads at other speeds than theirs; speeds change by `acceleration` mm/s^2 at most."""
+        """Return the change of bead size with speed; speeds change by at most `acceleration` mm/s^2."""
         root = float(np.cbrt(1.0 / MINUTE))
         return SpeedLaw(self.width.m * root, self.height.m * root, self.speeds[0], acceleration)
 
     def straight_speed(self, width: float) -> float:
-        """The speed, mm/s, that keeps `width` mm where a bead is straight: there the wire runs at its nominal feed."""
+        """Return the speed, mm/s, that gives a straight bead `width` mm at the nominal wire feed."""
         return float(self.speed_for(width, np.array([np.inf])).speed[0])
 
     def heights_of_section(self, widths: Array, width: float) -> Array:
-        """Return the heights of beads with the section of a straight bead.
+        """Return the heights of beads with the cross-section of a straight bead.
 
-        This is the case with a wire feed in proportion to the speed. For sections of the
-        same shape, height times width is the same.
+        A wire feed proportional to the speed keeps the cross-section constant. For
+        cross-sections of similar shape, height times width is then constant.
 
         Parameters
         ----------
@@ -170,21 +182,21 @@ class BeadModel:
         return section / widths
 
     def speed_for(self, width: float | Array, radius: Array) -> Asked:
-        """Return the travel speed that keeps a width, within the speeds of the table.
+        """Return the travel speed for a requested width, limited to the speeds of the table.
 
         Parameters
         ----------
         width : float or (n,) array
-            Width to keep, mm.
+            Requested width, mm.
         radius : (n,) array
-            Radii of curvature, mm; infinite where straight.
+            Radii of curvature, mm; infinite for straight segments.
 
         Returns
         -------
         Asked
-            Speeds, mm/s, and where width or radius is outside the table.
+            Speeds, mm/s, and where speed or radius is outside the table.
         """
-        straight_only = np.isinf(self.radii[0])  # such a table says nothing of bends
+        straight_only = np.isinf(self.radii[0])  # a table without bends does not limit the radius
         tight = (radius < self.radii[0] * (1.0 - 1e-9)) & (not straight_only)
         speed_term = width - self.width.p / np.maximum(radius, self.radii[0]) - self.width.t
         with np.errstate(divide="ignore", over="ignore"):
@@ -218,7 +230,7 @@ def fit(
 ) -> BeadModel:
     """Fit the model to a calibration table by least squares.
 
-    The model is linear in its three coefficients; two if every bead is straight.
+    The model is linear in its three coefficients, or in two if all beads are straight.
 
     Parameters
     ----------
@@ -229,13 +241,13 @@ def fit(
     width, height : (n,) array
         Measured sizes, mm.
     wire_feed : float
-        Wire feed, mm/s; the nominal one if `feeds` is given.
+        Wire feed, mm/s; the nominal wire feed if `feeds` is given.
     label : str, optional
         Name of the table, for messages.
     lines : sequence of int, optional
         Line number of each row in its file, for messages; empty if unknown.
     feeds : (n,) array or None, optional
-        Wire feeds of beads deposited at several ones, mm/s.
+        Wire feed of each bead, mm/s, if the feeds differ.
 
     Returns
     -------
@@ -246,9 +258,9 @@ def fit(
     ------
     InputError
         TOO_FEW_ROWS, BAD_TABLE (values that are not positive or not finite),
-        COLLINEAR_TABLE (radii or speeds do not vary, or only together), TABLE_CONTRADICTS
-        (rows do, so that width does not fall with speed) or NO_MODEL (width does not fall
-        with speed).
+        COLLINEAR_TABLE (radii or speeds do not vary, or vary only together), TABLE_CONTRADICTS
+        (contradictory rows, and width does not fall with speed) or NO_MODEL (width does not
+        fall with speed).
 
     References
     ----------
@@ -331,8 +343,11 @@ def _contradictions(
     measured: dict[str, Array],
     lines: Sequence[int],
 ) -> tuple[str, ...]:
-    """Pairs of rows of the same radius, speed and wire feed whose width or height differs by more than `CONTRADICTING` of their
-    mean, with both values."""
+    """Describe pairs of contradictory rows.
+
+    Two rows with equal radius, speed and wire feed contradict if width or height differs by more than `CONTRADICTING`
+    of the mean.
+    """
     settings = [radius, speed, np.zeros(len(speed)) if feeds is None else feeds]
     groups: dict[tuple[str, ...], list[int]] = {}
     for row in range(len(radius)):
@@ -357,7 +372,7 @@ def _contradictions(
 
 
 def _besides(contradictions: Sequence[str]) -> str:
-    """The second fault of a rejected table, as text: rows that contradict each other."""
+    """Format contradictory rows as the second fault of a rejected table."""
     if not contradictions:
         return ""
     return Text(
@@ -378,7 +393,7 @@ def row_name(label: str, row: int, lines: Sequence[int] = ()) -> str:
     label : str
         Name of the table.
     row : int
-        Number of the row, from 0.
+        Index of the row, from 0.
     lines : sequence of int, optional
         Line of each row in the file; empty if unknown.
 
@@ -393,7 +408,7 @@ def row_name(label: str, row: int, lines: Sequence[int] = ()) -> str:
 
 
 def _alike(radius: Array, speed: Array, equivalent: Array) -> str:
-    """Why speeds and radii of a table do not determine the coefficients, and what to measure."""
+    """Explain why the speeds and radii of a table do not determine the coefficients, and what to measure."""
     straight = np.isinf(radius).all()
     same = [
         Text("all beads have the {} {:.9g} {}", name, column[0], unit)
@@ -428,16 +443,18 @@ def _fit(terms: Array, values: Array) -> Fit:
     )
 
 
-# ---- Beads against the travel speeds of their material
+# ---- Travel speeds against the range of the material
 
 CODE = "MATERIAL_SPEED"
-ROUNDING = 1e-6  # of a speed
+ROUNDING = 1e-6  # relative rounding error of a speed
 
 
 def check_speeds(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
-    """The toolpath with a warning at the worst bead whose travel speed is outside the range of its material.
+    """Return the toolpath with a warning if travel speeds are outside the material's range.
 
-    InputError BAD_VALUE for a slowest speed above the fastest.
+    The warning is at the bead with the largest relative deviation.
+
+    Raises InputError BAD_VALUE if the slowest speed is above the fastest.
     """
     slowest, fastest = process.material.slowest or 0.0, process.material.fastest
     if fastest is not None and slowest > fastest:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Order of deposit of the beads of several solids, and where beads about an axis start.
+"""Print order of the beads of several solids, and start of beads about an axis.
 
-Around the axis (Dai 2020, section 5) the heat is spread: the same layer of all solids on a base in turn, the same ring of
-each, the inner rings first. Solid by solid is the other order. A plane layer is deposited island by island, the nearest next,
-from inside out in each.
+The order around the axis (Dai 2020, section 5) spreads the heat. It deposits a layer of all solids on a base before the
+next layer, ring by ring from inside out. The alternative order is solid by solid. A planar layer is deposited island by
+island, nearest next, each from inside out.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ..types import Array
 
 
 class RankedBead(NamedTuple):
-    """A bead and where it belongs: group, solid (numbered around the axis), layer, ring counted from outside."""
+    """A bead with its group, solid (numbered around the axis), layer and ring (counted from outside)."""
 
     group: int
     solid: int
@@ -31,8 +31,10 @@ class RankedBead(NamedTuple):
 
 
 class Course(NamedTuple):
-    """Layers in the order of deposit, and for each the solid (group, solid) of each of its beads. numbers: layer number here, by
-    group, solid (0 if several are deposited together) and layer of that stack.
+    """Layers in print order.
+
+    solids: (group, solid) of each bead, by layer. numbers: index in `layers`, by group, solid (0 if several solids are
+    deposited together) and layer of that stack.
     """
 
     layers: tuple[Layer, ...]
@@ -40,31 +42,32 @@ class Course(NamedTuple):
     numbers: Mapping[tuple[int, int, int], int] = MappingProxyType({})
 
     def number(self, group: int, solid: int, layer: int) -> int | None:
-        """Return the number here of a layer of a stack.
+        """Return the index in `layers` of a layer of a stack.
 
         Parameters
         ----------
         group : int
-            Number of the group.
+            Index of the group.
         solid : int
-            Number of the solid in its group.
+            Index of the solid in its group.
         layer : int
-            Number of the layer in the stack.
+            Index of the layer in the stack.
 
         Returns
         -------
         int or None
-            None if neither this layer nor a layer above has deposit.
+            The index; None if neither this layer nor a layer above it has beads.
         """
         return self.numbers.get((group, solid, layer), self.numbers.get((group, 0, layer)))
 
 
 @dataclasses.dataclass
 class IslandOrder:
-    """Order of the islands of consecutive layers: the nearest next, or the order of the islands below.
+    """Order of the islands of consecutive layers: nearest next, or as in the layer below.
 
-    as_below: the latter, so that all islands cool for the time of a layer. point: (3,) mm, the torch position; None: the first
-    island comes first. below: middles (k, 3) of the islands of the layer before, in their order; None: no layer is below.
+    as_below: whether to repeat the order of the layer below, so that each island cools for the time of a layer. point:
+    (3,) torch position, mm; None starts with the first island. below: centres (k, 3) of the islands of the previous
+    layer, in print order; None if there is no layer below.
     """
 
     as_below: bool = False
@@ -72,7 +75,7 @@ class IslandOrder:
     below: Array | None = None
 
     def order_islands(self, beads: Sequence[Bead], islands: Sequence[Sequence[int]]) -> list[Bead]:
-        """The beads of a layer in the order of deposit. islands: the bead numbers of each island, from inside out."""
+        """Return the beads of a layer in print order; `islands` are the bead indices of each island, from inside out."""
         if self.as_below and islands:
             middle = [
                 np.vstack([beads[number].points for number in sorted(island)]).mean(axis=0)
@@ -100,9 +103,10 @@ class IslandOrder:
 
 
 def order_beads(beads: Sequence[RankedBead], order: str) -> Course:
-    """Beads as layers: group by group, and in each around the axis layer by layer, or solid by solid ('feature').
+    """Arrange beads in layers, group by group.
 
-    A layer of a group, or of a solid, without beads stays as an empty layer, so that each keeps its number.
+    Within a group, the order is layer by layer around the axis, or solid by solid ('feature'). A layer without beads
+    stays as an empty layer, so that layers keep their indices.
     """
 
     def rank(ranked: RankedBead) -> tuple[int, ...]:
@@ -114,7 +118,7 @@ def order_beads(beads: Sequence[RankedBead], order: str) -> Course:
         return (ranked.group, ranked.solid if order == "feature" else 0, ranked.layer)
 
     layers: list[list[RankedBead]] = []
-    reached: dict[tuple[int, int], int] = {}  # the layer each solid has come to
+    reached: dict[tuple[int, int], int] = {}  # current layer of each solid
     for ranked in sorted(beads, key=rank):
         solid = ranked.group, ranked.solid
         if reached.get(solid, ranked.layer) != ranked.layer:
@@ -142,20 +146,20 @@ def order_beads(beads: Sequence[RankedBead], order: str) -> Course:
     return Course(tuple(layers_), tuple(solids), numbers)
 
 
-# ---- Where beads about an axis start and which way they run
+# ---- Start and direction of beads about an axis
 
 
 def rising(process: ProcessParameters, index: int, closed: bool) -> bool:
-    """Return whether a bead runs with rising azimuth, counter-clockwise as seen from the tool.
+    """Whether a bead runs with rising azimuth, counter-clockwise as seen from the tool.
 
-    Open beads run with rising azimuth, unless the direction is alternate.
+    Open beads always do, unless the direction is alternate.
 
     Parameters
     ----------
     process : ProcessParameters
         Process with the direction.
     index : int
-        Number of the bead.
+        Index of the bead.
     closed : bool
         Whether the bead is closed.
 
@@ -177,7 +181,7 @@ def closed_azimuths(process: ProcessParameters, layer: int, segments: int, risin
     process : ProcessParameters
         Process with the seam.
     layer : int
-        Number of the layer.
+        Index of the layer.
     segments : int
         Number of segments.
     rising : bool
@@ -186,7 +190,7 @@ def closed_azimuths(process: ProcessParameters, layer: int, segments: int, risin
     Returns
     -------
     (segments + 1,) array
-        Unwrapped azimuths, rad; the last is one turn on.
+        Unwrapped azimuths, rad, over one full turn.
     """
     start = process.seam.angle + layer * process.seam.step
     turn = 2.0 * np.pi if rising else -2.0 * np.pi
@@ -194,12 +198,12 @@ def closed_azimuths(process: ProcessParameters, layer: int, segments: int, risin
 
 
 def open_azimuths(start: float, end: float, segments: int, rising: bool) -> Array:
-    """Return the azimuths of a part of a turn, from the end at which the bead starts.
+    """Return the azimuths of a partial turn, in the direction of the bead.
 
     Parameters
     ----------
     start, end : float
-        Ends, rad.
+        Limits of the azimuth, rad.
     segments : int
         Number of segments.
     rising : bool

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which class a bead is of, and what a class changes of the direction of the tool."""
+"""Bead classes, and their effect on tool direction and bead ends."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from ..parameters.process import ProcessParameters
 from ..toolpath import BeadEnds, Toolpath
 
 LEANS = ("lead", "tilt")
-_OF_KIND = {"contour": CONTOUR, "connected": CONTOUR, "closing": CLOSING}  # of a bead of a filling
+_OF_KIND = {"contour": CONTOUR, "connected": CONTOUR, "closing": CLOSING}  # class by filling role
 
 
 def fill_bead_class(kind: str, layer: int) -> str:
-    """The class of a bead of a filling, by its role and its layer: every bead of the lowest layer is `first_layer`."""
+    """Return the class of a bead of a filling; every bead of the lowest layer is `first_layer`."""
     return FIRST_LAYER if layer == 0 else _OF_KIND.get(kind, FILL)
 
 
 def wall_bead_class(layer: int, closing: bool = False) -> str:
-    """The class of a bead that is all of a wall's thickness, or a curve."""
+    """Return the class of a single-bead wall or of a curve."""
     if layer == 0:
         return FIRST_LAYER
     return CLOSING if closing else WALL
@@ -64,7 +64,7 @@ def leaning(
 
 
 def refuse_speeds(process: ProcessParameters) -> None:
-    """InputError NOT_FOR_FAMILY where classes have travel speeds and a bead model sets these."""
+    """Raise InputError NOT_FOR_FAMILY if classes set travel speeds although a bead model sets them."""
     speed_keys = ("travel_speed", "start_travel_speed", "end_travel_speed")
     named = [
         f"process.classes.{name}"
@@ -84,9 +84,10 @@ def refuse_speeds(process: ProcessParameters) -> None:
 
 
 def set_bead_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
-    """The toolpath with the lengths, speeds and ramps of the phases at the ends of its beads.
-    Raises InputError PHASE_LENGTH where
-    they are longer than a bead, BAD_VALUE for a ramp from no speed."""
+    """Return the toolpath with lengths, speeds and ramps of the bead ends.
+
+    Raises InputError PHASE_LENGTH if the ends are longer than a bead, BAD_VALUE for a ramp without a travel speed.
+    """
     of_class = {name: _ends(process.for_class(name), name) for name in (*CLASSES, "")}
     if not any(of_class.values()):
         return toolpath
@@ -113,7 +114,7 @@ def set_bead_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
 
 
 def _ends(process: ProcessParameters, name: str) -> BeadEnds | None:
-    """`Bead.ends` of a class; None where no end differs."""
+    """Return `Bead.ends` of a class; None if neither end differs from the bead."""
     for end, phase in ((START, process.start), (END, process.end)):
         if phase.ramp > 0.0 and phase.travel_speed is None:
             where = (

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Waits before layers, so that the deposit below cools: between visits to a solid, and for a least time of every layer."""
+"""Waits before layers for the deposit below to cool.
+
+They enforce a minimum time between visits to a solid and a minimum layer time.
+"""
 
 from __future__ import annotations
 
@@ -18,18 +21,18 @@ def add_waits(
 ) -> tuple[Layer, ...]:
     """Return the layers with waits before them.
 
-    Rapids count as straight moves between beads, so waits are rather too long.
+    Rapids are assumed to be straight moves between beads, so waits tend to be too long.
 
     Parameters
     ----------
     course : Course
-        Layers in the order of deposit.
+        Layers in print order.
     wait : float
-        Shortest time before a solid is returned to, s.
+        Minimum time before the return to a solid, s.
     rapid_speed : float
         Speed of rapids, mm/s.
     min_layer_time : float, optional
-        Shortest time of a layer, s.
+        Minimum time of a layer, s.
 
     Returns
     -------
@@ -43,7 +46,7 @@ def add_waits(
     for layer, solids in zip(course.layers, course.solids, strict=True):
         starts: dict[tuple[int, int], float] = {}
         ends: dict[tuple[int, int], float] = {}
-        short = 0.0 if layer.first else min_layer_time - time  # of the layer before
+        short = 0.0 if layer.first else min_layer_time - time  # missing time of the previous layer
         time = 0.0
         for bead, solid in zip(layer.beads, solids, strict=True):
             if position is not None:
@@ -69,14 +72,14 @@ def add_waits(
 
 
 def enforce_layer_time(toolpath: Toolpath, min_layer_time: float, rapid_speed: float) -> Toolpath:
-    """Return the toolpath with waits, so that no layer takes less than a time.
+    """Return the toolpath with waits that enforce a minimum layer time.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath.
     min_layer_time : float
-        Shortest time of a layer, s; 0 for none.
+        Minimum time of a layer, s; 0 for no minimum.
     rapid_speed : float
         Speed of rapids, mm/s.
 

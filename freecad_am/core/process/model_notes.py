@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Issues of a bead model that sets the speeds: the fit, speeds outside its table, heights, the wire."""
+"""Issues of a bead model that sets the speeds: fit, speeds outside the table, heights, wire feed."""
 
 from __future__ import annotations
 
@@ -20,12 +20,15 @@ from .bead_model import MINUTE, BeadModel
 from .wire import model_wire_feed
 
 HEIGHTS = "BEAD_HEIGHT"
-DRIFT = 0.2  # of the layer height; layers that drift by more deserve a warning
+DRIFT = 0.2  # fraction of the layer height; maximum height deviation without a warning
 
 
 @dataclass(frozen=True, eq=False)
 class Segments:
-    """The segments (n,) of some beads: length mm, travel speed mm/min, width and height mm halfway, wire mm/s or NaN."""
+    """Segments (n,) of beads.
+
+    length: mm. speed: travel speed, mm/min. width, height: mm at the midpoint. wire: wire speed, mm/s, or NaN.
+    """
 
     length: Array
     speed: Array
@@ -35,7 +38,7 @@ class Segments:
 
 
 def segments(beads: Sequence[Bead]) -> Segments:
-    """The segments of the beads whose speed a bead model sets."""
+    """Return the segments of the beads whose speed a bead model sets."""
     modelled = [
         (bead, bead.width, bead.height)
         for bead in beads
@@ -63,23 +66,23 @@ def segments(beads: Sequence[Bead]) -> Segments:
 def beads(
     toolpath: Toolpath, numbers: Sequence[int] | Index | None = None
 ) -> dict[str, Any] | None:
-    """Return the key `beads` of a report.
+    """Return the value of the key `beads` in a report.
 
-    `drift_mm` of a layer is the sum of the differences of predicted mean heights from layer
-    heights, up to it within its solid.
+    `drift_mm` of a layer is the difference between predicted mean height and layer height, summed
+    over the layers of its solid up to this layer.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath.
     numbers : sequence of int, optional
-        Numbers of the layers of one feature among the layers of several.
+        Indices of one feature's layers among the layers of several features.
 
     Returns
     -------
     dict or None
-        Speeds, widths, heights and wire feed in the units of their keys; None without a bead model,
-        and for several features.
+        Speeds, widths, heights and wire feed in the units given in the keys; None without a bead
+        model, and for several features.
     """
     total = segments([] if toolpath.features else [bead for _, _, bead in toolpath])
     if not len(total.length):
@@ -131,12 +134,12 @@ def height_issue(
     model : BeadModel
         The bead model.
     as_run : bool, optional
-        Whether the speeds are limited to those that the axes can follow.
+        Whether the speeds are limited to speeds that the axes can follow.
 
     Returns
     -------
     Issue
-        A warning if the mean height departs by more than DRIFT, else a note.
+        A warning if the mean height deviates by more than DRIFT, else a note.
     """
     sized = segments(beads)
     height = _summarise(sized.height, sized.length)
@@ -159,7 +162,7 @@ def height_issue(
 
 
 def _sections(sized: Segments, process: ProcessParameters, model: BeadModel) -> str:
-    """The wire feed in proportion to the speed, actual or possible, as text where speeds vary."""
+    """Describe the proportional wire feed, actual or possible; '' if speeds hardly vary."""
     if np.isfinite(sized.wire).all():
         low, high = float(sized.wire.min()), float(sized.wire.max())
         return Text(
@@ -183,17 +186,20 @@ def _sections(sized: Segments, process: ProcessParameters, model: BeadModel) -> 
 
 
 def _summarise(values: Array, length: Array) -> dict[str, float]:
-    """Least, largest, and the mean over the length."""
+    """Return the minimum, the length-weighted mean and the maximum."""
     mean = float((values * length).sum() / length.sum())
     return {"min": float(values.min()), "mean": mean, "max": float(values.max())}
 
 
-CLAMPED = 0.05  # of the length
+CLAMPED = 0.05  # fraction of the bead length
 
 
 class Held(Protocol):
-    """A bead at the speeds of a model, where (n,) the speed is not what the width asks for, and where it bends more than the
-    table's beads."""
+    """A bead at the speeds of a model.
+
+    clamped: (n,) where the speed for the width is outside the table. tight: (n,) where the bend is tighter than in the
+    table.
+    """
 
     @property
     def bead(self) -> Bead: ...
@@ -213,7 +219,7 @@ def model_issues(
     Parameters
     ----------
     sized : sequence of Held
-        The beads with their marks.
+        The beads, with points outside the table marked.
     layer_height : float
         Layer height, mm.
     process : ProcessParameters
@@ -224,7 +230,7 @@ def model_issues(
     Returns
     -------
     list of Issue
-        The fit, contradictions in the table, speeds outside it, heights and wire feed.
+        The fit, contradictions in the table, speeds outside the table, heights and wire feed.
     """
     length = np.concatenate(
         [np.linalg.norm(np.diff(sized_bead.bead.points, axis=0), axis=1) for sized_bead in sized]
@@ -288,7 +294,7 @@ def model_issues(
 def _outside(
     sized: Sequence[Held], length: Array, target_width: float, model: BeadModel
 ) -> list[Issue]:
-    """The issues of beads outside the range of the table."""
+    """Return the issues of beads outside the range of the table."""
     clamped = np.concatenate(
         [sized_bead.clamped[1:] for sized_bead in sized if sized_bead.clamped is not None]
     )
@@ -349,14 +355,14 @@ def _outside(
     return issues
 
 
-MIN_TURN_RAD = 1e-9  # rad; a smaller turn over the window counts as none
+MIN_TURN_RAD = 1e-9  # rad; minimum turn over the window of a curved bead
 
 
 def radii(flat: Array, closed: bool, window: float) -> Array:
     """Return the local radius of curvature of a flattened bead.
 
-    The path's turn over the window about each point counts, for a bead as wide as that feels no
-    sharper bend: a corner counts as the arc of that length.
+    The radius follows from the path's turn over the window about each point. A corner thus counts
+    as an arc as long as the window, because a bead of this width has no sharper bend.
 
     Parameters
     ----------
@@ -377,7 +383,7 @@ def radii(flat: Array, closed: bool, window: float) -> Array:
     heading = np.unwrap(np.arctan2(y, x))
     round_turn = (
         float(np.unwrap([heading[-1], heading[0]])[1] - heading[0]) if closed else None
-    )  # turn of a whole round
+    )  # turn over one full loop
     return _radii(np.linalg.norm(step, axis=1), heading, round_turn, window)
 
 
@@ -414,8 +420,9 @@ def side_radii(points: Array, build: Array, closed: bool, window: float) -> Arra
 
 
 def _radii(length: Array, heading: Array, round_turn: float | None, window: float) -> Array:
-    """The radii at the ends of segments of lengths (n-1,) at headings (n-1,); `round_turn` is the turn of a whole round of a
-    closed bead.
+    """Return the radii at the ends of segments with lengths (n-1,) and headings (n-1,).
+
+    `round_turn` is the turn of a closed bead over one full loop, None for an open bead.
     """
     closed = round_turn is not None
     s = np.r_[0.0, np.cumsum(length)]
@@ -426,7 +433,7 @@ def _radii(length: Array, heading: Array, round_turn: float | None, window: floa
         values = np.concatenate([heading + k * round_turn for k in turns])
     else:
         knots, values = s[:-1], heading
-    # the heading as a step function of arc length; its means over half a window on either side give the turn between
+    # the heading is a step function of arc length; the difference of its means before and after a point is the turn
     total = np.r_[0.0, np.cumsum(values * np.diff(np.r_[knots, knots[-1] + length[-1]]))]
     ends = np.r_[knots, knots[-1] + length[-1]]
     low, high = np.maximum(s - window, ends[0]), np.minimum(s + window, ends[-1])
@@ -446,18 +453,18 @@ def _radii(length: Array, heading: Array, round_turn: float | None, window: floa
 
 
 def limit_acceleration(points: Array, speed: Array, closed: bool, acceleration: float) -> Array:
-    """Lower speeds so that they change no faster than an acceleration.
+    """Lower speeds to limit the acceleration along a path.
 
     Parameters
     ----------
     points : (n, k) array
-        Points of the course, mm.
+        Points of the path, mm.
     speed : (n,) array
         Requested speeds, mm/s.
     closed : bool
-        Whether the course is closed.
+        Whether the path is closed.
     acceleration : float
-        Largest acceleration, mm/s2.
+        Maximum acceleration, mm/s2.
 
     Returns
     -------
@@ -476,8 +483,11 @@ def limit_acceleration(points: Array, speed: Array, closed: bool, acceleration: 
 
 
 class AtSpeed(NamedTuple):
-    """A bead at the speeds of a model, where (n,) the speed is not what the width asks for, and where it bends more than the
-    table's beads."""
+    """A bead at the speeds of a model.
+
+    clamped: (n,) where the speed for the width is outside the table. tight: (n,) where the bend is tighter than in the
+    table.
+    """
 
     bead: Bead
     clamped: Mask
@@ -495,7 +505,7 @@ def at_speed(
 ) -> AtSpeed:
     """Return a bead at the speeds that keep its width.
 
-    Speeds change along its course by no more than the acceleration of the process.
+    The acceleration of the process limits the change of speed along the path.
 
     Parameters
     ----------
@@ -504,20 +514,20 @@ def at_speed(
     radius : (n,) array
         Radii of curvature, mm.
     course : (n, k) array
-        Points of the course, mm.
+        Points of the path, mm.
     closed : bool
-        Whether the course is closed.
+        Whether the path is closed.
     process : ProcessParameters
         Bead width, acceleration and wire.
     model : BeadModel
         The bead model.
     share : float or (n,) array, optional
-        Share of the bead width to keep.
+        Fraction of the bead width to keep.
 
     Returns
     -------
     AtSpeed
-        The bead with speeds, widths and heights, and where these are limited.
+        The bead with speeds, widths and heights, and the points outside the table.
     """
     speeds = model.speed_for(process.bead_width * share, radius)
     speed = limit_acceleration(course, speeds.speed, closed, process.acceleration)
@@ -532,7 +542,7 @@ def at_speed(
 
 
 def segment_speeds(speed: Array) -> Array:
-    """Return the speeds of segments from those at points.
+    """Convert speeds at points to speeds on segments.
 
     Parameters
     ----------
@@ -542,13 +552,13 @@ def segment_speeds(speed: Array) -> Array:
     Returns
     -------
     (n,) array
-        Speed of the segment that ends at each point, mm/s.
+        Speed on the segment that ends at each point, mm/s.
     """
     return np.concatenate([speed[:1], 0.5 * (speed[:-1] + speed[1:])])
 
 
 def hold_widths(toolpath: Toolpath, process: ProcessParameters, model: BeadModel) -> Toolpath:
-    """Return the toolpath of beads that fill nothing, at the speeds that keep their width.
+    """Return a toolpath without filling at the speeds that keep the bead width.
 
     Parameters
     ----------
@@ -562,7 +572,7 @@ def hold_widths(toolpath: Toolpath, process: ProcessParameters, model: BeadModel
     Returns
     -------
     Toolpath
-        The toolpath with sizes and the issues of the model.
+        The toolpath with bead sizes and the issues of the model.
     """
     sized: list[AtSpeed] = []
     layers = []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Wire feed against bead: the wire fed per second equals the counted section of a bead at its travel speed."""
+"""Balance of wire feed and beads: wire volume per second = bead cross-section x travel speed."""
 
 from __future__ import annotations
 
@@ -24,7 +24,10 @@ _KEYS = {MIDDLE: "", AT_START: ".start", AT_END: ".end"}
 
 
 class Taken(NamedTuple):
-    """Wire rate, mm3/s, that beads of a class take in one of PHASES, with layer and bead of the first occurrence. section: mean mm2."""
+    """Deposition rate of the beads of one class in one phase.
+
+    phase: one of PHASES. rate: mm3/s. layer, bead: indices of the first occurrence. section: mean cross-section, mm2.
+    """
 
     bead_class: str
     phase: int
@@ -35,12 +38,12 @@ class Taken(NamedTuple):
 
     @property
     def name(self) -> str:
-        """By the keys of a job: contour, contour.start, contour.end."""
+        """Name in terms of job keys: contour, contour.start, contour.end."""
         return f"{self.bead_class or 'all'}{_KEYS[self.phase]}"
 
 
 def by_wire(taken: Taken, process: ProcessParameters) -> bool:
-    """Whether process.wire feeds beads of a class in this phase: no other schedule does."""
+    """Whether process.wire sets the feed of a class and phase, rather than a separate schedule."""
     class_process = process.for_class(taken.bead_class)
     phase = {AT_START: class_process.start, AT_END: class_process.end}.get(taken.phase)
     schedule = class_process.schedule if phase is None or phase.schedule is None else phase.schedule
@@ -48,14 +51,14 @@ def by_wire(taken: Taken, process: ProcessParameters) -> bool:
 
 
 def by_schedules(toolpath: Toolpath, process: ProcessParameters) -> list[str]:
-    """The keys of the beads fed by a schedule of their own, whose feed is not known here."""
+    """Return the names of classes and phases with a separate schedule, whose feed is unknown."""
     return [taken.name for taken in taken_of(toolpath) if not by_wire(taken, process)]
 
 
 def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int, int] | None:
-    """Return the largest relative deviation of wire feed from bead volume.
+    """Return the maximum relative deviation of the wire feed from the bead volume.
 
-    Beads fed by a schedule of their own do not count.
+    Beads with a separate schedule are not included.
 
     Parameters
     ----------
@@ -67,7 +70,7 @@ def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int
     Returns
     -------
     tuple of (float, int, int) or None
-        Deviation, layer and bead; None if nothing is known.
+        Deviation, layer and bead; None if wire feed or bead width is unknown.
     """
     wire_rate = (toolpath.wire_feed or 0.0) * process.wire.section
     by_wire_ = [taken for taken in taken_of(toolpath) if by_wire(taken, process)]
@@ -95,12 +98,15 @@ def off_most(toolpath: Toolpath, process: ProcessParameters) -> tuple[float, int
 
 
 def follows_speed(toolpath: Toolpath) -> bool:
-    """Whether the wire follows the travel speed along a bead."""
+    """Whether the wire feed follows the travel speed along a bead."""
     return any(bead.wire_share is not None for _, _, bead in toolpath)
 
 
 def taken_of(toolpath: Toolpath) -> list[Taken]:
-    """The rates that beads take, by class and phase, from their width, height and speed, in the order of deposit; empty if the width is not known."""
+    """Return the deposition rate of each bead class and phase, in print order.
+
+    The rates follow from width, height and speed of the beads. Empty if the bead width is unknown.
+    """
     if toolpath.bead_width is None:
         return []
     sums: dict[tuple[str, int], Array] = {}
@@ -120,7 +126,10 @@ def taken_of(toolpath: Toolpath) -> list[Taken]:
 
 
 def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[int, Array]:
-    """mm3, s and mm (3,) of a bead, by phase; before joints are planned from the lengths of its phases."""
+    """Return volume, mm3, time, s, and length, mm, (3,) of a bead by phase.
+
+    Before the phase of each segment is planned, they are derived from the lengths of the bead ends.
+    """
     length = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
     section: Array | float = usual
     if bead.width is not None or bead.height is not None:
@@ -164,11 +173,14 @@ def _sums(bead: Bead, usual: float, toolpath: Toolpath) -> dict[int, Array]:
 
 
 AUTO, CODE = "auto", "FEED_BALANCE"
-TOLERANCE = 0.1  # of the rate that beads take; a wire within this balances
+TOLERANCE = 0.1  # fraction of the deposition rate; maximum deviation of a balanced wire feed
 
 
 def model_wire_feed(process: ProcessParameters, model: BeadModel) -> float:
-    """Speed of the wire, mm/s, if a bead model sets the travel speed: as given, else the model's nominal feed."""
+    """Return the wire feed, mm/s, if a bead model sets the travel speed.
+
+    This is the feed of the process, or the model's nominal feed for `auto`.
+    """
     feed = process.wire.feed
     return model.wire_feed if isinstance(feed, str) else feed
 
@@ -176,12 +188,11 @@ def model_wire_feed(process: ProcessParameters, model: BeadModel) -> float:
 def set_wire_feed(
     toolpath: Toolpath, process: ProcessParameters, model: BeadModel | None
 ) -> Toolpath:
-    """Return the toolpath with the speed of its wire.
+    """Return the toolpath with its wire feed.
 
-    Balanced is wire section x feed = bead width x layer height x travel speed, or the volume of
-    a filled part: overlapping beads may be fed for the room that each has. Beads of a model
-    were measured with their wire; `solids.notes` reports their balance. A feed of 0 means no
-    wire.
+    The feed is balanced if wire section x feed = bead width x layer height x travel speed, or if
+    it deposits the volume of a filled part, where beads overlap. Beads of a model were measured
+    with their wire feed; `solids.notes` reports their balance. A feed of 0 means no wire.
 
     Parameters
     ----------
@@ -190,13 +201,13 @@ def set_wire_feed(
     process : ProcessParameters
         Wire, bead width and travel speed.
     model : BeadModel or None
-        Bead model that sets the speeds; None without one.
+        Bead model that sets the speeds, if any.
 
     Returns
     -------
     Toolpath
-        The toolpath, with an issue if the wire does not balance with the beads; unchanged
-        without a known bead width.
+        The toolpath, with an issue if the wire feed is not balanced. Unchanged if the bead width
+        is unknown.
     """
     if model is not None:
         return replace(toolpath, wire_feed=model_wire_feed(process, model))
@@ -241,7 +252,7 @@ def set_wire_feed(
 
 
 def _fills(toolpath: Toolpath, wire_rate: float) -> bool:
-    """Whether a wire rate, mm3/s, feeds as much as the beads of a filled part deposit."""
+    """Whether a wire rate, mm3/s, deposits the volume of a filled part."""
     if toolpath.checks.volumes is None:
         return False
     part_volume, left_out, outside = toolpath.checks.volumes
@@ -254,8 +265,9 @@ def _fills(toolpath: Toolpath, wire_rate: float) -> bool:
 
 
 def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
-    """The toolpath with a wire that follows the travel speed, if the process asks for it and beads have ramps. For stepped speeds
-    a schedule gives the feed.
+    """Return the toolpath with a wire feed that follows the travel speed, if applicable.
+
+    This needs the feed mode `proportional` and beads with ramps. For stepped speeds a schedule gives the feed.
     """
     ramped = any(bead.ends is not None and bead.ends.has_ramps for _, _, bead in toolpath)
     if process.wire.feed_mode != "proportional" or not toolpath.wire_feed or not ramped:
@@ -271,8 +283,9 @@ def _following(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
 
 
 def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
-    """The toolpath with an issue if bead classes, starts or ends have travel speeds at which the wire does not balance, and no
-    schedule of their own that could feed it otherwise.
+    """Return the toolpath with an issue if the wire feed is unbalanced for some classes or phases.
+
+    Classes and phases with a separate schedule are not checked.
     """
     wire_rate = (toolpath.wire_feed or 0.0) * process.wire.section
     if wire_rate == 0.0 or not _at_other_speeds(process) or follows_speed(toolpath):
@@ -308,7 +321,7 @@ def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
 
 
 def _at_other_speeds(process: ProcessParameters) -> bool:
-    """Whether any class or phase has a travel speed of its own."""
+    """Whether any class or phase has a separate travel speed."""
     named = [process, *(process.for_class(name) for name in CLASSES)]
     return any(
         settings.travel_speed != process.travel_speed or settings.start.there or settings.end.there
@@ -323,8 +336,10 @@ COLUMNS = ("radius_mm", "travel_speed_mm_min", "width_mm", "height_mm", "wire_fe
 
 
 class Measured(NamedTuple):
-    """Beads of a calibration table: columns (n,) in mm and mm/s, and their wire feed, or its mean, mm/s. label: the file's name;
-    lines: line number of each row, from 1. feeds: (n,) mm/s where they differ.
+    """Measured beads of a calibration table.
+
+    Columns (n,) in mm and mm/s. wire_feed: mm/s, the mean if the feeds differ. label: file name. lines: line number of
+    each row, from 1. feeds: (n,) mm/s, None if all feeds are equal.
     """
 
     radius: Array
@@ -338,7 +353,7 @@ class Measured(NamedTuple):
 
 
 def process_model(process: ProcessParameters) -> BeadModel | None:
-    """The bead model of a process at its wire feed; None without one. Raises the InputErrors of `load`."""
+    """Return the bead model of a process at its wire feed, or None. Raises the InputErrors of `load`."""
     if process.bead_model == "none":
         return None
     model = load(process.bead_model)
@@ -346,15 +361,19 @@ def process_model(process: ProcessParameters) -> BeadModel | None:
 
 
 def load(name: str, folder: Path | None = None) -> BeadModel:
-    """The bead model of a table by name or path, as in `read_table`. Raises the InputErrors of `read_table` and `bead_model.fit`."""
+    """Return the bead model of a table given by name or path, as in `read_table`.
+
+    Raises the InputErrors of `read_table` and `bead_model.fit`.
+    """
     return fit(*read_table(name, folder))
 
 
 def read_table(name: str, folder: Path | None = None) -> Measured:
-    """Read a built-in table ('csw': table 1 of Dai 2020; 'li-2025': from table 5 of Li 2025) or the table at a path, relative to
-    `folder`.
+    """Read a calibration table, built-in or at a path relative to `folder`.
 
-    InputError 'NO_FILE', 'BAD_TABLE' (naming row and column, or that it is not a text).
+    Built-in tables: 'csw' (table 1 of Dai 2020) and 'li-2025' (from table 5 of Li 2025).
+
+    Raises InputError NO_FILE, or BAD_TABLE (with row and column, or because the file is not text).
     """
     path = FOLDER / BUILT_IN[name] if name in BUILT_IN else Path(folder or ".", name)
     try:
@@ -431,7 +450,7 @@ def read_table(name: str, folder: Path | None = None) -> Measured:
 
 
 def _check_columns(header: list[str], where: str) -> None:
-    """InputError BAD_TABLE for unknown or repeated columns."""
+    """Raise InputError BAD_TABLE for unknown or repeated columns."""
     for column in header:
         if header.count(column) > 1:
             raise InputError(
@@ -448,7 +467,7 @@ def _check_columns(header: list[str], where: str) -> None:
 
 
 def _row(header: list[str], cells: list[str]) -> dict[str | None, str | None]:
-    """The cells of a row by column; None for a missing cell, and surplus cells under the key None."""
+    """Return the cells of a row by column: None for missing cells, surplus cells under the key None."""
     row: dict[str | None, str | None] = dict.fromkeys(header)
     row.update(zip(header, cells))
     if len(cells) > len(header):

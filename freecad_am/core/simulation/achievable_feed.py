@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The speeds that a machine can keep along a motion.
+"""Achievable feed of a machine along a motion.
 
-A motion asks for a speed at the deposition point on every segment. Each axis has a maximum speed
-and, if the machine file states it, a maximum acceleration. The resulting motion is the fastest
-along the same joints within these limits that is nowhere faster than requested.
+A motion requests a speed at the deposition point on every segment. Each axis has a maximum speed
+and, if the machine file states it, a maximum acceleration. The result is the fastest motion along
+the same joint path within these limits that never exceeds the requested speed.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ..types import Array, ArrayLike, Index, Integers, Mask
 
 
 def speed_ratios(joints: Array, duration: Array, speed_limits: Array) -> Array:
-    """Return the mean joint speeds of segments as shares of the axis maxima.
+    """Return the mean joint speeds on segments as fractions of the axis maxima.
 
     Parameters
     ----------
@@ -32,8 +32,8 @@ def speed_ratios(joints: Array, duration: Array, speed_limits: Array) -> Array:
     Returns
     -------
     (n, a) array
-        Shares for the segment that ends at each row; without duration 0, or infinite if an axis
-        moves.
+        Fractions for the segment that ends at each row. For segments of zero duration, 0, or
+        infinite if an axis moves.
     """
     moved = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
     lasts = duration[:, None] > 0.0
@@ -56,12 +56,12 @@ def spread_to_deposit_rows(deposit: Mask, values: Array) -> Array:
     deposit : (n,) array of bool
         Whether a row deposits.
     values : (k,) array
-        Values of the k rows that deposit, such as the condition of a joint path's beads.
+        Values of the k deposit rows, such as the condition of a joint path's beads.
 
     Returns
     -------
     (n,) array
-        The values; NaN on the other rows.
+        The values; NaN on rapid rows.
     """
     all_rows = np.full(len(deposit), np.nan)
     all_rows[deposit] = values
@@ -69,14 +69,14 @@ def spread_to_deposit_rows(deposit: Mask, values: Array) -> Array:
 
 
 def from_next(deposit: Mask, point: Integers, values: Array) -> Array:
-    """Give the first row of each bead, at which no segment ends, the value of the next row.
+    """Copy the value of the second row of each bead to its first row, where no segment ends.
 
     Parameters
     ----------
     deposit : (n,) array of bool
         Whether a row deposits.
     point : (n,) array of int
-        Number of the point in its bead.
+        Index of the point in its bead.
     values : (n,) array
         Values of the segments that end at the rows.
 
@@ -91,28 +91,27 @@ def from_next(deposit: Mask, point: Integers, values: Array) -> Array:
     return shifted
 
 
-# a share of an axis's speed that counts as more than it can do: what rounding leaves is none
+# relative excess of an axis speed that is still rounding error
 OVER = 1e-9
-# shares of the curvature limit that are tried as ceilings, and by how much and how often the best
-# one is then raised
+# fractions of the curvature limit tried as ceilings; factor and number of times by which the best
+# ceiling is then raised
 CEILINGS = (0.5, 0.8, 0.95, 0.99)
 GROWTH, ROUNDS = 1.3, 6
-# from this share of its bound on a bend counts as the reason for being slow
+# minimum fraction of a bend's bound at which the bend is reported as the cause of a lower speed
 BENT = 0.9
-_ANY = 1e9  # a change of p^2 that is as good as any
-# segments shorter than this, s, are not moves: rows that repeat a place
+_ANY = 1e9  # unlimited change of p^2
+# s; rows with a shorter segment repeat a position and are not moves
 _NO_TIME = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class AchievableFeed:
-    """Columns of the n rows of a motion; each describes the segment that ends at the row.
+    """Columns (n,) for the segments that end at the n rows of a motion.
 
-    ratio: share of the maximum speed for the fastest axis, 0 at standstill. axis: int, the axis
-    that prevents the requested speed, -1 without one. asked, achieved: requested speed and mean
-    achieved speed of the segment, mm/s at the deposition point. duration: s of the segment. slowed:
-    bool, whether the requested speed is not kept. lost: s by which the whole job takes longer than
-    requested.
+    ratio: speed of the fastest axis as a fraction of its maximum, 0 at standstill. axis: int, the
+    axis that limits the speed, -1 if none does. asked, achieved: requested and mean achieved speed,
+    mm/s at the deposition point. duration: achieved duration, s. slowed: bool, whether the achieved
+    speed is below the requested speed. lost: additional time of the whole job, s.
     """
 
     ratio: Array
@@ -127,10 +126,10 @@ class AchievableFeed:
 def achievable_feed(
     motion: Motion, max_speed: ArrayLike, max_acceleration: ArrayLike = np.inf
 ) -> AchievableFeed:
-    """Return the speeds that a machine can keep along a motion.
+    """Return the achievable feed of a machine along a motion.
 
-    Where accelerations are known the machine comes to rest where a program does: at both ends of
-    every bead and of every rapid. Rows without joint values keep the requested speed.
+    If accelerations are known, the machine stops at both ends of every bead and of every rapid,
+    like the program. Rows without joint values keep the requested speed.
 
     Parameters
     ----------
@@ -144,7 +143,7 @@ def achievable_feed(
     Returns
     -------
     AchievableFeed
-        Speeds, times and limiting axes of the segments that end at the rows.
+        Speeds, durations and limiting axes of the segments that end at the rows.
     """
     speed_limits = np.asarray(max_speed, float)
     shares = np.nan_to_num(
@@ -173,7 +172,10 @@ def achievable_feed(
 
 
 def _rates(motion: Motion) -> Array:
-    """(n, axes) rad/s or mm/s of each axis on the segment that ends at the row, 0 where nothing moves or is known."""
+    """Return the axis speeds on the segment that ends at each row, (n, axes) rad/s or mm/s.
+
+    They are 0 at standstill or where joints are unknown.
+    """
     turned = np.nan_to_num(np.diff(motion.joints, axis=0, prepend=motion.joints[:1]))
     moving = np.nan_to_num(motion.duration) > _NO_TIME
     rates: Array = turned / np.where(moving, motion.duration, np.inf)[:, None]
@@ -183,11 +185,11 @@ def _rates(motion: Motion) -> Array:
 def _accelerated(
     motion: Motion, factor: Array, axis: Integers, largest: Array
 ) -> tuple[Array, Integers]:
-    """Return the speed factors (n,) that also keep the accelerations, and the axes that limit them.
+    """Return the speed factors (n,) within speed and acceleration limits, and the limiting axes.
 
-    With a clock u that runs evenly at the requested speed and the pace p = du/dt, an axis moves
-    with q' p and accelerates by q'' p^2 + q' (p^2)'/2. q' is constant in a segment; at a row
-    between two segments q'' is its change over the mean of their times.
+    Let u be the time at the requested speed and p = du/dt the rate. An axis then has the speed q' p
+    and the acceleration q'' p^2 + q' (p^2)'/2. q' is constant in a segment. At a row between two
+    segments, q'' is the change of q' divided by the mean of the two durations.
     """
     rates = _rates(motion)
     moving = np.flatnonzero(np.abs(rates).max(axis=1) > 0.0)
@@ -197,7 +199,7 @@ def _accelerated(
     profile = _Way.of(rates[moving], time, square, largest, _blocks(motion)[moving])
     node = profile.fastest()
     gain, by_speed = profile.gain(node)
-    # bends are known at nodes, and continue between two nodes with a bend
+    # the bound by bends is known at nodes; a segment takes the higher bound of its two nodes
     mean = _mean_rate(
         node[:-1],
         node[1:],
@@ -207,7 +209,7 @@ def _accelerated(
     result, limiting = factor.copy(), axis.copy()
     slower = mean < factor[moving] - OVER
     result[moving[slower]] = mean[slower]
-    # a bend that is as fast as it can be is to blame, else the ramp
+    # the limiting axis is that of the bend if the bend is near its bound, else that of the ramp
     worst = np.where(node[1:] < node[:-1], profile.bound[1:], profile.bound[:-1])
     bent = np.minimum(node[:-1], node[1:]) > BENT * worst
     by_bend = np.where(node[1:] < node[:-1], profile.by_bend[1:], profile.by_bend[:-1])
@@ -217,8 +219,11 @@ def _accelerated(
 
 @dataclass(frozen=True, eq=False)
 class _Way:
-    """Segments (m,) and the m + 1 nodes at their ends. speed: (m, axes) q'. bend: (m + 1, axes) of q''. largest:
-    (axes,). most: (m + 1,) of p^2 by speeds, 0 where it rests. bound: (m + 1,) of p^2 by bends, by_bend: the axis."""
+    """Segments (m,) and the m + 1 nodes at their ends.
+
+    speed: (m, axes) |q'|. bend: (m + 1, axes) |q''|. largest: (axes,) maximum accelerations. most: (m + 1,) maximum p^2
+    by speeds, 0 at stops. bound: (m + 1,) maximum p^2 by bends. by_bend: (m + 1,) axis of that bound.
+    """
 
     speed: Array
     time: Array
@@ -230,7 +235,7 @@ class _Way:
 
     @staticmethod
     def of(speed: Array, time: Array, square: Array, largest: Array, block: Integers) -> _Way:
-        """The way of segments with their bounds of p^2; it rests at both ends and between blocks."""
+        """Compute the bounds of p^2 for segments; the motion stops at both ends and between blocks."""
         bend = np.zeros((len(speed) + 1, speed.shape[1]))
         bend[1:-1] = np.abs(np.diff(speed, axis=0)) / (0.5 * (time[:-1] + time[1:]))[:, None]
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -242,11 +247,11 @@ class _Way:
         )
 
     def fastest(self) -> Array:
-        """Return the largest p^2 (m + 1,) at the nodes, to within a percent or so, from below.
+        """Return the maximum p^2 (m + 1,) at the nodes, approximated from below to about a percent.
 
-        A ceiling of p^2 bounds the acceleration that bends need, and so how steeply p^2 may rise and fall
-        below it. Low ceilings leave more acceleration, high ones are faster once reached; the maximum of
-        possible motions is possible too.
+        A ceiling of p^2 bounds the acceleration in bends. The remaining acceleration limits the slope of p^2 below the
+        ceiling. Low ceilings leave more acceleration; high ceilings are faster once reached. The pointwise maximum of
+        feasible motions is feasible too.
         """
         best = np.zeros(len(self.most))
         for share in CEILINGS:
@@ -258,14 +263,14 @@ class _Way:
         return best
 
     def _below(self, ceiling: Array) -> Array:
-        """(m + 1,) the largest p^2 below a ceiling that rises and falls no steeper than it leaves room for."""
+        """Return the maximum p^2 (m + 1,) below a ceiling whose slopes need no more than the remaining acceleration."""
         # p^2 never exceeds 1
         total = np.concatenate([[0.0], np.cumsum(np.minimum(self.gain(ceiling)[0], 1.0))])
         lower: Array = np.maximum(np.minimum(limit_growth(ceiling, total), ceiling), 0.0)
         return lower
 
     def gain(self, ceiling: Array) -> tuple[Array, Index]:
-        """(m,) by how much p^2 may change over each segment while it is below the ceiling, and the axis that bounds it."""
+        """Return the maximum change of p^2 over each segment below the ceiling, (m,), and the limiting axes."""
         with np.errstate(divide="ignore", invalid="ignore"):
             remaining = self.largest - np.where(self.bend > 0.0, self.bend * ceiling[:, None], 0.0)
             margin = np.maximum(np.minimum(remaining[:-1], remaining[1:]), 0.0)
@@ -274,7 +279,7 @@ class _Way:
 
 
 def _blocks(motion: Motion) -> Integers:
-    """(n,) int, the same for rows that a program runs through without a stop."""
+    """Return the block of each row, (n,) int; the program runs through a block without a stop."""
     columns = (motion.deposit.astype(np.int64), motion.layer, motion.bead)
     new = np.any([np.diff(column, prepend=column[:1]) != 0 for column in columns], axis=0)
     blocks: Integers = np.cumsum(new)
@@ -282,14 +287,16 @@ def _blocks(motion: Motion) -> Integers:
 
 
 def _mean_rate(start: Array, end: Array, highest: Array, gain: Array) -> Array:
-    """The mean pace (m,) over segments on which p^2 goes from `start` to `end`, by way of `highest` where `gain`, the most it
-    can change by, lets it."""
+    """Return the mean rate p (m,) on segments where p^2 goes from `start` to `end`.
+
+    p^2 rises up to `highest` in between, as far as `gain`, the maximum change of p^2, allows.
+    """
     top = np.minimum(highest, 0.5 * (start + end + gain))
     up, down = np.maximum(top - start, 0.0), np.maximum(top - end, 0.0)
     safe = np.where(gain > 0.0, gain, 1.0)
     even = np.maximum(1.0 - (up + down) / safe, 0.0)
     low, high, peak = np.sqrt(start), np.sqrt(end), np.sqrt(np.maximum(top, 1e-300))
-    # du / p with p^2 linear in u: the time of a ramp is its way over the mean of the paces at its ends
+    # integral of du / p with p^2 linear in u: duration of a ramp = length / mean of p at its ends
     with np.errstate(divide="ignore", invalid="ignore"):
         time = up / safe * 2.0 / (low + peak) + down / safe * 2.0 / (high + peak) + even / peak
     mean: Array = np.where(time > 0.0, 1.0 / time, peak)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether the machine can carry the part: its growing mass, and the distance of its centre of gravity
-from the last axis.
+"""Payload check: mass of the growing part, and distance of its centre of gravity from the last axis.
 
-The part is the deposit and the bodies that it grows on, all of the density of the deposit; bodies
-that are not a closed mesh have no mass. A load may be farther from the axis the less it weighs:
-its moment about the axis is the limit.
+The part consists of the deposit and its substrate bodies, all with the density of the deposit.
+Bodies that are not a closed mesh have no mass. The limit is the moment about the axis, so a lighter
+load may be farther from the axis.
 """
 
 from __future__ import annotations
@@ -23,33 +22,33 @@ from ..types import Array
 from .timeline import volumes
 
 CODE = "PAYLOAD"
-KG = 1e-6  # of a mm3 at 1 g/cm3
+KG = 1e-6  # kg; mass of 1 mm3 at 1 g/cm3
 REMEDY = "process.density sets its weight; the payload is in the machine file"
 
 
 def issues(
     motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters
 ) -> list[Issue]:
-    """Report when the growing part overloads what carries it.
+    """Report where the growing part overloads its carriers.
 
-    The mass of each carrier is checked, and the moment of the part about the last axis.
+    The mass is checked for each carrier, and the part's moment for the last axis.
 
     Parameters
     ----------
     motion : Motion
-        The motion, with the deposit in its order.
+        The motion, with the deposit in print order.
     cell : Cell
         The cell; its carriers state the payloads.
     toolpath : Toolpath
-        Widths, heights and the bodies that the part grows on.
+        Widths, heights and substrate bodies.
     process : ProcessParameters
-        The density, g/cm^3, and the usual bead width, mm.
+        The density, g/cm^3, and the nominal bead width, mm.
 
     Returns
     -------
     list of Issue
-        Errors PAYLOAD at the row where each overload begins; one of each carrier at most, and one
-        of the distance from the axis.
+        Errors PAYLOAD at the row where each overload begins: at most one for each carrier, and one
+        for the distance from the axis.
     """
     if all(
         np.isinf([carrier.payload.kg, carrier.payload.from_axis]).all() for carrier in cell.carriers
@@ -86,7 +85,7 @@ def issues(
 
 
 def finished(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters) -> float:
-    """Return the mass of the finished part, including closed bodies that it grows on.
+    """Return the mass of the finished part, including closed substrate bodies.
 
     Parameters
     ----------
@@ -95,21 +94,21 @@ def finished(motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessPar
     cell : Cell
         Not used.
     toolpath : Toolpath
-        Widths, heights and the bodies that the part grows on.
+        Widths, heights and substrate bodies.
     process : ProcessParameters
-        The density, g/cm^3, and the usual bead width, mm.
+        The density, g/cm^3, and the nominal bead width, mm.
 
     Returns
     -------
     float
-        kg.
+        Mass, kg.
     """
     deposited = np.nan_to_num(volumes(motion, process, toolpath)).sum()
     return float(KG * process.density * (deposited + enclosed_volume(toolpath.surroundings)[0]))
 
 
 def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> list[Issue]:
-    """About a part of masses (n,) kg with moments (n,) kg mm about the last axis."""
+    """Report where moments (n,), kg mm, of masses (n,), kg, about the last axis exceed the payload."""
     load = machine.payload
     max_moment = load.from_axis * (mass if np.isinf(load.kg) else load.kg)
     over = moment > max_moment * (1.0 + 1e-9)
@@ -145,7 +144,7 @@ def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> li
 def _from_axis(
     cell: Cell, machine: Machine, position: Array, deposited: Array, bodies: float, centre: Array
 ) -> Array:
-    """(n,) kg mm, the moment of the part about the last axis of its carrier, after each row."""
+    """Return the part's moment about the carrier's last axis after each row, (n,) kg mm."""
     frames_at_rest = machine.chain.frames(np.zeros(machine.chain.axes))
     to_flange = frames.inverse(frames_at_rest.flange)
     axis = to_flange[:3, :3] @ frames_at_rest.directions[-1]

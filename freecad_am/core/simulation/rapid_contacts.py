@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Contacts of the nozzle on the rapids of a motion, checked independently of the planning."""
+"""Nozzle contacts on the rapids of a motion, checked independently of planning."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from ..kinematics.cell import Cell
 from ..motion import Motion
 from ..types import Index
 
-# mm; maximum distance between checks along the path of any point of the nozzle, and the shares at
-# which a move is measured
+# mm; maximum distance between checked positions along the path of any point of the nozzle.
+# Fractions of a move at which its path length is measured
 STEP, SHARES = 0.5, np.linspace(0.0, 1.0, 9)
-PIECE = 2048  # moves or looks done together
+PIECE = 2048  # batch size of moves or checked positions
 
 
 @dataclass(frozen=True, eq=False)
 class RapidsLooked:
-    """The result of the rapid check: number of rapids and checked positions, and their largest
-    spacing, mm.
+    """Result of the rapid check.
 
-    rows: (k,) motion rows with contact on the way to them. place: layer, bead and point of the
-    first contact, None without one.
+    moves: number of rapids. places: number of checked positions. step: maximum spacing of checked
+    positions, mm. rows: (k,) motion rows reached by a rapid with contact. place: layer, bead and
+    point of the first contact, None without contact.
     """
 
     moves: int
@@ -46,10 +46,10 @@ def looked_at(
     height: float,
     max_places: int,
 ) -> RapidsLooked:
-    """Check whether the nozzle hits bodies, the platform or printed beads on any rapid.
+    """Check whether the nozzle touches bodies, the platform or printed beads on any rapid.
 
-    Rapids are straight in the joints. The way to the first row and unreachable rows are unknown and
-    not checked.
+    Rapids are straight in joint space. The path to the first row and to unreachable rows is unknown
+    and not checked.
 
     Parameters
     ----------
@@ -62,14 +62,15 @@ def looked_at(
     bodies : sequence of Body
         Obstacles in the part.
     width, height : float
-        Width and height of beads without their own, mm.
+        Width and height of beads without predicted values, mm.
     max_places : int
-        Most positions to check, evenly along all rapids; both ends of each rapid always are.
+        Maximum number of positions to check, evenly along all rapids. Both ends of each rapid are
+        always checked.
 
     Returns
     -------
     RapidsLooked
-        Numbers checked, spacing, mm, and rows with contact.
+        Number of checks, spacing, mm, and rows with contact.
     """
     rows = 1 + np.flatnonzero(~motion.deposit[1:] & motion.reachable[1:] & motion.reachable[:-1])
     start, turned = motion.joints[rows - 1], motion.joints[rows] - motion.joints[rows - 1]
@@ -89,7 +90,7 @@ def looked_at(
                 travel[rows_now], np.linalg.norm(np.diff(end, axis=1), axis=2).sum(axis=1)
             )
         corners += [tip.min(axis=(0, 1))[None], tip.max(axis=(0, 1))[None]]
-    # a row more for each move: both ends are checked
+    # one more position for each move, because both ends are checked
     step = max(STEP, float(travel.sum()) / max(max_places - 2 * len(rows), 1))
     count = 2 + np.floor(travel / step).astype(np.intp)
     move = np.repeat(np.arange(len(rows)), count)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes of machines with rotary axes: table, cradle and bearings, head and torch, from the chain
-only.
+"""Shapes of machines with rotary axes: table, cradle, bearings, head and torch, from the chain only.
 
-The chain is seen from the torch: head axes, linear axes, table axes. No machine file states which
-side the linear axes really carry; the drawing shows fixed table bearings and a moving torch.
+The chain starts at the torch: head axes, linear axes, table axes. Machine files do not state which
+side the linear axes carry. The drawing shows fixed table bearings and a moving torch.
 """
 
 from __future__ import annotations
@@ -21,18 +20,18 @@ from ..kinematics.links.solids import BRIGHT, DARK, Solid, box, capsule, cylinde
 from ..motion import Motion
 from ..types import Array, ArrayLike, Index
 
-MIN_HEIGHT_MM = 1e-3  # mm; what ends below its path is drawn as lying on it
+MIN_HEIGHT_MM = 1e-3  # mm; minimum height of the drawn surface above the path
 
 
 def heights(deposited: Array, position: Array, layer: Index) -> Array:
     """Return the height of the deposit's surface above points.
 
-    It is the height of the nearest piece in the same layer.
+    Each point takes the height of the nearest piece in its layer.
 
     Parameters
     ----------
     deposited : (m, 5) array
-        Positions of pieces, mm, their layers, and the height of the surface above them, mm.
+        Position of each piece, mm, layer, and height of the surface above the piece, mm.
     position : (n, 3) array
         Points in the frame of the pieces, mm.
     layer : (n,) array of int
@@ -41,7 +40,7 @@ def heights(deposited: Array, position: Array, layer: Index) -> Array:
     Returns
     -------
     (n,) array
-        mm, at least MIN_HEIGHT_MM; NaN in layers without pieces.
+        Heights, mm, at least MIN_HEIGHT_MM; NaN in layers without pieces.
     """
     surface_heights = np.full(len(position), np.nan)
     piece_layers = deposited[:, 3].astype(np.intp)
@@ -58,10 +57,10 @@ def heights(deposited: Array, position: Array, layer: Index) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class Rates:
-    """Columns (n, axes) of the n rows of a motion, rad or mm per s, s^2 and s^3; NaN in rapid moves and where unreachable.
+    """Axis rates (n, axes) at the n rows of a motion, rad or mm per s, s^2 and s^3.
 
-    speed: mean over the segment that ends at the row. acceleration: at the row, from the segment before it to that after it,
-    NaN at both ends of a bead. jerk: from the row before to the row.
+    NaN in rapids and where unreachable. speed: mean on the segment that ends at the row. acceleration: change of speed
+    between the segments before and after the row, NaN at both ends of a bead. jerk: from the previous row to the row.
     """
 
     speed: Array
@@ -70,11 +69,11 @@ class Rates:
 
 
 def rates(motion: Motion) -> Rates:
-    """Return the rates of a motion at the requested speed."""
+    """Return the axis rates of a motion at the requested speed."""
     within = motion.deposit & (motion.point > 0) & (motion.duration > 0.0)
     time = np.where(within, motion.duration, np.nan)[:, None]
     speed = np.diff(motion.joints, axis=0, prepend=motion.joints[:1]) / time
-    # rows of a bead are consecutive and the first is NaN, so differences across its ends are NaN
+    # rows of a bead are consecutive and the first is NaN, so differences across bead ends are NaN
     between = 0.5 * (time[:-1] + time[1:])
     acceleration, jerk = np.full_like(speed, np.nan), np.full_like(speed, np.nan)
     acceleration[:-1] = np.diff(speed, axis=0) / between
@@ -82,19 +81,19 @@ def rates(motion: Motion) -> Rates:
     return Rates(speed, acceleration, jerk)
 
 
-# mm: radius of the table without a part on it, and of the head's joints
+# mm; radius of the table without a part, and of the head's joints
 RADIUS = 130.0
 JOINT = 42.0
 
 
 def standing_link(chain: Chain) -> int:
-    """Return the fixed link: the base, or the one after the last prismatic axis."""
+    """Return the index of the fixed link: the link after the last prismatic axis, else the base."""
     slides = np.flatnonzero(chain.sliding)
     return int(slides[-1]) + 1 if len(slides) else 0
 
 
 def solids(chain: Chain, radius: float = RADIUS, torch: float = 60.0) -> list[list[Solid]]:
-    """Return the solids of each link, the torch's first.
+    """Return the solids of each link, starting at the torch.
 
     Parameters
     ----------
@@ -103,7 +102,7 @@ def solids(chain: Chain, radius: float = RADIUS, torch: float = 60.0) -> list[li
     radius : float, optional
         Radius of the table, mm.
     torch : float, optional
-        Distance from the tip of the nozzle to the head, mm.
+        Distance from the nozzle tip to the head, mm.
 
     Returns
     -------
@@ -128,12 +127,14 @@ def solids(chain: Chain, radius: float = RADIUS, torch: float = 60.0) -> list[li
 def _head(
     directions: Array, origins: Array, torch: float, solids_by_link: list[list[Solid]]
 ) -> None:
-    """The torch's body up to its pivot, a drum for each head axis, and the ram above."""
+    """Add the torch body up to its pivot, a drum for each head axis, and the ram above."""
     up = np.array([0.0, 0.0, 1.0])
     joint_position = torch * up
     solids_by_link[0].append(cylinder(0.8 * joint_position, joint_position, 0.5 * JOINT, DARK))
     for axis, (direction, origin) in enumerate(zip(directions, origins)):
-        pivot = origin + ((joint_position - origin) @ direction) * direction  # where it is nearest
+        pivot = (
+            origin + ((joint_position - origin) @ direction) * direction
+        )  # nearest point on the axis
         if np.linalg.norm(pivot - joint_position) > 1.0:
             solids_by_link[axis].append(capsule(joint_position, pivot, 0.6 * JOINT, 0.8 * JOINT))
         half = JOINT * direction
@@ -157,7 +158,7 @@ def _table(
     radius: float,
     solids_by_link: list[list[Solid]],
 ) -> None:
-    """The table's disc, and what carries it: bearings of its last axis, the cradle of one before."""
+    """Add the table disc, the bearings of the last axis, and the cradle of a preceding axis."""
     face, up = flange[:3, 3], flange[:3, 2]
     thick = 0.16 * radius
     solids_by_link[-1].append(cylinder(face - thick * up, face - 0.2 * up, radius, BRIGHT, 0.03))
@@ -191,8 +192,9 @@ def _cradle(
     radius: float,
     solids_by_link: list[list[Solid]],
 ) -> Array:
-    """Add the cradle that turns about `direction` and its two bearings; return the lowest point of
-    the rotating solids.
+    """Add the cradle that rotates about `direction` and its two bearings.
+
+    Returns the lowest point of the rotating solids.
     """
     axis = origin + ((below - origin) @ direction) * direction
     across = np.cross(up, direction)
@@ -228,7 +230,7 @@ def _cradle(
     return np.asarray(lowest)
 
 
-# rotations about the nozzle to try for a robot at rest
+# number of tool rotations to try for a robot at rest
 _ROTATIONS = 24
 
 
@@ -236,8 +238,8 @@ _ROTATIONS = 24
 class Placing:
     """Poses in the world, mm.
 
-    links: (axes + 1, 4, 4), of the robot. part: (4, 4), its coordinates. nozzle: (4, 4), the tip,
-    its Z pointing into the nozzle. platform: (4, 4), below the part. external_links: (k, 4, 4), the
+    links: (axes + 1, 4, 4) robot links. part: (4, 4) part frame. nozzle: (4, 4) frame at the tip, Z
+    pointing into the nozzle. platform: (4, 4) platform below the part. external_links: (k, 4, 4)
     known links of positioner and track.
     """
 
@@ -261,7 +263,7 @@ def placing(cell: Cell, joints: ArrayLike) -> Placing:
     Returns
     -------
     Placing
-        Poses in the world, mm; without external axes the world is the fixed link.
+        Poses in the world, mm. Without external axes the world frame is the fixed link.
     """
     chain, values = cell.robot.chain, np.asarray(joints, float)
     links = cell.links(values)
@@ -288,7 +290,7 @@ def placing(cell: Cell, joints: ArrayLike) -> Placing:
 
 
 def at_rest(cell: Cell, point: ArrayLike) -> Array:
-    """Return joints with which the nozzle is upright, by the platform, on a point of the part.
+    """Return joint values that place the nozzle on a part point, upright relative to the platform.
 
     Parameters
     ----------
@@ -300,8 +302,9 @@ def at_rest(cell: Cell, point: ArrayLike) -> Array:
     Returns
     -------
     (axes,) array
-        rad or mm. A robot takes the rotation and branch with the largest margin to its limits, or 0
-        if the point is out of reach. Rotary axes of a five-axis machine are at 0.
+        Joint values, rad or mm. A robot takes the tool rotation and branch with the maximum margin
+        to its limits, or 0 if the point is out of reach. The rotary axes of a five-axis machine are
+        at 0.
     """
     target, chain = np.asarray(point, float), cell.machine.chain
     if not cell.machine.free:

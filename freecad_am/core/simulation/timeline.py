@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The timeline of a motion: the time of every row with the waits between, the state at any time,
-and the totals.
+"""The timeline of a motion: times of rows and waits, state at any time, and totals.
 
-The machine arrives at each row at the end of its segment. It may wait there while the deposit
-starts or ends (lead times), and between layers. Within a segment the joints move straight.
+The machine arrives at each row at the end of the row's segment. It may wait there while the deposit
+starts or ends (lead times), and between layers. Segments are straight in joint space.
 """
 
 from __future__ import annotations
@@ -24,9 +23,9 @@ from ..types import Array, ArrayLike, Integers, Mask
 def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> Array:
     """Return the deposit volume of the segment that ends at each row.
 
-    A bead's section is its width times the layer height: the solid deposit, not the volume of the
-    wire. The width is the predicted one, or else the bead width of the toolpath. Layers fitted to a
-    scan have their mean fitted height. Toolpaths of older documents have no bead width;
+    A bead's cross-section is its width times the layer height: the solid deposit, not the wire
+    volume. The width is the predicted width, else the bead width of the toolpath. Layers fitted to
+    a scan have their mean fitted height. For toolpaths of older documents without a bead width,
     `process.bead_width` replaces it.
 
     Parameters
@@ -34,14 +33,14 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
     motion : Motion
         The motion, n rows.
     process : ProcessParameters
-        The usual bead width, mm.
+        The nominal bead width, mm.
     toolpath : Toolpath
-        Bead width and heights of the layers, mm.
+        Bead width and layer heights, mm.
 
     Returns
     -------
     (n,) array
-        mm^3; 0 in rapids.
+        Volumes, mm^3; 0 in rapids.
     """
     length = np.concatenate([[0.0], np.linalg.norm(np.diff(motion.position, axis=0), axis=1)])[
         : len(motion)
@@ -61,7 +60,7 @@ def volumes(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -> A
 
 
 def _mean_heights(toolpath: Toolpath) -> Array:
-    """(layers,) mm, the mean height of each layer's beads: layers fitted to a scan are uneven."""
+    """Return the mean bead height of each layer, (layers,) mm; layers fitted to a scan are uneven."""
     layer_heights = toolpath.layer_heights
     for number, layer in enumerate(toolpath.layers):
         if any(bead.height is not None for bead in layer.beads):
@@ -84,16 +83,16 @@ def fed_volume(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -
     Parameters
     ----------
     motion : Motion
-        The motion, with the wire speed of its rows if they have one.
+        The motion, with the wire speed of its rows if known.
     process : ProcessParameters
-        The section of the wire.
+        The cross-section of the wire.
     toolpath : Toolpath
-        The usual wire speed, mm/s.
+        The nominal wire speed, mm/s.
 
     Returns
     -------
     float or None
-        mm^3; None if the wire speed is unknown or the process has no wire.
+        Volume, mm^3; None if the wire speed is unknown or the process has no wire.
     """
     nominal = toolpath.wire_feed or np.nan
     feed = np.where(np.isfinite(motion.wire), motion.wire, nominal)
@@ -103,8 +102,9 @@ def fed_volume(motion: Motion, process: ProcessParameters, toolpath: Toolpath) -
 
 
 def deposit_motion(toolpath: Toolpath, axes: int = 0) -> Motion:
-    """The deposit only, for a job without a joint path: no rapid rows, durations from length and speed.
-    `axes` columns of NaN joints.
+    """Build a motion of deposit rows only, for a job without a joint path.
+
+    Durations follow from length and speed. The joints are `axes` columns of NaN.
     """
     beads = list(toolpath)
     sizes = [len(bead) for _, _, bead in beads]
@@ -136,7 +136,7 @@ def deposit_motion(toolpath: Toolpath, axes: int = 0) -> Motion:
     )
 
 
-# rapid rows between beads that begin with the withdrawal from the bead before; fewer begin on it
+# minimum number of rapid rows between beads for the first to be a retract from the previous bead
 WITH_WITHDRAWAL = 3
 
 
@@ -144,11 +144,12 @@ WITH_WITHDRAWAL = 3
 class State:
     """The machine state at times (...,). All arrays have the shape of the times.
 
-    row: int, the row that the machine moves to or waits at. share: 0..1 of the segment that ends
-    there; 1 at standstill. joints: (..., axes) rad or mm, NaN where unreachable. position: (..., 3)
-    mm in the part, straight between rows; in rapids the tip follows the joints and may be far from
-    this line. deposit: bool, whether it is on. standing: bool, whether the machine is at
-    standstill. speed: requested mm/s at the deposition point; 0 at standstill.
+    row: int, the row that the machine moves to or waits at. share: completed fraction of the
+    segment that ends at the row; 1 at standstill. joints: (..., axes) rad or mm, NaN where
+    unreachable. position: (..., 3) mm in the part, straight between rows. In rapids the tip follows
+    the joints and may be far from this line. deposit: bool, whether the deposit is on. standing:
+    bool, whether the machine is at standstill. speed: requested speed at the deposition point,
+    mm/s; 0 at standstill.
     """
 
     row: Integers
@@ -162,11 +163,11 @@ class State:
 
 @dataclass(frozen=True, eq=False)
 class Timeline:
-    """The times of a motion of n rows, in s after its start.
+    """Times of a motion of n rows, in s after the start.
 
-    arrive, leave: (n,) times at which each row is reached and left. lit: (n,) s of the wait at each
-    row with the deposit on, before any wait with it off. layer_rows: (layers,) first row of each
-    executed layer, including its rapids. layers: the numbers of these layers.
+    arrive, leave: (n,) arrival and departure time of each row. lit: (n,) s, wait at each row with
+    the deposit on, which precedes any wait with the deposit off. layer_rows: (layers,) first row of
+    each executed layer, including the rapids to the layer. layers: indices of these layers.
     """
 
     motion: Motion
@@ -178,17 +179,17 @@ class Timeline:
 
     @property
     def total(self) -> float:
-        """Time of moves and waits, s."""
+        """Total time of moves and waits, s."""
         return float(self.leave[-1]) if len(self.leave) else 0.0
 
     @property
     def waits(self) -> Array:
-        """Return the time of waiting at each row.
+        """Return the waiting time at each row.
 
         Returns
         -------
         (n,) array
-            s, with the deposit on and off.
+            Times, s, with the deposit on or off.
         """
         return np.asarray(self.leave - self.arrive)
 
@@ -198,12 +199,12 @@ class Timeline:
         Parameters
         ----------
         time : (...) array_like
-            s; times before the start or after the end give the first or last row.
+            Times, s. Times before the start or after the end give the first or last row.
 
         Returns
         -------
         State
-            Arrays of the shape of the times.
+            The state, with arrays of the shape of the times.
         """
         motion, when = self.motion, np.clip(np.asarray(time, float), 0.0, self.total)
         row = np.minimum(np.searchsorted(self.leave, when, side="left"), len(self.leave) - 1)
@@ -235,10 +236,10 @@ class Timeline:
 
 
 def timeline(motion: Motion, process: ProcessParameters, waits: Sequence[float] = ()) -> Timeline:
-    """Return the times of a motion, with lead times at the ends of beads and waits between layers.
+    """Return the times of a motion, with lead times at bead ends and waits between layers.
 
-    The time to the first row is not included: the start position of the machine is unknown. Waits
-    for inputs have no length.
+    The time to the first row is not included, because the start position of the machine is unknown.
+    Waits for inputs take no time.
 
     Parameters
     ----------
@@ -247,20 +248,21 @@ def timeline(motion: Motion, process: ProcessParameters, waits: Sequence[float] 
     process : ProcessParameters
         Lead times of bead classes and `between_layers.wait`, s.
     waits : sequence of float, optional
-        Waiting before each layer by its number, s; the larger of it and `between_layers.wait`
-        counts.
+        Wait before each layer, by layer index, s; `between_layers.wait` is the minimum.
 
     Returns
     -------
     Timeline
-        When each row is reached and left, s from the first row.
+        Arrival and departure of each row, s from the first row.
     """
     n = len(motion)
     lit, dark = np.zeros(n), np.zeros(n)
     if n:
         is_start = motion.deposit & (motion.point == 0)
         is_end = motion.deposit & np.append(~motion.deposit[1:] | is_start[1:], True)
-        of_class = [process.for_class(name) for name in (*CLASSES, "")]  # of none the last one
+        of_class = [
+            process.for_class(name) for name in (*CLASSES, "")
+        ]  # the last entry is for beads without a class
         lit[is_start] += np.array([parameters.lead_on for parameters in of_class])[
             motion.bead_class[is_start]
         ]
@@ -276,8 +278,9 @@ def timeline(motion: Motion, process: ProcessParameters, waits: Sequence[float] 
 
 
 def _between_layers(motion: Motion, process: ProcessParameters, waits: Sequence[float]) -> Array:
-    """(n,) s of waiting at each row for the next layer: retracted from the last bead if there is a
-    retract.
+    """Return the wait for the next layer at each row, (n,) s.
+
+    The machine waits after the retract from the last bead, if there is a retract.
     """
     result = np.zeros(len(motion))
     starts = np.flatnonzero(np.diff(motion.layer)) + 1
@@ -286,7 +289,7 @@ def _between_layers(motion: Motion, process: ProcessParameters, waits: Sequence[
     )
     seconds = np.maximum(of_layer, process.between_layers.wait)
     deposits = np.flatnonzero(motion.deposit)
-    # rapid rows that lead to the layer: up to its first deposit row
+    # number of rapid rows before the first deposit row of the layer
     rapids = (
         deposits[np.minimum(np.searchsorted(deposits, starts), len(deposits) - 1)] - starts
         if len(deposits)
@@ -296,15 +299,15 @@ def _between_layers(motion: Motion, process: ProcessParameters, waits: Sequence[
     return result
 
 
-# ---- Totals of a job before export: time, deposit and material
-
-# ---- Figures of a motion by bead class: lengths, times, speeds, schedules
+# ---- Statistics of a motion by bead class, and totals of a job
 
 
 def figures_by_class(motion: Motion, process: ProcessParameters) -> list[dict[str, Any]]:
-    """For each bead class of the motion, in the usual order: number of beads, mm and s of deposit
-    without lead times, minimum and maximum mm/s, its schedule, and its weave if any class has one.
-    Empty for motions from before bead classes.
+    """Return statistics for each bead class of the motion, in the order of CLASSES.
+
+    Number of beads, length, mm, and time, s, of deposit without lead times, minimum and maximum
+    speed, mm/s, schedule, and weave if any class has a weave. Empty for motions of older versions
+    without bead classes.
     """
     class_rows: list[dict[str, Any]] = []
     step_lengths = np.linalg.norm(
@@ -338,10 +341,10 @@ MM3_PER_CM3 = 1000.0
 
 @dataclass(frozen=True)
 class Totals:
-    """Totals of a job: times, s; length, mm; bead volume, mm^3, and its mass, g.
+    """Totals of a job: times, s; lengths, mm; bead volume, mm^3, and mass, g.
 
-    fed: mm^3 of wire, None if its speed is unknown. Waits are the intended standstills of the
-    machine, lead times included.
+    fed: wire volume, mm^3, None if the wire speed is unknown. wait_time: intended standstills of
+    the machine, including lead times.
     """
 
     time: float
@@ -365,7 +368,7 @@ def totals(
     motion : Motion
         The motion.
     times : Timeline
-        Its times.
+        Times of the motion.
     process : ProcessParameters
         Density, g/cm^3, wire and bead width.
     toolpath : Toolpath
@@ -396,7 +399,7 @@ def totals(
 
 
 def as_dict(sums: Totals) -> dict[str, float | None]:
-    """The totals in the form of report.json."""
+    """Return the totals as stored in report.json."""
     return {
         "time_s": sums.time,
         "deposit_s": sums.deposit_time,

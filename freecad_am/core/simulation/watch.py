@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points of interest in a motion: rows beyond or near a limit or a singularity, robot contacts, and
-speed losses.
-"""
+"""Points of interest in a motion: limits, singularities, robot contacts and speed losses."""
 
 from __future__ import annotations
 
@@ -21,8 +19,8 @@ from ..motion import Motion
 from ..types import Array, ArrayLike, Index, Integers, Mask
 from .achievable_feed import AchievableFeed
 
-# a sample each time the fastest joint has turned by STEP rad or moved by SLIDE mm, at this number of
-# samples at most: longer motions have fewer samples a turn
+# sampling step of the fastest joint: STEP, rad, or SLIDE, mm; maximum number of samples, so long
+# motions have coarser steps
 STEP, SLIDE, MAX_LOOKS = float(np.radians(1.0)), 10.0, 40_000
 
 
@@ -30,9 +28,9 @@ STEP, SLIDE, MAX_LOOKS = float(np.radians(1.0)), 10.0, 40_000
 class ArmTouches:
     """Contacts of links in a motion of n rows.
 
-    link: (n,) the link in contact at the row or on the segment that ends there, NONE without one.
-    Its values are indices in `links`. what: (n,) index in `names` of the body in contact.
-    step: rad between two checked positions.
+    link: (n,) index in `links` of the link in contact at the row or on the segment that ends there,
+    NONE without contact. what: (n,) index in `names` of the body in contact. step: distance between
+    two checked positions, rad.
     """
 
     link: Index
@@ -50,14 +48,14 @@ def deposit_obstacles(motion: Motion, width: float, height: float) -> Obstacles 
     motion : Motion
         The motion, positions in the part.
     width : float
-        Width of beads where the motion does not state it, mm.
+        Width of beads whose width the motion does not state, mm.
     height : float
         Height of beads, mm.
 
     Returns
     -------
     Obstacles or None
-        The deposit in the part; None without any.
+        The deposit in the part; None if there is no deposit.
     """
     deposit_rows = motion.deposit
     if not deposit_rows.any():
@@ -83,7 +81,7 @@ def arm_touches(motion: Motion, arm: ArmContact, max_places: int | None = None) 
     arm : ArmContact
         Links, bodies and deposit to check.
     max_places : int, optional
-        Number of positions to check; by default MAX_LOOKS.
+        Maximum number of positions to check; MAX_LOOKS by default.
 
     Returns
     -------
@@ -95,11 +93,11 @@ def arm_touches(motion: Motion, arm: ArmContact, max_places: int | None = None) 
     joints, row, step = places(motion.joints, max_places, tracks_of(arm.cell))
     deposited_before: Index = np.cumsum(motion.deposit) - motion.deposit
     touches = arm.touches(joints, deposited_before[row])
-    # rows closer together than the samples take the result of the next sample: every run of rows ends with one
+    # rows between samples take the result of the next sample; every run of rows ends with a sample
     reachable = np.flatnonzero(motion.reachable)
     next_place = np.searchsorted(row, reachable)
     link[reachable], what[reachable] = touches.link[next_place], touches.what[next_place]
-    # and of the places of a row the first one that touches counts
+    # several samples of a row: the first contact counts
     rows, first_places = np.unique(row[touches.any], return_index=True)
     link[rows], what[rows] = (
         touches.link[touches.any][first_places],
@@ -109,7 +107,7 @@ def arm_touches(motion: Motion, arm: ArmContact, max_places: int | None = None) 
 
 
 def tracks_of(cell: Cell) -> Mask:
-    """Return which axes of a cell belong to a track.
+    """Return which axes of a cell are track axes.
 
     Parameters
     ----------
@@ -131,31 +129,31 @@ def places(
 ) -> tuple[Array, Index, float]:
     """Sample a motion between its rows.
 
-    Samples are at even steps of the joint that moves most, SLIDE of the `sliding`
-    axes counting as STEP, and at both ends of every run of rows with joint values, even of a single
-    row; the unknown moves between two runs have none.
+    Samples are at even steps of the joint that moves most, where SLIDE of a `sliding` axis counts
+    as STEP. There are also samples at both ends of every run of rows with joint values, even of a
+    single row. The unknown moves between two runs are not sampled.
 
     Parameters
     ----------
     joints : (n, axes) array
         Joint values of the rows, rad or mm; NaN if unreachable.
     max_places : int, optional
-        Number of steps; by default MAX_LOOKS.
+        Maximum number of steps; MAX_LOOKS by default.
     sliding : (axes,) array of bool, optional
-        Axes in mm that count by SLIDE.
+        Axes in mm, with the step SLIDE.
 
     Returns
     -------
     joints : (k, axes) array
         Joint values of the samples, rad or mm.
     rows : (k,) array of int
-        Rows at which their segments end, rising.
+        Rows at which the segments of the samples end, ascending.
     step : float
         Step between samples, rad, at least STEP.
     """
     n = len(joints)
     reachable: Mask = np.asarray(np.isfinite(joints).all(axis=1))
-    goes_on = reachable & np.append(False, reachable[:-1])[:n]  # from the row before
+    goes_on = reachable & np.append(False, reachable[:-1])[:n]  # the previous row is reachable too
     travel = np.abs(np.diff(joints, axis=0, prepend=joints[:1]))
     if sliding is not None and sliding.any():
         travel[:, sliding] *= STEP / SLIDE
@@ -164,7 +162,7 @@ def places(
     total = float(travelled[-1]) if n else 0.0
     step = max(STEP, total / (MAX_LOOKS if max_places is None else max_places))
     positions = np.arange(step, total, step)
-    # moving rows only, so that both of their ends are known
+    # moving rows only, so both ends of their segments are known
     inner = np.searchsorted(travelled, positions, side="left")
     share = (positions - travelled[inner - 1]) / moved[inner]
     ends = np.flatnonzero(reachable & ~(goes_on & np.append(goes_on[1:], False)[:n]))
@@ -177,9 +175,9 @@ def places(
     return sampled[order], row[order], step
 
 
-# deg or mm; a smaller distance to a limit counts as near
+# deg or mm; maximum distance to a limit that counts as near
 NEAR_LIMIT_MARGIN = 0.5
-# programs keep 0.05 deg; what rounding leaves is not a violation, degrees or mm
+# deg or mm; rounding error that is not a violation (programs have a margin of 0.05 deg)
 _ROUNDING = 1e-6
 
 UNREACHABLE, LIMIT, NEAR_LIMIT, SINGULAR, SLOWED, ISSUE = (
@@ -195,12 +193,12 @@ TOUCHES = "touches"
 
 @dataclass(frozen=True)
 class Finding:
-    """A point of interest at a row, the first of a run of rows.
+    """A point of interest for a run of rows.
 
-    kind: one of the words above. label: the limit or axis, or an issue's message, or the axis that
-    moves the link ('base' for the first) in contact with `other`. value, than: worst margin in
-    degrees or mm and 0; condition and its threshold; achieved and requested speeds, mm/s, of the
-    run's worst row.
+    row: first or worst row of the run. kind: one of the words above. label: the limit or axis, the
+    message of an issue, or the axis that moves the link ('base' for the first) in contact with
+    `other`. value, than: values at the run's worst row: margin in degrees or mm and 0; condition
+    and threshold; or achieved and requested speed, mm/s.
     """
 
     row: int
@@ -215,10 +213,10 @@ class Finding:
 class Watch:
     """The points of interest of a motion.
 
-    margin: (n,) the smallest margin to any limit, in degrees or mm; limit: its index in
-    `Limits.labels`. condition, threshold: (n,), NaN if unknown. findings: in the order of rows.
-    touching: (n,) the link in contact, NONE without one; arm_known: whether arm contacts were
-    checked.
+    margin: (n,) minimum margin to any limit, degrees or mm. limit: (n,) index of this limit in
+    `Limits.labels`. condition, threshold: (n,), NaN if unknown. findings: points of interest in row
+    order. touching: (n,) the link in contact, NONE without contact. arm_known: whether arm contacts
+    were checked.
     """
 
     margin: Array
@@ -231,21 +229,21 @@ class Watch:
 
     @cached_property
     def past(self) -> Mask:
-        """(n,) rows past a limit."""
+        """Rows past a limit, (n,) bool."""
         with np.errstate(invalid="ignore"):
             past: Mask = self.margin < -_ROUNDING
         return past
 
     @cached_property
     def singular(self) -> Mask:
-        """(n,) rows nearer to a singularity than is allowed."""
+        """Rows nearer to a singularity than allowed, (n,) bool."""
         with np.errstate(invalid="ignore"):
             is_singular: Mask = self.condition < self.threshold * (1.0 - 1e-9)
         return is_singular
 
 
 def shown_margins(cell: Cell, joints: ArrayLike) -> Array:
-    """Return the distances of joints to every limit in the units they are shown in.
+    """Return the distances of joints to every limit in display units.
 
     Parameters
     ----------
@@ -257,7 +255,7 @@ def shown_margins(cell: Cell, joints: ArrayLike) -> Array:
     Returns
     -------
     (..., limits) array
-        Degrees, or mm of prismatic axes; negative past a limit.
+        Distances in degrees, or mm for prismatic axes; negative past a limit.
     """
     units = cell.machine.unit_values
     coupled = np.full(len(cell.limits.labels) - len(units), np.radians(1.0))
@@ -275,22 +273,22 @@ def bad_links(
 ) -> Mask:
     """Return the links to mark.
 
-    A link is marked if its axis is at, past or near a limit, or asked to exceed its maximum speed,
-    if a coupled limit of it is near, or if it touches something. All moving links are if the
-    machine is near a singularity or does not reach.
+    A link is marked if its axis is near, at or past a limit, including coupled limits, if its axis
+    would have to exceed its maximum speed, or if the link is in contact. All moving links are
+    marked if the machine is near a singularity or cannot reach the point.
 
     Parameters
     ----------
     cell : Cell
         The cell.
     margins : (limits,) array_like
-        Distances to limits, degrees or mm, as by `shown_margins`.
+        Distances to limits, degrees or mm, from `shown_margins`.
     ratios : (axes,) array_like
-        Requested shares of the maximum speeds.
+        Requested axis speeds as fractions of the maximum speeds.
     singular : bool
         Whether the machine is near a singularity.
     reachable : bool
-        Whether it reaches the point.
+        Whether the machine reaches the point.
     touching : int, optional
         The link in contact, see `ArmTouches`.
 
@@ -306,7 +304,7 @@ def bad_links(
     for coefficients in cell.limits.coefficients[close[axes:]]:
         bad[1:] |= coefficients != 0.0
     bad[1:] |= singular or not reachable
-    if touching != NONE:  # the load, part or nozzle, counts as its carrier
+    if touching != NONE:  # contact of the load (part or nozzle) marks the carrier's link
         robot_axes = cell.robot.chain.axes
         if touching >= robot_axes + LINKS_MORE:
             bad[
@@ -336,18 +334,18 @@ def watch(
     cell : Cell
         Limits and axes.
     feed : AchievableFeed
-        The speeds that the machine can keep.
+        The achievable feed.
     condition, threshold : (n,) array
-        Inverse condition number and the least one allowed; NaN if unknown.
+        Inverse condition number and the minimum allowed; NaN if unknown.
     issues : sequence of Issue, optional
-        Issues to list; notes and issues without a layer are not findings.
+        Issues to list, except notes and issues without a layer.
     arm : ArmTouches, optional
         Contacts of the links; None if they were not checked.
 
     Returns
     -------
     Watch
-        Margins of the rows, and findings in their order.
+        Margins of the rows, and findings in row order.
     """
     margins = shown_margins(cell, motion.joints)
     limit = np.argmin(np.where(np.isnan(margins), np.inf, margins), axis=1)
@@ -363,7 +361,7 @@ def watch(
     for kind, mask in (
         (LIMIT, watched.past),
         (NEAR_LIMIT, is_near),
-    ):  # where it is worst, as errors of the plan say
+    ):  # at the worst row, like the errors of planning
         findings += [
             Finding(worst, kind, labels[limit[worst]], float(margin[worst]))
             for _, worst in _runs(mask, margin)
@@ -395,7 +393,7 @@ def watch(
 
 
 def _touching(arm: ArmTouches) -> list[Finding]:
-    """A finding for every run of rows on which one link touches one thing."""
+    """Return a finding for every run of rows in which the same link touches the same body."""
     pair = np.where(arm.link == NONE, -1, arm.link * len(arm.names) + arm.what)
     starts = np.flatnonzero((pair != -1) & (np.diff(pair, prepend=-1) != 0))
     return [
@@ -405,7 +403,7 @@ def _touching(arm: ArmTouches) -> list[Finding]:
 
 
 def _runs(mask: Mask, values: Array) -> list[tuple[int, int]]:
-    """First row, and row of the smallest value, of every run of rows in which the mask holds."""
+    """Return, for every run of rows in the mask, the first row and the row of the minimum value."""
     starts = np.flatnonzero(mask & ~np.concatenate([[False], mask[:-1]]))
     ends = np.flatnonzero(mask & ~np.concatenate([mask[1:], [False]])) + 1
     return [
@@ -414,7 +412,7 @@ def _runs(mask: Mask, values: Array) -> list[tuple[int, int]]:
 
 
 def _row_of(motion: Motion, issue: Issue) -> int:
-    """The deposit row an issue is about, or the first row of its layer."""
+    """Return the deposit row of an issue, or else the first row of the layer."""
     layer = issue.layer or 0
     low, high = np.searchsorted(motion.layer, [layer, layer + 1])
     matches = np.ones(high - low, dtype=bool)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""waypoints.csv: one row per point in the order of motion."""
+"""waypoints.csv: one row per point in the order of the motion."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ WIRE = "wire_feed_mm_s"
 _LENGTH, _DIRECTION, _ANGLE = 6, 9, 7  # decimals
 _ROWS_AT_ONCE = 4000
 CLASS = "class"
-_CLASS_NAMES = np.array([*CLASSES, ""])  # the last one for -1, an unknown class
+_CLASS_NAMES = np.array([*CLASSES, ""])  # the last entry is for index -1, an unknown class
 
 
 def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()) -> Iterator[str]:
     """Yield the file in pieces.
 
-    If the wire follows the travel speed, its speed is the column after the axes. The last column is
-    the class of the bead, empty if unknown.
+    If the wire follows the travel speed, the wire speed is the column after the axes. The last
+    column is the bead class, empty if unknown.
 
     Parameters
     ----------
@@ -33,7 +33,7 @@ def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()
     axes : tuple of str, optional
         Names of the columns of `motion.joints`; none if empty.
     units : tuple of str, optional
-        Their units in the file: 'mm' for prismatic axes, 'deg' for revolute ones; 'deg' by default.
+        Units of these columns: 'mm' for prismatic axes, 'deg' for revolute axes; 'deg' by default.
 
     Yields
     ------
@@ -63,12 +63,12 @@ def text(motion: Motion, axes: tuple[str, ...] = (), units: tuple[str, ...] = ()
 
 
 def has_wire(motion: Motion) -> bool:
-    """Whether the wire follows the travel speed anywhere."""
+    """Whether the wire follows the travel speed in any segment."""
     return bool(np.isfinite(motion.wire).any())
 
 
 def _rows(motion: Motion, units: tuple[str, ...], wire: bool, rows: slice) -> str:
-    """Rows as text, with the wire's own speed or without."""
+    """Format rows as text; `wire` adds the wire speed."""
     slides = np.array([unit == "mm" for unit in units])
     angles = np.where(slides, motion.joints[rows], np.degrees(motion.joints[rows]))
     columns: list[tuple[NDArray[Any], int | None]] = [
@@ -88,11 +88,11 @@ def _rows(motion: Motion, units: tuple[str, ...], wire: bool, rows: slice) -> st
     forms = ["%s" if decimals is None else f"%.{decimals}f" for _, decimals in columns]
     template = ",".join(forms) + "\n"
     texts = [template % row for row in zip(*(_values(*column) for column in columns), strict=True)]
-    return "".join(texts).replace("nan", "")  # cells of unknown values are empty
+    return "".join(texts).replace("nan", "")  # unknown values are empty cells
 
 
 def _values(column: NDArray[Any], decimals: int | None) -> list[Any]:
-    """Values to print; numbers with decimals are rounded, so that none is -0.000000, or NaN."""
+    """Return values to print; rounding avoids -0.000000, and infinite values become NaN."""
     if decimals is not None:
         column = np.round(np.where(np.isfinite(column), column, np.nan), decimals) + 0.0
     values: list[Any] = column.tolist()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cladding: faces covered with layers of beads, one over the other along their normals."""
+"""Cladding: layers of beads on faces, stacked along the face normals."""
 
 from __future__ import annotations
 
@@ -36,21 +36,24 @@ from .solids.beads import MadeBead, bead_of, layer_volumes, twice_volume
 from .solids.filling import Pictures, bead_width, over_fed, spaced
 from .solids.notes import notes
 
-# ---- The layers: each a layer height above the one before, along the faces' normals. Faces are cut
-# once into pieces that can be flattened. Every layer flattens its own surface, so beads have the
-# right spacing there, on the outermost layer of a bent face too.
+# ---- Layers: each is one layer height above the previous layer, along the face normals. Faces are
+# cut once into pieces that can be flattened. Every layer is flattened separately, so the bead
+# spacing is correct even on the outermost layer of a curved face.
 
-PART = Base("the part", Plane(), np.eye(4))  # charts are in its coordinates
-FOLDED = 0.05  # share of its area that a triangle keeps in a layer that does not fold
-PROBE = 0.15  # of the extent of a picture: length about its middle along which its direction is measured
-ROUNDS = 5  # of turning it: between bent ends the way is not the picture's
-HALVES = 4  # of an edge of a border, where that bows
+PART = Base("the part", Plane(), np.eye(4))  # charts are in part coordinates
+FOLDED = 0.05  # minimum area ratio of a triangle between a layer and the faces if the layer does not fold
+PROBE = 0.15  # fraction of the chart's extent; half length about the centre on which its direction is measured
+ROUNDS = 5  # iterations of the rotation; one is not exact on curved faces
+HALVES = 4  # 4 HALVES is the maximum number of pieces of a curved border edge
 
 
 @dataclass(frozen=True, eq=False)
 class FaceLayer(Charted):
-    """A piece of a layer on faces. sheet: these, exactly. feet: (n, 3) mm, the vertices of the chart on them. distance: mm
-    above them. stretch: the largest share by which lengths of the picture differ from those in the part."""
+    """A piece of a layer on faces.
+
+    sheet: the exact faces. feet: (n, 3) chart vertices on the faces, mm. distance: mm above the faces. stretch: maximum
+    relative difference between lengths in the chart and in the part.
+    """
 
     sheet: PatchWall
     feet: Array
@@ -59,11 +62,11 @@ class FaceLayer(Charted):
 
     @property
     def look(self) -> float:
-        """A usual edge of the mesh."""
+        """Typical edge length of the mesh, mm."""
         return self.chart.mesh.typical_edge
 
     def in_part(self, location: Place) -> tuple[Array, Array]:
-        """Return the exact points above the faces, and their normals."""
+        """Return the exact points above the faces, and the face normals."""
         approximate = np.einsum(
             "nk,nkc->nc", location.share, self.feet[self.chart.mesh.faces[location.triangle]]
         )
@@ -72,8 +75,9 @@ class FaceLayer(Charted):
 
 
 class Piece(NamedTuple):
-    """A piece of a sheet flattened as one: vertices (n, 3) on it with unit normals (n, 3), and
-    their triangles.
+    """A piece of a sheet that is flattened as a whole.
+
+    mesh: triangles with vertices (n, 3) on the sheet. normals: (n, 3) unit normals at the vertices.
     """
 
     mesh: Mesh
@@ -81,7 +85,7 @@ class Piece(NamedTuple):
 
 
 def pieces(sheet: PatchWall, strategy: CladdingParameters) -> list[Piece]:
-    """Return a sheet in pieces that can be flattened within the distortion allowed."""
+    """Split a sheet into pieces that can be flattened within the allowed distortion."""
     sheet_pieces = []
     for submesh in split_flattenable(sheet.mesh, strategy.distortion):
         feet, normals = sheet.project(submesh.vertices)
@@ -90,7 +94,7 @@ def pieces(sheet: PatchWall, strategy: CladdingParameters) -> list[Piece]:
 
 
 def slices(sheet: PatchWall, sheet_piece: Piece, strategy: CladdingParameters) -> Iterator[Slice]:
-    """Yield the layers of a piece of faces, outwards.
+    """Yield the layers on a piece of the faces, from the faces outwards.
 
     Parameters
     ----------
@@ -109,7 +113,7 @@ def slices(sheet: PatchWall, sheet_piece: Piece, strategy: CladdingParameters) -
     Raises
     ------
     InputError
-        FOLDED if layers reach over a hollow's middle.
+        FOLDED if layers extend past the centre of curvature of a hollow.
     """
     mesh = sheet_piece.mesh
     for number in range(strategy.layers):
@@ -134,10 +138,9 @@ def slices(sheet: PatchWall, sheet_piece: Piece, strategy: CladdingParameters) -
 
 
 def _along_x(layer: FaceLayer) -> FaceLayer:
-    """Return the layer with its picture about the origin, turned so that in its middle x runs as
-    the part's X does.
+    """Centre the chart of a layer and rotate it so that x at the centre follows the part's X.
 
-    Where the layer is normal to X there, the part's Y replaces X.
+    If the layer is normal to X at the centre, the part's Y replaces X.
     """
     flat = layer.chart.flat - layer.chart.flat.mean(axis=0)
     for _ in range(ROUNDS):
@@ -157,14 +160,15 @@ def _along_x(layer: FaceLayer) -> FaceLayer:
 
 
 def _regions(chart: Chart, chord_error: float) -> tuple[Region, ...]:
-    """Return the picture of the piece. Its borders are smooth through the vertices, which are on
-    the edges of the faces.
+    """Return the regions of the piece in its chart.
+
+    The borders are smooth curves through the vertices, which are on the edges of the faces.
     """
     return regions([_smooth(chart.flat[border], chord_error) for border in borders(chart.mesh)])
 
 
 def _smooth(loop: Array, chord_error: float) -> Array:
-    """Return a loop (n, 2) with points added on edges that bow."""
+    """Return a loop (n, 2) with points added on curved edges."""
     points = np.column_stack([np.vstack([loop, loop[:1]]), np.zeros(len(loop) + 1)])
     curve = estimate_outline(points, True)
     segment = np.arange(len(loop))
@@ -203,9 +207,9 @@ def _refuse_folded(
     )
 
 
-# ---- The beads
+# ---- Beads
 
-REPORTED_DISTORTION = 0.02  # distortion that is reported
+REPORTED_DISTORTION = 0.02  # minimum relative distortion that is reported
 
 
 def plan(
@@ -216,7 +220,7 @@ def plan(
     model: BeadModel | None,
     progress: Progress = silent,
 ) -> Toolpath:
-    """Return the toolpath of cladding: layer i is i layer heights above the faces.
+    """Plan the toolpath of cladding; layer i is i layer heights above the faces.
 
     Parameters
     ----------
@@ -229,9 +233,9 @@ def plan(
     process : ProcessParameters
         Speeds and bead width.
     model : BeadModel or None
-        Bead model that sets the speeds; None if the travel speed applies everywhere.
+        Bead model that sets the speeds; None to use the travel speed everywhere.
     progress : callable, optional
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
@@ -294,7 +298,7 @@ def plan(
         note
         for note in notes(made_beads, layers, strategy, build, process, model)
         if note.code != "SINGLE_LAYER"
-    ]  # as asked
+    ]  # the user chose the number of layers
     fed = over_fed(strategy, process, model, width)
     issues = [*clad_faces.issues, *_stretched(stretch), *issues, *fed, *noted]
     return Toolpath(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves deposited as beads unchanged, once or several times on top of each other."""
+"""Curves deposited unchanged as beads, in one or several layers."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from .progress import Progress, silent
 
 ALONG = np.cos(
     np.radians(5.0)
-)  # a bead runs along its deposit direction if the angle between them is less
+)  # a bead runs along its deposit direction if the angle between them is smaller
 
 
-STEP = 1.01  # layer heights that a bead may climb straight up, plus the rounding of slicers
-# of the shorter segment; a shorter mean of two segments has no reliable direction
+STEP = 1.01  # layer heights; maximum vertical step of a bead, including the rounding of slicers
+# fraction of the shorter segment; minimum length of the mean of two segments for a reliable direction
 TURNED_BACK = 0.05
 
 
@@ -38,7 +38,7 @@ def plan(
     process: ProcessParameters,
     progress: Progress = silent,
 ) -> Toolpath:
-    """Return the toolpath of curves.
+    """Plan the toolpath of curves.
 
     Layer k contains the curves offset by k layer heights along their deposit directions.
 
@@ -53,7 +53,7 @@ def plan(
     process : ProcessParameters
         Speeds.
     progress : callable, optional
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
@@ -109,7 +109,7 @@ def _classed(
     process: ProcessParameters,
     label: str,
 ) -> Bead:
-    """The bead at a key (layer, number in the layer), with the settings of its class."""
+    """Return the bead at a key (layer index, bead index), with the settings of its class."""
     name = classes.wall_bead_class(key[0])
     class_settings = classes.leaning(build, process, name), process.for_class(name)
     bead = _bead(curve, fixed, height, again, sum(key), *class_settings, label)
@@ -117,8 +117,10 @@ def _classed(
 
 
 def _tangents(points: Array, directions: Array) -> Array:
-    """Unit vectors (n, 3) along a bead at its points. Where it turns back, so that the mean of the segments before and after a
-    point vanishes or runs along the deposit direction (n, 3), the segment after the point counts.
+    """Return the unit tangents (n, 3) at the points of a bead.
+
+    A tangent is the mean of the adjacent segments. Where the bead reverses, this mean vanishes or runs along the
+    deposit direction (n, 3), and the segment after the point is used.
     """
     segments = np.diff(points, axis=0)
     segments /= np.linalg.norm(segments, axis=1, keepdims=True)
@@ -135,8 +137,9 @@ def _tangents(points: Array, directions: Array) -> Array:
 
 
 def _steps_along(points: Array, directions: Array, height: float) -> Array:
-    """Cosine (n - 1,) between each segment and its deposit direction; 0 for steps of up to a layer height, with which a bead climbs
-    onto itself.
+    """Return the cosine (n - 1,) between each segment and its deposit direction.
+
+    It is 0 for steps of up to a layer height, by which a bead climbs onto itself.
     """
     segments = np.diff(points, axis=0)
     lengths = np.linalg.norm(segments, axis=1)

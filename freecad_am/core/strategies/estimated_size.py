@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Estimated size of a toolpath, from wall and parameters before planning: large ones are reported, absurd ones rejected.
+"""Estimated size of a toolpath before planning: report large toolpaths, reject absurd ones.
 
-Counts are right within a third for round and even parts; if bead lengths differ a lot they are rather too low.
+Counts are accurate to a third for round and even parts. If bead lengths vary widely, counts tend to be too low.
 """
 
 from __future__ import annotations
@@ -34,33 +34,31 @@ if TYPE_CHECKING:
     from ..geometry.walls.patch_wall import CladFaces, PatchWall
     from ..geometry.walls.surface_wall import SurfaceWall
 
-# measured at a million, a point takes 0.3 kB with its toolpath, 0.6 kB with its joint path and what the document stores, 1.5
-# kB at the peak: these are more than 70 GB, and fifty times the largest jobs known
+# Memory per point, measured at a million points: 0.3 kB for the toolpath, 0.6 kB with joint path and document, 1.5 kB at
+# the peak. This limit needs more than 70 GB and is fifty times the largest known job
 MOST_POINTS = 50_000_000
 LARGE_CODE = "LARGE"
 LARGE_SECONDS, LARGE_GIGABYTES = (
     30.0,
     1.0,
-)  # s from which a job is reported as large; half of an acceptable wait
-GIGABYTES_A_POINT = 1.5e-6  # at the peak, all stages
-GIGABYTES_A_VERTEX = (
-    9e-6  # at the peak, of the mesh of a wall; measured 8.7 to 9.6 on walls of 9,000 to 35,000
-)
-# points per mesh edge of a bead on a mesh wall, whatever the chord error; measured: 1.5 on smooth
-# walls to 4.4 on a wall with folds
+)  # minimum time, s, and memory of a job reported as large; the time is half of an acceptable wait
+GIGABYTES_A_POINT = 1.5e-6  # peak memory per point over all stages
+GIGABYTES_A_VERTEX = 9e-6  # peak memory per mesh vertex of a wall; measured 8.7e-6 to 9.6e-6 with 9,000 to 35,000 vertices
+# points per mesh edge of a bead on a mesh wall, for any chord error; measured: 1.5 on smooth walls
+# to 4.4 on a wall with folds
 POINTS_AN_EDGE = 2.5
 # CPU seconds for a point on a mesh; measured: 0.41 to 0.56 ms for the toolpath
 SECONDS_A_MESH_POINT = 7e-4
-MIN_CHORDS = 24  # points of a bead on a wall
-PLACES = 181  # samples along meridians and tubes
-MAX_SAMPLES = 20_000  # sampled vertices for the reach of a wall
-# CPU seconds for a layer in all stages, however few points it has; measured with 25 points
+MIN_CHORDS = 24  # minimum number of points of a bead on a wall
+PLACES = 181  # number of samples along meridians and tubes
+MAX_SAMPLES = 20_000  # maximum number of sampled vertices for the extent of a wall
+# CPU seconds for a layer in all stages, independent of its points; measured with 25 points
 SECONDS_A_LAYER = 0.05
 # CPU seconds for filling unequal layers, per square of the bead spacing, measured
 SECONDS_A_SQUARE = 1.5e-4
-SECONDS_A_TILT = 9e-3  # CPU seconds to find a tilt at a point that needs one, measured
-# CPU seconds to find layers, per mm of folds in a mesh; measured: 0.0018 where layers run along
-# the folds of an even mesh, to 0.011 where they cross those of an uneven mesh at all angles
+SECONDS_A_TILT = 9e-3  # CPU seconds to search a tilt at a point, measured
+# CPU seconds to compute layers, per mm of folds in a mesh; measured: from 0.0018 where layers run
+# along the folds of an even mesh to 0.011 where they cross folds of an uneven mesh at all angles
 SECONDS_A_FOLD = 5e-3
 SECONDS_A_NODE = 5e-5  # CPU seconds per grid node of curved layers, measured; a third if planar
 # CPU seconds for a point in all stages, measured; walls on parts march from layer to layer, and
@@ -77,8 +75,9 @@ _SECONDS_A_POINT: dict[type, float] = {
 class Size:
     """Estimated numbers of layers and points of a toolpath.
 
-    squares: number of squares of bead spacing in all layers, if each layer is filled separately. nodes: of the grids for curved
-    layers. folds: of the mesh of a wall, mm of their length. vertices: of that mesh, 0 for exact walls.
+    squares: number of bead-spacing squares in all layers, if each layer is filled separately. nodes: number of grid
+    nodes for curved layers. folds: length of folds in the mesh of a wall, mm. vertices: number of mesh vertices, 0 for
+    exact walls.
     """
 
     layers: float
@@ -90,12 +89,12 @@ class Size:
 
     @property
     def gigabytes(self) -> float:
-        """Memory at the peak over the stages."""
+        """Peak memory over all stages, GB."""
         return self.points * GIGABYTES_A_POINT + self.vertices * GIGABYTES_A_VERTEX
 
 
 def revolution_size(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
-    """The size of a part of revolution; the turns of a spiral count as layers."""
+    """Estimate the size of a part of revolution; the turns of a spiral count as layers."""
     meridian, turn = wall.meridian, wall.end - wall.start
     radius, height, tangent = meridian.at(np.linspace(0.0, meridian.length, PLACES))
     step = 4.0 * np.arcsin(
@@ -111,12 +110,12 @@ def revolution_size(wall: RevolvedWall, strategy: RevolutionParameters) -> Size:
 
 
 def wall_size(wall: SurfaceWall | PatchWall, strategy: SurfaceParameters) -> Size:
-    """The size of a wall on an existing part."""
+    """Estimate the size of a wall on an existing part."""
     return tube_size(wall, strategy) if wall.closes_around else fronts_size(wall, strategy)
 
 
 def tube_size(wall: SurfaceWall, strategy: SurfaceParameters) -> Size:
-    """The size of a wall around a closed direction."""
+    """Estimate the size of a wall around a closed direction."""
     surface = wall.surface()
     v = np.linspace(0.0, wall.period, PLACES)
     top = surface.point(np.full(PLACES, wall.end), v)[:-1]
@@ -137,21 +136,21 @@ def tube_size(wall: SurfaceWall, strategy: SurfaceParameters) -> Size:
 
 
 def fronts_size(wall: PatchWall, strategy: SurfaceParameters) -> Size:
-    """The size of a wall of any connected pieces."""
+    """Estimate the size of a wall of any connected pieces."""
     corners = wall.vertices[wall.triangles[~wall.behind[wall.triangles].any(axis=1)]]
     area = 0.5 * float(np.linalg.norm(doubled_areas(corners), axis=1).sum())
     points = wall.vertices[~wall.behind]
     tree = cKDTree(np.vstack([curve.points for curve in wall.first]))
     distance = np.max(tree.query(points[:: max(1, len(points) // MAX_SAMPLES)])[0], initial=0.0)
     layers = float(distance) / strategy.layer_height
-    # beads are bent as the first ones are, or as a circle through the whole wall would be, whichever is less
+    # beads are as curved as the first beads or as a circle around the whole wall, whichever is less
     chords = [_chords(curve.points, curve.closed, strategy.chord_error) for curve in wall.first]
     per_mm = sum(count for count, _ in chords) / sum(length for _, length in chords)
     per_mm = min(
         per_mm,
         1.0 / math.sqrt(4.0 * strategy.chord_error * np.linalg.norm(np.ptp(wall.vertices, axis=0))),
     )
-    if wall.mesh_vertices:  # its beads have a point wherever they cross an edge
+    if wall.mesh_vertices:  # beads on a mesh have a point at every crossed edge
         per_mm = max(per_mm, POINTS_AN_EDGE / wall.mesh.typical_edge)
     return Size(
         layers,
@@ -173,8 +172,8 @@ def solids_size(
     strategy : FilledParameters
         Layer height, spacing, margin and chord error.
     spacing : float or None, optional
-        Distance between beads, mm; None for the parameter, without points if an overlap
-        replaces it.
+        Distance between beads, mm. None uses the parameter; if an overlap replaces it, points are
+        not estimated.
 
     Returns
     -------
@@ -202,14 +201,14 @@ def solids_size(
                 / strategy.layer_height
                 / spacing
             )
-            # half of their way beads run around the hub, on chords to which half of the chord error is left; and they end
+            # beads run around the hub for half of their length, with half of the chord error for their chords; and they end
             extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
             points += length * max(
                 0.5
                 / math.sqrt(4.0 * strategy.chord_error * group.base.surface.bend(height, extent)),
                 2.0 / extent,
             )
-            if strategy.margin > 0.0:  # rounded by it, each layer is another
+            if strategy.margin > 0.0:  # the margin rounds the regions, so no two layers are equal
                 squares += length / spacing
         layers += (
             sum(heights) if strategy.order == "feature" else max(heights, default=0.0)
@@ -220,7 +219,7 @@ def solids_size(
 
 
 def cladding_size(faces: CladFaces, strategy: CladdingParameters) -> Size:
-    """The size of layers on faces; without points if an overlap replaces the bead spacing."""
+    """Estimate the size of layers on faces; points are not estimated if an overlap replaces the bead spacing."""
     spacing = strategy.bead_spacing if strategy.bead_overlap is None else math.inf
     high = strategy.layers * strategy.layer_height
     points = sum(
@@ -232,8 +231,10 @@ def cladding_size(faces: CladFaces, strategy: CladdingParameters) -> Size:
 
 
 def _sheet_points(sheet: PatchWall, high: float, chord_error: float) -> float:
-    """Estimated points, times mm of bead spacing, of a layer at a height above a sheet: larger around a rod, smaller in a trough.
-    Beads bend as the edges of triangles do, and a quarter of the chord error is theirs.
+    """Estimate the points, times bead spacing in mm, of a layer at a height above a sheet.
+
+    The estimate is larger around a rod and smaller in a trough. Beads are assumed to bend like the triangle edges, with
+    a quarter of the chord error for their chords.
     """
     feet, normals = sheet.project(sheet.vertices)
     corner, normal = (feet + high * normals)[sheet.triangles], normals[sheet.triangles]
@@ -253,15 +254,15 @@ def refuse_absurd(size: Size, strategy: LayerParameters, width: float | None = N
     size : Size
         The estimated size.
     strategy : LayerParameters
-        The layer parameters that cause it.
+        The layer parameters.
     width : float or None, optional
-        Width of the beads if it and an overlap give their spacing, mm; None otherwise.
+        Bead width, mm, if width and overlap define the bead spacing; None otherwise.
 
     Raises
     ------
     InputError
-        TOO_MANY for more than MOST_LAYERS or MOST_POINTS, naming the parameter farthest
-        below its usual value.
+        TOO_MANY for more than MOST_LAYERS or MOST_POINTS. The message names the parameter
+        farthest below its usual value.
     """
     height = strategy.layer_height
     if size.layers > MOST_LAYERS:
@@ -305,13 +306,13 @@ def size_issues(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
     Returns
     -------
     tuple of Issue
-        A note LARGE from LARGE_SECONDS or LARGE_GIGABYTES on, and another where the shape
-        takes longer than the points.
+        A note LARGE at or above LARGE_SECONDS or LARGE_GIGABYTES, and another if the shape takes
+        longer than the points.
 
     Raises
     ------
     InputError
-        As `refuse_absurd`.
+        As for `refuse_absurd`.
     """
     refuse_absurd(size, strategy)
     a_point = next(
@@ -344,7 +345,7 @@ def size_issues(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
 
 
 def _shape_issues(size: Size, seconds: float) -> tuple[Issue, ...]:
-    """A note LARGE if the shape takes longer than a time, s, however few points its beads have."""
+    """Return a note LARGE if computing the shape takes longer than a time, s, independent of the points."""
     grids, folds = size.nodes * SECONDS_A_NODE, size.folds * SECONDS_A_FOLD
     if grids > seconds:
         return (
@@ -385,7 +386,7 @@ def tilting_issues(points: int, times: int = 1) -> tuple[Issue, ...]:
     points : int
         Number of points searched.
     times : int, optional
-        Maximum number of searches if the tool turns too fast.
+        Maximum number of searches if the tool rotates too fast.
 
     Returns
     -------
@@ -487,7 +488,7 @@ def _causes(strategy: LayerParameters, width: float | None) -> list[_Cause]:
 
 
 def _chords(points: Array, closed: bool, chord_error: float) -> tuple[float, float]:
-    """About how many chords a smooth curve through points (m, 3) takes within the chord error, and its length."""
+    """Estimate the number of chords of a smooth curve through points (m, 3) within the chord error; also return its length."""
     chord = np.diff(np.vstack([points, points[:1]]) if closed else points, axis=0)
     chord = chord[np.linalg.norm(chord, axis=1) > 0.0]
     length = np.linalg.norm(chord, axis=1)

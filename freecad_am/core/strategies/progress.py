@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Progress of a strategy: a function that receives the share done, 0..1, and the current step; it may raise to cancel."""
+"""Progress of a strategy.
+
+A progress function receives the completed fraction, 0 to 1, and the current step. It may raise to cancel.
+"""
 
 from __future__ import annotations
 
@@ -14,17 +17,19 @@ def silent(fraction: float, text: str) -> None:
 
 
 class Watch(NamedTuple):
-    """Receivers of a search's progress: before it the number of points and the maximum number of passes, during it the share done,
-    0..1; both may raise to cancel.
+    """Receivers of a search's progress, which may raise to cancel.
+
+    points: called before the search with the number of points and the maximum number of passes. share: called during
+    the search with the completed fraction, 0 to 1.
     """
 
     points: Callable[[int, int], None] = lambda points, times: None
     share: Callable[[float], None] = lambda share: None
 
     def section(self, low: float, high: float) -> Watch:
-        """The watch of a section of the search between two shares."""
+        """Return a watch for the section of the search between two fractions."""
         return self._replace(share=lambda share: self.share(low + share * (high - low)))
 
     def at_end(self) -> Watch:
-        """The watch of checks after the search, whose progress stays at its end."""
+        """Return a watch for checks after the search, whose progress stays at 1."""
         return Watch(share=lambda share: self.share(1.0))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Several features in one toolpath: their layers one feature after the other, or the lowest layer first."""
+"""Several features in one toolpath, feature by feature or lowest layer first."""
 
 from __future__ import annotations
 
@@ -14,9 +14,7 @@ from ..toolpath import Bead, Layer, SequencedFeature, Toolpath
 from ..types import Array, Index
 
 BY_FEATURE, BY_HEIGHT = "feature", "height"
-FLOATS = (
-    0.9  # of the length of a first layer; a feature with at least this share unsupported floats
-)
+FLOATS = 0.9  # minimum unsupported fraction of the first layer's length of a floating feature
 
 
 def join_toolpaths(
@@ -26,9 +24,9 @@ def join_toolpaths(
     up: Array,
     bodies: Sequence[Body],
 ) -> Toolpath:
-    """Join the toolpaths of several features in the order of deposit.
+    """Join the toolpaths of several features in print order.
 
-    The frame is the frame of the first feature. Layers are numbered through, in issues too.
+    The frame is the frame of the first feature. Layers are numbered consecutively, also in issues.
 
     Parameters
     ----------
@@ -37,13 +35,13 @@ def join_toolpaths(
     labels : sequence of str
         Label of each feature.
     sequence : str
-        BY_FEATURE, one after the other, or BY_HEIGHT: the next layer is always the one with
-        the lowest point, in a tie the one of the feature named first; layers of one feature
-        keep their order.
+        BY_FEATURE, feature by feature, or BY_HEIGHT. By height, the next layer is the layer with
+        the lowest point; in a tie, the layer of the first feature. The layers of a feature keep
+        their order.
     up : (3,) array
         Direction of the height.
     bodies : sequence of Body
-        Bodies that surround all features from the beginning.
+        Obstacles for all features from the beginning.
 
     Returns
     -------
@@ -94,7 +92,7 @@ def _without_layers(toolpath: Toolpath) -> Toolpath:
 
 
 def _uneven(toolpaths: Sequence[Toolpath], numbers: Sequence[Index]) -> Array | None:
-    """Numbers, least and largest heights (k, 3) of the features' layers with uneven height."""
+    """Return index, minimum and maximum height (k, 3) of the features' layers of uneven height."""
     rows = [
         np.column_stack(
             [
@@ -109,14 +107,14 @@ def _uneven(toolpaths: Sequence[Toolpath], numbers: Sequence[Index]) -> Array | 
 
 
 def renumbered(issues: Sequence[Issue], numbers: Index) -> tuple[Issue, ...]:
-    """Return the issues of a feature with layer numbers of the job.
+    """Return the issues of a feature with layer indices of the job.
 
     Parameters
     ----------
     issues : sequence of Issue
         Issues with layers of the feature.
     numbers : (n,) int array
-        Number of each of its layers in the job.
+        Index in the job of each layer of the feature.
 
     Returns
     -------
@@ -132,16 +130,16 @@ def renumbered(issues: Sequence[Issue], numbers: Index) -> tuple[Issue, ...]:
 def update_feature(
     toolpath: Toolpath, number: int, feature: Toolpath, issues: Sequence[Issue]
 ) -> Toolpath:
-    """Return the toolpath with an updated feature and further issues.
+    """Return the toolpath with an updated feature and additional issues.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath of all features.
     number : int
-        Number of the feature.
+        Index of the feature.
     feature : Toolpath
-        Its toolpath.
+        Toolpath of the feature.
     issues : sequence of Issue
         Issues with layers of the job.
 
@@ -156,16 +154,16 @@ def update_feature(
 
 
 def refuse_floating(toolpath: Toolpath, number: int, lengths: dict[int, float]) -> None:
-    """Reject a feature whose first layer is nearly unsupported.
+    """Reject a feature whose first layer is almost entirely unsupported.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath of all features.
     number : int
-        Number of the feature.
+        Index of the feature.
     lengths : dict[int, float]
-        Length of unsupported beads by layer, mm.
+        Unsupported bead length by layer, mm.
 
     Raises
     ------
@@ -202,8 +200,11 @@ def _lowest_first(heights: Sequence[Sequence[float]]) -> list[tuple[int, int]]:
 
 
 def _lowest(layers: Sequence[Layer], up: Array) -> list[float]:
-    """The lowest point of each layer along up (3,), rounded, so that layers of equal height stay in the order of the
-    features. A layer without beads comes right before the next of its feature."""
+    """Return the lowest point of each layer along up (3,).
+
+    Heights are rounded, so that layers of equal height stay in feature order. An empty layer has the height of the
+    feature's next layer.
+    """
     lowest: list[float] = []
     above = np.inf
     for layer in reversed(layers):
@@ -214,7 +215,7 @@ def _lowest(layers: Sequence[Layer], up: Array) -> list[float]:
 
 
 def _add_bead_sizes(toolpath: Toolpath, first_path: Toolpath) -> Toolpath:
-    """The toolpath with bead width and height in each bead, if they differ from the first feature."""
+    """Return the toolpath with bead width and height stored in each bead, if they differ from the first feature."""
     if toolpath.bead_width is None or (
         (toolpath.bead_width, toolpath.layer_height)
         == (first_path.bead_width, first_path.layer_height)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Support of beads besides deposit: the platform or plane under a part, the hub, the substrate, fixtures."""
+"""Support of beads other than deposit: platform or plane below the part, hub, substrate, fixtures."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ from ..process.deposit.pieces import Pieces, cut_beads
 from ..toolpath import Toolpath
 from ..types import Array, Mask
 
-STEPS = 7  # places on the way down at which a body is looked for
-CONTACT_HEIGHTS = 0.5  # layer heights; a point no farther from a body is on it, in any direction
-FLUSH = 1e-6  # mm
+STEPS = 7  # number of positions below a point at which bodies are searched
+CONTACT_HEIGHTS = 0.5  # layer heights; maximum distance, in any direction, of a point on a body
+FLUSH = 1e-6  # relative rounding error of the reach
 OVER_PLATFORM, ABOVE_PLATFORM = "OVER_PLATFORM", "ABOVE_PLATFORM"
 ABOVE_SUBSTRATE = "ABOVE_SUBSTRATE"
 
@@ -32,20 +32,20 @@ ABOVE_SUBSTRATE = "ABOVE_SUBSTRATE"
 def check_support(
     toolpath: Toolpath, planes: Sequence[Array], bodies: Sequence[Body], bases: Sequence[Base]
 ) -> Toolpath:
-    """Return the toolpath with its unsupported length, and issues.
+    """Return the toolpath with its unsupported length and issues.
 
-    The first layer of a wall starts on the wall's base by construction, and is supported.
+    The first layer of a wall starts on the wall's base by construction, so it is supported.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath in part coordinates.
     planes : sequence of (4, 4) array
-        Frames in part coordinates; points on or below the plane z = 0 of one are supported.
+        Frames in part coordinates. Points on or below the plane z = 0 of a frame are supported.
     bodies : sequence of Body
-        Bodies that support, in part coordinates.
+        Supporting bodies in part coordinates.
     bases : sequence of Base
-        Hubs, which count if most of the first layer is on none of the bodies: then only the
+        Hubs. They count only if most of the first layer is not on a body, because then only the
         hub's surface is known.
 
     Returns
@@ -77,7 +77,7 @@ def feature_support(
     toolpath : Toolpath
         The toolpath of all features.
     number : int
-        Number of the feature.
+        Index of the feature.
     planes : sequence of (4, 4) array
         As in `check_support`.
     bodies, bases : sequence of Body
@@ -88,7 +88,7 @@ def feature_support(
     lengths : dict of int to float
         Unsupported length by layer, mm.
     issues : list of Issue
-        Their issues.
+        Issues of the unsupported layers.
     """
     feature, numbers = toolpath.parts[number]
     ground = _Ground(feature, planes, bodies, bases)
@@ -103,8 +103,10 @@ def feature_support(
 
 
 def _lowest(toolpath: Toolpath, family: Family, first_layer: int) -> Mask:
-    """Mask (l,) of the layers deposited on ground, at most a layer height above it: the first one, layers that begin another solid,
-    and all layers of curves, whose curves may be deposited one after the other.
+    """Return the mask (l,) of layers that may start on the ground, at most a layer height above it.
+
+    These are the first layer, layers that begin another solid, and all layers of curves, because curves may be
+    deposited one after the other.
     """
     mask = np.array(
         [layer.first or family.starts_anywhere for layer in toolpath.layers], dtype=bool
@@ -122,8 +124,8 @@ def over_edge(
 ) -> list[Issue]:
     """Return a warning if the first layer overhangs the edge of the platform.
 
-    This applies to beads on the plane of the platform, or to solids below it, that are beyond
-    its edge by more than half of their width, and on none of the bodies.
+    The warning applies to beads on the platform plane, or of solids below it, that are more than
+    half their width beyond the edge and not on a body.
 
     Parameters
     ----------
@@ -134,9 +136,9 @@ def over_edge(
     diameter : float
         Diameter of the platform, mm.
     bodies : sequence of Body
-        Bodies that support, in part coordinates.
+        Supporting bodies in part coordinates.
     feature : (4, 4) array or None, optional
-        The alternative frame of `cell.mount: feature`, which is tried for the remedy.
+        Alternative frame of `cell.mount: feature`, tried as a remedy.
 
     Returns
     -------
@@ -182,8 +184,10 @@ def over_edge(
 
 
 def _beyond_edge(toolpath: Toolpath, first_pieces: Pieces, frame: Array, diameter: float) -> Array:
-    """Distance (n,) mm beyond the platform's edge of pieces of the first layer on its plane, or of solids below it; -inf for others.
-    The first layers of walls, hubs and curves may be on objects that are not in the file.
+    """Return the distances (n,) of first-layer pieces beyond the platform's edge, mm.
+
+    Pieces above the platform plane have -inf. For walls, hubs and curves, pieces below the plane have -inf too, because
+    their first layer may be on objects that are not in the file.
     """
     local = (first_pieces.middle - frame[:3, 3]) @ frame[:3, :3]
     on_plane = (
@@ -193,21 +197,21 @@ def _beyond_edge(toolpath: Toolpath, first_pieces: Pieces, frame: Array, diamete
 
 
 def stands_on(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> bool:
-    """Return whether deposit and bodies are above a plane that the first layer touches.
+    """Whether deposit and bodies are above a plane that the first layer touches.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath in part coordinates.
     frame : (4, 4) array
-        Frame whose plane z = 0 is meant, in part coordinates.
+        Frame of the plane z = 0, in part coordinates.
     bodies : sequence of Body
         Bodies in part coordinates.
 
     Returns
     -------
     bool
-        True if so.
+        True if nothing is below the plane and the first layer touches it.
     """
     points = [bead.points for _, _, bead in toolpath]
     heights = [
@@ -221,7 +225,7 @@ def stands_on(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> bool:
 
 
 def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issue]:
-    """Return a warning if most of the first layer is above the platform and on none of the bodies.
+    """Return a warning if most of the first layer is above the platform and not on a body.
 
     Parameters
     ----------
@@ -230,7 +234,7 @@ def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issu
     frame : (4, 4) array
         Pose of the platform in part coordinates.
     bodies : sequence of Body
-        Bodies that support, in part coordinates.
+        Supporting bodies in part coordinates.
 
     Returns
     -------
@@ -263,8 +267,9 @@ def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issu
 
 
 def surely_above(solids: SolidsOnHub, layer_height: float) -> bool:
-    """Whether `above` warns of the toolpath of solids on the plane z = 0, whatever its layers are: they are based on planes and on no
-    body, all too far above that plane.
+    """Whether `above` will warn for solids on the plane z = 0, independent of their layers.
+
+    This is so if all bases are planes, there are no bodies, and the solids are too far above the plane.
     """
     if solids.surroundings or not is_on_planes([group.base for group in solids.groups]):
         return False
@@ -278,8 +283,9 @@ def is_on_planes(bases: Sequence[Base]) -> bool:
 
 
 class _Ground:
-    """Whether something other than deposit supports points (n, 3) with build directions (n, 3), in the first layer or, where `first`
-    (n,) is false, in later ones.
+    """Predicate: whether anything other than deposit supports points (n, 3) with build directions (n, 3).
+
+    `is_first` (n,) is true in the first layer, which has a larger reach than later layers.
     """
 
     def __init__(
@@ -320,7 +326,7 @@ class _Ground:
         return is_supported
 
     def _is_on_bodies(self, points: Array, build: Array, reach: Array) -> Mask:
-        """Whether there is a body below them, no more than `reach` (n,) mm."""
+        """Whether a body is at most `reach` (n,) mm below the points."""
         is_supported = np.zeros(len(points), dtype=bool)
         if not len(points):
             return is_supported
@@ -341,12 +347,12 @@ class _Ground:
 
 
 def _body_distances(search: Search, points: Array) -> Array:
-    """Distances (k,) mm of points from a body, negative inside; below a flat one, as a platform is, there is no inside."""
+    """Return the distances (k,) of points from a body, mm, negative inside; a flat body has no inside."""
     return search.distance(points) if search.flat else search.signed(points)[0]
 
 
 def _search(body: Body, height: float) -> Search | None:
-    """A body prepared for points a layer height apart; None without triangles that have an area."""
+    """Prepare a body for distance queries; None if all triangles are degenerate."""
     corner = body.corners()
     area = np.linalg.norm(doubled_areas(corner), axis=1)
     if not (area > 1e-10).any():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Volume balance of a part against its beads: missed and stray volume, as figures and issues, before beads exist."""
+"""Volume balance of a part and its beads, estimated before planning: missed and stray volume, and issues."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ from ...toolpath import Toolpath
 
 LEFT_OUT, OUTSIDE, TWICE = "NOT_DEPOSITED", "DEPOSITED_BESIDE", "DEPOSITED_TWICE"
 CODES = (LEFT_OUT, OUTSIDE, TWICE)
-TWICE_WARNING_SHARE = 0.1  # share of a filled part that beads deposit twice in a layer
-SINGLE_BEAD_WIDTHS = 1.25  # bead widths; a wall about as thick as a bead is deposited by one
-UNFILLED = 0.03  # of a part that is filled
-NEGLIGIBLE = 0.02  # of a part
-SMALL_SHARE = 0.01  # of the area of the faces that beads do not run on
-MAX_NAMED = 8  # faces and solids named in a message
-MM3 = 1000.0  # in a cm3
+TWICE_WARNING_SHARE = 0.1  # fraction of a filled part; maximum over-deposition without a warning
+SINGLE_BEAD_WIDTHS = 1.25  # bead widths; maximum thickness of a wall that one bead deposits
+UNFILLED = 0.03  # fraction of a filled part; volume error above this is reported
+NEGLIGIBLE = 0.02  # fraction of a part; missed volume below this counts as 0
+SMALL_SHARE = 0.01  # fraction of the area of all faces; smaller omitted faces are ignored
+MAX_NAMED = 8  # maximum number of faces and solids named in a message
+MM3 = 1000.0  # mm3 per cm3
 
 
 @dataclass(frozen=True)
 class Balance:
-    """Volumes of a part and its beads in mm3, None where the part has none; estimates except for solids.
+    """Volumes of a part and its beads, mm3, None if the part has no volume; estimates except for solids.
 
-    faces: names of the faces left out; solids: names and volumes (mm3) of the solids left out. width: mm of a bead, 0 for
-    solids, which are filled. thick: mm of the part there. filled: the beads fill the part. twice: volume of beads deposited
-    over others in their layer. hub: volume of the hub, which is there before and counts in left_out and part_volume. lines: the
-    part is curves, which have no volume to leave out.
+    faces: names of omitted faces. solids: names and volumes, mm3, of omitted solids. width: bead width, mm, 0 for filled
+    solids. thick: thickness of the part, mm. filled: whether beads fill the part. twice: over-deposition within layers.
+    hub: volume of the existing hub, included in left_out and part_volume. lines: whether the part consists of curves,
+    which have no volume.
     """
 
     label: str
@@ -49,37 +49,37 @@ class Balance:
 
 
 def feature_balance(value: Any, width: float) -> Balance | None:
-    """The balance of a feature's wall or solids with beads of a width, mm; None if nothing is known."""
+    """Return the balance of a feature's wall or solids with beads of a width, mm; None if unknown."""
     if value.own is not None:  # everything except the hub is deposited
         return Balance(value.label, value.own.volume, value.own.hub, solids=value.own.apart)
     return None if value.depths is None else wall_balance(value.depths, width)
 
 
 def toolpath_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
-    """Return the balance once beads exist.
+    """Return the balance of a planned toolpath.
 
-    Where beads fill a part, they give the covered volume exactly.
+    For filled parts the beads give the covered volume exactly.
 
     Parameters
     ----------
     value : Any
         The feature's wall, solids or curves.
     toolpath : Toolpath
-        Its toolpath.
+        Toolpath of the feature.
     width : float
-        Width of beads without their own, mm.
+        Width of beads without a predicted width, mm.
 
     Returns
     -------
     Balance or None
-        None if nothing is known.
+        The balance; None if unknown.
     """
     if toolpath.checks.volumes is None:
         return _beads_balance(value, toolpath, width)
     part_volume, left_out, outside = toolpath.checks.volumes
     own_hub = value.own
     hub = own_hub.hub if own_hub else 0.0
-    if own_hub:  # the rest of the part within the surface under the solids
+    if own_hub:  # remainder of the part inside the surface below the solids
         left_out += max(own_hub.volume - hub - part_volume, 0.0)
         part_volume = max(own_hub.volume - hub, part_volume)
     return Balance(
@@ -97,7 +97,7 @@ def toolpath_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | 
 
 
 def _beads_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | None:
-    """The balance of beads that fill nothing, with the volume deposited twice. Curves have no other figures."""
+    """Return the balance of beads without filling, with the over-deposition, the only value for curves."""
     balance = feature_balance(value, width)
     if toolpath.checks.twice is None:
         return balance
@@ -115,7 +115,7 @@ def _beads_balance(value: Any, toolpath: Toolpath, width: float) -> Balance | No
 
 
 def sum_balances(balances: Sequence[Balance | None]) -> Balance | None:
-    """The sum of the balances of several features; None if nothing is known."""
+    """Return the sum of the balances of several features; None if unknown."""
     known_balances = [balance for balance in balances if balance is not None]
     if len(balances) == 1 or not known_balances:
         return balances[0] if balances else None
@@ -144,7 +144,7 @@ def sum_balances(balances: Sequence[Balance | None]) -> Balance | None:
 
 
 def wall_balance(depths: PartDepths, width: float) -> Balance:
-    """The balance of a single-bead wall with beads of a width, mm."""
+    """Return the balance of a single-bead wall with beads of a width, mm."""
     total = sum(depths.face_areas)
     faces = tuple(
         name
@@ -179,7 +179,7 @@ def issues(balance: Balance | None) -> tuple[Issue, ...]:
     Returns
     -------
     tuple of Issue
-        Left-out volume, stray volume and over-deposition.
+        Issues of missed volume, stray volume and over-deposition.
     """
     if balance is None:
         return ()
@@ -300,7 +300,7 @@ def _filling_issues(balance: Balance) -> tuple[Issue, ...]:
 
 
 def as_dict(balance: Balance | None) -> dict[str, Any] | None:
-    """The key `deposit` of report.json: volumes in cm3, None for a part without volume."""
+    """Return the value of the key `deposit` in report.json: volumes in cm3, None for a part without volume."""
     if balance is None:
         return None
     deposited = (
@@ -324,7 +324,7 @@ def as_dict(balance: Balance | None) -> dict[str, Any] | None:
 
 
 def _left_out(balance: Balance, share: bool) -> str:
-    """The left-out volume as the beginning of a sentence."""
+    """Format the missed volume as the beginning of a sentence."""
     left_cm3, part_cm3 = (balance.left_out or 0.0) / MM3, (balance.part_volume or 0.0) / MM3
     if balance.filled:
         return Text(

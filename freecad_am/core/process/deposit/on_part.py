@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Check whether the deposit is on the part: sampled places, tolerance and issue."""
+"""Check that the deposit is on the part: sample points, tolerance and issue."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from ...issues import ERROR, Issue, Text
 from ...toolpath import Layer, Toolpath
 from ...types import Array, Index
 
-STEP = 0.5  # of a layer height, between two places on the beads below that are asked
+STEP = 0.5  # layer heights; distance between samples on the beads below
 
 
 def over_layers(toolpath: Toolpath) -> tuple[Array, ...]:
-    """Return the heights of points over the beads of the layer before, by layer.
+    """Return the heights of points above the beads of the previous layer, by layer.
 
-    Heights are measured along the build direction there. Layers with nothing of their feature
+    Heights are measured along the local build direction. Layers without a layer of their feature
     below, and beads that close gaps, are left out.
 
     Parameters
@@ -56,7 +56,10 @@ def over_layers(toolpath: Toolpath) -> tuple[Array, ...]:
 
 
 def _sample_chords(layer: Layer, step: float) -> tuple[Array, Array]:
-    """Positions (k, 3) on the chords of every bead of a layer, at most a step, mm, apart, and build directions there."""
+    """Sample the chords of all beads of a layer at most `step`, mm, apart.
+
+    Returns positions (k, 3) and build directions (k, 3).
+    """
     positions: list[Array] = []
     directions: list[Array] = []
     for bead in layer.beads:
@@ -72,14 +75,14 @@ def _sample_chords(layer: Layer, step: float) -> tuple[Array, Array]:
 
 
 CODE = "OFF_PART"
-MAX_PLACES = 20_000  # places checked, unless there are more beads
-# mm; allowed deviation of a wall from its faces beyond the chord error, for tables, fits and
-# imported surfaces
+MAX_PLACES = 20_000  # approximate maximum number of checked points, besides three per bead
+# mm; allowed deviation of a wall from its faces in addition to the chord error, for tables, fits
+# and imported surfaces
 ROUNDED = 0.02
 
 
 class Places(NamedTuple):
-    """points (n, 3) mm, unit build directions (n, 3), and where they are: layer, bead, point (n,)."""
+    """Points (n, 3), mm, with unit build directions (n, 3), and their layer, bead and point index (n,)."""
 
     points: Array
     build: Array
@@ -89,7 +92,7 @@ class Places(NamedTuple):
 
 
 def sample_places(toolpath: Toolpath) -> Places:
-    """Both ends and the middle of every bead, and as many more, evenly, as MOST allows."""
+    """Sample both ends and the midpoint of every bead, and evenly as many more points as MAX_PLACES allows."""
     beads = list(toolpath)
     size = np.array([len(bead) for _, _, bead in beads])
     start = np.cumsum(size) - size
@@ -107,10 +110,10 @@ def sample_places(toolpath: Toolpath) -> Places:
 
 
 def allowed_distance(toolpath: Toolpath, margin: float = 0.0) -> float:
-    """How far off the part, mm, places may be.
+    """Return the allowed distance of points from the part, mm.
 
-    On walls: the chord error and rounding. Solids on hubs are filled, and beads in narrower regions or in a margin exceed the part
-    by at most half their width.
+    On walls this is the chord error plus ROUNDED. In filled solids, beads in narrow regions or in a margin may exceed
+    the part by half their width.
     """
     if not toolpath.traits.is_filled:
         return toolpath.chord_error + ROUNDED
@@ -118,23 +121,24 @@ def allowed_distance(toolpath: Toolpath, margin: float = 0.0) -> float:
 
 
 def check_on_part(toolpath: Toolpath, places_: Places, off: Array, limit: float) -> Toolpath:
-    """Return the toolpath with the result of the check whether it is on the part.
+    """Return the toolpath with the result of the check that its points are on the part.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath.
     places_ : Places
-        The checked places.
+        The checked points.
     off : (n,) array
-        Their distances from the part, mm; NaN if unknown.
+        Distances of the points from the part, mm; NaN if unknown.
     limit : float
-        Largest distance allowed, mm.
+        Allowed distance, mm.
 
     Returns
     -------
     Toolpath
-        The toolpath with count, largest and allowed distance, and an error if exceeded.
+        The toolpath with count, maximum and allowed distance, and an error if the limit is
+        exceeded.
     """
     measured = np.flatnonzero(np.isfinite(off))
     if not len(measured):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads cut into short pieces, for checks along their whole length."""
+"""Beads divided into short pieces, for checks along the whole length."""
 
 from __future__ import annotations
 
@@ -16,8 +16,11 @@ from ...types import Array, Index, Mask
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Beads cut into n short pieces in the order of deposit: middles, build and travel directions (n, 3), lengths (n,) mm, widths
-    (n,) mm; along: mm from the start of the bead; layer, bead (counted over the toolpath), point: where each begins; closing (n,).
+    """Beads divided into n short pieces in print order.
+
+    middle: (n, 3) midpoints, mm. build, travel: (n, 3) build and travel directions. length, width: (n,) mm. along: (n,)
+    arc length from the start of the bead, mm. layer, bead (counted over the toolpath), point: (n,) indices of the
+    piece's start. closing: (n,) whether the bead closes a gap.
     """
 
     middle: Array
@@ -36,9 +39,9 @@ class Pieces:
 
 
 def cut_beads(toolpath: Toolpath, share: float) -> Pieces:
-    """Cut every bead of a toolpath into pieces no longer than a share of its width, or than the chord error.
+    """Divide every bead into pieces at most as long as a fraction of its width, or as the chord error.
 
-    ValueError if the width of the beads is not known.
+    Raises ValueError if the bead width is unknown.
     """
     beads, width = list(toolpath), toolpath.bead_width
     if width is None:
@@ -52,7 +55,7 @@ def cut_beads(toolpath: Toolpath, share: float) -> Pieces:
     bead_row = np.repeat(np.arange(len(beads)), size)
     start = np.delete(
         np.arange(len(points)), np.cumsum(size) - 1
-    )  # of segments; beads end in points without one
+    )  # segments start at all points except bead ends
     chord = points[start + 1] - points[start]
     length = lengths(chord)
     is_proper = length > 0.0
@@ -83,7 +86,7 @@ def cut_beads(toolpath: Toolpath, share: float) -> Pieces:
 
 
 def join_pieces(pieces: Pieces, share: float) -> Pieces:
-    """Join the pieces of beads with dense points to pieces of about a share of the bead's width."""
+    """Join short pieces of beads with dense points into pieces of about a fraction of the bead width."""
     if not len(pieces):
         return pieces
     step = np.floor(pieces.along / (share * pieces.width)).astype(np.intp)
@@ -103,7 +106,7 @@ def join_pieces(pieces: Pieces, share: float) -> Pieces:
     build, travel = mean(pieces.build), mean(pieces.travel)
     norm = np.maximum(
         lengths(travel), 1e-12
-    )  # a piece that turns round within itself leads nowhere
+    )  # a piece that reverses within itself has no travel direction
     return Pieces(
         mean(pieces.middle),
         build / lengths(build)[:, None],
@@ -118,17 +121,23 @@ def join_pieces(pieces: Pieces, share: float) -> Pieces:
     )
 
 
-PIECE = 0.125  # of a bead's width
+PIECE = 0.125  # fraction of the bead width; length of a piece
 SAME_LAYER_HEIGHTS = (
-    0.5  # layer heights above or below; beyond, a piece belongs to another turn of a spiral
+    0.5  # layer heights; maximum height difference of pieces in the same turn of a spiral
 )
-ROUND = 1.6  # arc over chord; a bead returns to itself after more than half a circle
-ACROSS = 0.3  # cosine of the angle between beads that cross rather than run side by side
-PIECE_END_SHARE = 0.75  # of a piece's length from its middle along it; beyond, a position is past the end of a bead
+ROUND = (
+    1.6  # ratio of arc to chord above which a bead returns to itself, after more than half a circle
+)
+ACROSS = (
+    0.3  # cosine of the angle between beads below which they cross rather than run side by side
+)
+PIECE_END_SHARE = (
+    0.75  # piece lengths from the midpoint; a farther position is past the end of the bead
+)
 
 
 def deposited_twice(toolpath: Toolpath) -> float:
-    """mm3 of beads deposited where another bead of the layer, or the same bead, is."""
+    """Return the over-deposition within layers, mm3, by other beads or by the same bead."""
     pieces = join_pieces(cut_beads(toolpath, PIECE), PIECE)
     ends = np.searchsorted(pieces.layer, np.arange(len(toolpath.layers) + 1))
     closed = np.array([bead.closed for _, _, bead in toolpath])
@@ -145,14 +154,14 @@ def deposited_twice(toolpath: Toolpath) -> float:
 
 
 def _shared(pieces: Pieces, layer: slice, around: Array, level: float) -> float:
-    """mm2 that the beads of a layer share, counted once."""
+    """Return the overlap area of the beads of a layer, counted once, mm2."""
     middle, width = pieces.middle[layer], pieces.width[layer]
     pairs: Index = (
         cKDTree(middle).query_pairs(float(width.max()), output_type="ndarray").astype(np.intp)
     )
     i, j = np.vstack([pairs, pairs[:, ::-1]]).T
     is_pair = _side_by_side(pieces, layer.start + i, layer.start + j, around)
-    if not is_pair.any():  # of most layers with one bead
+    if not is_pair.any():  # true for most layers with a single bead
         return 0.0
     i, j = i[is_pair], j[is_pair]
     build, travel = pieces.build[layer][i], pieces.travel[layer][i]
@@ -164,7 +173,9 @@ def _shared(pieces: Pieces, layer: slice, around: Array, level: float) -> float:
     over = 0.5 * (width[i] + width[j]) - lengths(level_way - ahead[:, None] * along)
     past = np.abs(ahead) > PIECE_END_SHARE * pieces.length[layer][j]
     is_over = (over > 0.0) & (np.abs(up) < level) & ~past
-    across = np.abs(dots(travel, along)) < ACROSS  # it is on both sides, and there once
+    across = (
+        np.abs(dots(travel, along)) < ACROSS
+    )  # a crossing bead is on both sides but counts once
     side = (dots(np.cross(build, travel), level_way) > 0.0) & ~across
     largest = np.zeros((2, len(middle)))
     for k in (0, 1):
@@ -174,7 +185,7 @@ def _shared(pieces: Pieces, layer: slice, around: Array, level: float) -> float:
 
 
 def _side_by_side(pieces: Pieces, i: Index, j: Index, around: Array) -> Mask:
-    """Which pairs of pieces belong to two beads, or to one bead that returns to itself."""
+    """Return which pairs of pieces belong to two beads, or to one bead that returns to itself."""
     arc = np.abs(pieces.along[i] - pieces.along[j])
     arc = np.minimum(arc, around[pieces.bead[i]] - arc)
     chord = lengths(pieces.middle[i] - pieces.middle[j])

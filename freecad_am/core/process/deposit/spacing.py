@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layer spacing: the distance from each deposit point to the nearest point of the layer before, a
-curve."""
+"""Layer spacing: distance from each deposit point to the curve of the previous layer."""
 
 from __future__ import annotations
 
@@ -16,16 +15,16 @@ from ...geometry.curves.outline import derivatives
 from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array, Index, Mask, NDArray
 
-PLANE_TOLERANCE_MM = 1e-6  # mm; a layer whose points differ no more in height is a plane
+PLANE_TOLERANCE_MM = 1e-6  # mm; maximum height difference of the points of a planar layer
 
 
 def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
-    """Return the distances of points from the layer before, by layer.
+    """Return the distances of points from the previous layer, by layer.
 
-    A spiral is one layer; there it is the distance of each point to the turn before. For plane
-    filled layers it is the distance of the planes, because the nearest bead below gives the
-    spacing within a layer. Beads that close gaps, and layers with nothing of the feature below,
-    are left out. Several features follow each other.
+    In a spiral, which is one layer, they are the distances from the previous turn. In planar
+    filled layers they are the distances of the planes, because the nearest bead below would give
+    the spacing within a layer. Beads that close gaps, and layers without a layer of the feature
+    below, are omitted. Several features follow each other.
 
     Parameters
     ----------
@@ -68,7 +67,7 @@ def between_layers(toolpath: Toolpath) -> tuple[Array, ...]:
 
 
 def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
-    """Return the distances of points from the layer before, by bead.
+    """Return the distances of points from the previous layer, by bead.
 
     Parameters
     ----------
@@ -78,8 +77,8 @@ def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
     Returns
     -------
     tuple of (n,) array
-        Distances of each bead in the order of deposit, mm; NaN if nothing of the feature is
-        below: in first layers, and in the first turn of a spiral.
+        Distances of each bead in print order, mm; NaN in first layers and in the first turn of a
+        spiral.
     """
     if toolpath.features:
         by_layer: list[list[Array]] = [[] for _ in toolpath.layers]
@@ -118,10 +117,10 @@ def local_distances(toolpath: Toolpath) -> tuple[Array, ...]:
 
 
 def between_turns(bead: Bead) -> tuple[Array, ...]:
-    """Return the distances of a spiral from the turn before, by quarter turn.
+    """Return the distances of a spiral from the previous turn, by quarter turn.
 
-    The stretch one turn before is three quarters of a turn long, so that it holds the nearest
-    point but not the points' own neighbours.
+    The stretch of the previous turn is three quarters of a turn long, so that it contains the
+    nearest point but no points adjacent along the spiral.
 
     Parameters
     ----------
@@ -148,12 +147,12 @@ def is_spiral(toolpath: Toolpath) -> bool:
 
 
 def is_plane(toolpath: Toolpath) -> bool:
-    """Whether every feature has plane filled layers, whose distance is reported."""
+    """Whether every feature has planar filled layers, whose plane distance is reported."""
     return all(_planes(feature) is not None for feature, _ in toolpath.parts)
 
 
 def _planes(toolpath: Toolpath) -> Array | None:
-    """(layers,) mm along the Z of the frame, where layers are filled planes square to it; else None."""
+    """Return the heights of filled planar layers along Z of the frame, (layers,) mm; None for other layers."""
     toolpath = toolpath.deposited
     if not toolpath.traits.stacks_layers:
         return None
@@ -167,7 +166,7 @@ def _planes(toolpath: Toolpath) -> Array | None:
 
 
 def turns_of(bead: Bead) -> Index:
-    """Return the turn that each point of a spiral is in.
+    """Return the turn index of each point of a spiral.
 
     Parameters
     ----------
@@ -177,7 +176,7 @@ def turns_of(bead: Bead) -> Index:
     Returns
     -------
     (n,) array of int
-        Numbers of the turns from 0.
+        Turn indices from 0.
     """
     turned = np.abs(bead.parameter - bead.parameter[0]) / (2.0 * np.pi)
     last_turn = max(int(np.ceil(turned[-1] - 1e-6)) - 1, 0)
@@ -186,7 +185,7 @@ def turns_of(bead: Bead) -> Index:
 
 
 def _quarters(bead: Bead) -> Iterator[tuple[Mask, Curve]]:
-    """Per quarter turn after the first turn: which points (n,) are its, and the stretch one turn before."""
+    """Yield, for each quarter turn after the first turn, the mask of its points (n,) and the previous turn's stretch."""
     angle = np.abs(bead.parameter - bead.parameter[0])
     quarter = 0.5 * np.pi
     for start in np.arange(4.0 * quarter, np.nextafter(angle[-1], np.inf), quarter):
@@ -201,39 +200,39 @@ def _quarters(bead: Bead) -> Iterator[tuple[Mask, Curve]]:
 
 
 def curve_of(layer: Layer) -> Curve:
-    """The smooth curve through the points of a layer's beads."""
+    """Return the smooth curve through the points of a layer's beads."""
     segments = [columns_of(bead.points, bead.closed, bead.tangents) for bead in layer.beads]
     return Curve(*(np.concatenate(columns) for columns in zip(*segments, strict=True)))
 
 
-# ---- The smooth curve through points, and the distance of other points from it
+# ---- Distance of points from the smooth curve through a bead's points
 #
-# The points of a bead are on its curve, the chords between them are not: on a circle they run
-# inside by up to the chord error, which would show as spacing. So the curve is a smooth one
-# through the points - in each segment a cubic that is a circular arc to sixth order in the angle
-# it turns - and keeps corners as they are. Its tangents are the bead's own where it has them,
-# else the tangents of parabolas.
+# The points of a bead are on its curve, but the chords between them are not: on a circle the chords
+# are inside by up to the chord error, which would show as spacing. The curve is therefore smooth
+# between corners. Each segment is a cubic that matches a circular arc to sixth order in the turn
+# angle. The tangents are the bead's tangents if known, else the tangents of parabolas.
 
-CORNER = np.radians(
-    50.0
-)  # a bead that turns by more at a point has a corner there; the sparsest circle turns by less
+CORNER = np.radians(50.0)  # minimum turn at a corner; the sparsest circle turns by less
 SLIGHT = np.radians(
     10.0
-)  # a smaller turn is a corner too if it exceeds SUDDEN times the adjacent turns
+)  # minimum turn at a corner whose turn exceeds SUDDEN times the adjacent turns
 SUDDEN = 3.0
-SMOOTH = 1e-3  # rad; where the tangents of a bead are known, a corner is a point at which they differ by more
-_ALL = 15_000  # pairs of points and segments up to which all are tried; beyond, a tree is faster
+SMOOTH = 1e-3  # rad; maximum difference of known tangents at a point without a corner
+_ALL = 15_000  # maximum number of point-segment pairs for brute force; above, a tree is faster
 _CHUNK = 400_000  # point-segment pairs handled at once; bounds the memory
-_TIE = 1e-9  # mm; where two chords meet both are the nearest: rounding does not choose between them
-_BATCH_POINTS = 4096  # points evaluated in one batch, about
-_FIRST_TRIED = 5  # segments that are tried first
-_OVERRUN_SHARE = 0.25  # how far the cubic of a segment serves past its ends, where the next one's would be nearer by a hair
+_TIE = 1e-9  # mm; tolerance of ties, so that both chords at a common vertex are nearest
+_BATCH_POINTS = 4096  # approximate number of points in a batch
+_FIRST_TRIED = 5  # number of segments tried first
+_OVERRUN_SHARE = 0.25  # fraction of a segment; maximum extrapolation of its cubic past the ends
 
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Segments start, end (m, 3) with the derivatives (m, 3) of their cubics there; `low` and `high` (m,) bound the
-    cubics' variable, which is 0 at the start and 1 at the end."""
+    """Cubic segments.
+
+    start, end: (m, 3) end points. start_slope, end_slope: (m, 3) derivatives at the end points. low, high: (m,) bounds of
+    the variable, which is 0 at the start and 1 at the end.
+    """
 
     start: Array
     end: Array
@@ -246,11 +245,11 @@ class Curve:
 def distance(points: Array, curve: Curve) -> Array:
     """Return the distances of points from a smooth curve.
 
-    The nearest vertex bounds the distance from above, so only segments whose middle is nearer
-    than this bound plus half the longest segment can hold the nearest point of the chords; all
-    such segments are tried. For every segment whose cubic may be the nearest, as far as it bows
-    from its chord, the foot is moved along the cubic: near a corner that is not always the one
-    with the nearest chord.
+    The nearest vertex bounds the distance from above. Only segments whose midpoint is nearer than
+    this bound plus half the longest segment can contain the nearest point of the chords, and all of
+    them are tried. Near a corner, the segment with the nearest chord may not have the nearest
+    cubic. The foot point is therefore refined on the cubic of every segment that may be nearest
+    within the bow of its cubic.
 
     Parameters
     ----------
@@ -270,7 +269,7 @@ def distance(points: Array, curve: Curve) -> Array:
 def distances(queries: Iterable[tuple[Array, Curve]]) -> Iterator[Array]:
     """Yield the `distance` of points from a curve for each query.
 
-    Queries are handled in batches: for a few points the calls take longer than the work.
+    Queries are handled in batches, because the call overhead dominates for a few points.
 
     Parameters
     ----------
@@ -312,7 +311,7 @@ def _batch_distances(queries: Sequence[tuple[Array, Curve]]) -> list[Array]:
 
 
 def _near(points: Array, curve: Curve) -> Iterator[tuple[Index, Index, Mask]]:
-    """Pairs (k,) of a point and a segment that may be nearest to it, grouped by point, and whether its chord is the nearest."""
+    """Yield pairs (k,) of points and possibly nearest segments, grouped by point, and which chords are nearest."""
     bow = _bow(curve)
     if len(points) * len(curve.start) <= _ALL:
         yield _nearest_of_all(points, curve, bow)
@@ -323,7 +322,7 @@ def _near(points: Array, curve: Curve) -> Iterator[tuple[Index, Index, Mask]]:
     middles = cKDTree(0.5 * (curve.start + curve.end))
     distance, segment_rows = middles.query(points, _FIRST_TRIED)
     radius: Array = (distance[:, 0] + reach) * (1.0 + 1e-9)
-    # nearly everywhere the first few segments hold all candidates, and no search within the radius is needed
+    # the first few segments almost always include all candidates, so that no radius search is needed
     is_complete = distance[:, -1] > radius
     point, column = np.nonzero((distance <= radius[:, None]) & is_complete[:, None])
     if is_complete.any():
@@ -347,7 +346,10 @@ def _bow(curve: Curve) -> Array:
 
 
 def _nearest_of_all(points: Array, curve: Curve, bow: Array) -> tuple[Index, Index, Mask]:
-    """Pairs (k,) of a point and a segment that may be nearest to it, in rising order, and whether its chord is; all are tried."""
+    """Return pairs (k,) of points and possibly nearest segments, ascending, and which chords are nearest.
+
+    All pairs are tried.
+    """
     centre = curve.start.mean(axis=0)
     start, along, offset = curve.start - centre, curve.end - curve.start, points - centre
     length = (along * along).sum(axis=1)
@@ -378,7 +380,7 @@ def _parts(middles: Any, points: Array, radius: Array) -> int:
 
 
 def _segments_in_radius(middles: Any, points: Array, radius: Array) -> tuple[Index, Index]:
-    """Pairs (k,) of a point, rising, and a segment whose middle is within the radius (n,) about it."""
+    """Return pairs (k,) of points, ascending, and segments whose midpoint is within the point's radius (n,)."""
     neighbours = middles.query_ball_point(points, radius, return_sorted=False)
     count = np.fromiter(map(len, neighbours), dtype=np.intp, count=len(neighbours))
     segment = np.fromiter(chain.from_iterable(neighbours), dtype=np.intp, count=int(count.sum()))
@@ -388,7 +390,7 @@ def _segments_in_radius(middles: Any, points: Array, radius: Array) -> tuple[Ind
 def _nearest_chords(
     points: Array, point: Index, segment: Index, curve: Curve, bow: Array
 ) -> tuple[Index, Index, Mask]:
-    """The same as `_nearest_of_all`, of pairs (k,) of a point, rising, and a segment."""
+    """Return the result of `_nearest_of_all` for pairs (k,) of points, ascending, and segments."""
     start = columns(curve.start)[:, segment]
     along = columns(curve.end)[:, segment] - start
     offset = columns(points)[:, point] - start
@@ -405,13 +407,16 @@ def _nearest_chords(
 
 
 def _share(offset: Array, along: Array) -> Array:
-    """(k,) foot of points `offset` (3, k) from the start of segments `along` (3, k), as a share of the segment."""
+    """Return the foot points (k,) of points on segments, as a fraction of the segment.
+
+    offset: (3, k) points relative to the segments' starts. along: (3, k) segment vectors.
+    """
     squared = _dot(along, along)
     return _between(_dot(offset, along) / np.where(squared > 0.0, squared, 1.0), 0.0, 1.0)
 
 
 def _dot(a: Array, b: Array) -> Array:
-    """(k,) scalar products of vectors (3, k), added up in the order in which einsum does it of rows."""
+    """Return the scalar products (k,) of vectors (3, k), summed in the order of einsum by rows."""
     product = a * b
     result: Array = product[0] + product[2]
     result += product[1]
@@ -419,12 +424,12 @@ def _dot(a: Array, b: Array) -> Array:
 
 
 def _size(vectors: Array) -> Array:
-    """(k,) lengths of vectors (3, k)."""
+    """Return the lengths (k,) of vectors (3, k)."""
     return lengths(vectors.T)
 
 
 def _between(values: Array, low: Array | float, high: Array | float) -> Array:
-    """As np.clip, which takes many times as long for a few."""
+    """Clip values; np.clip is many times slower for small arrays."""
     clipped: Array = np.minimum(np.maximum(values, low), high)
     return clipped
 
@@ -432,9 +437,11 @@ def _between(values: Array, low: Array | float, high: Array | float) -> Array:
 def _to_cubic(
     points: Array, point: Index, segment: Index, nearest_chord: Mask, curve: Curve
 ) -> Array:
-    """(n,) the least distance of points to the cubics of the segments (k,) paired with those numbered `point`, by Newton's
-    steps from the foot on the chord. Only a point's own segment, its chord the nearest, serves past its ends."""
-    # axis by axis: rows of three take several times longer
+    """Return the minimum distance (n,) of points to the cubics of their paired segments (k,).
+
+    Newton's method starts at the foot point on the chord. Only a segment with the nearest chord extends past its ends.
+    """
+    # axis by axis, because rows of three components are several times slower
     target = columns(points)[:, point]
     p, q, a, b = (
         columns(column)[:, segment]
@@ -465,9 +472,9 @@ def columns_of(points: Array, closed: bool, tangents: Array | None = None) -> tu
     points : (n, 3) array
         Points, mm.
     closed : bool
-        Whether the curve is closed; then the first point is repeated.
+        Whether the curve is closed. A closed curve repeats its first point.
     tangents : (n, 2, 3) array or None, optional
-        Unit tangents that arrive at and leave each point; None if unknown.
+        Unit tangents on arrival at and departure from each point; None if unknown.
 
     Returns
     -------
@@ -485,11 +492,11 @@ def columns_of(points: Array, closed: bool, tangents: Array | None = None) -> tu
     incoming, outgoing = _before(chord), chord
     smooth = ~_corners(incoming, outgoing, closed)  # at the start of each segment
     smooth[0] &= closed
-    # the tangent of the parabola through three points: the nearer neighbour counts more
+    # tangent of the parabola through three points; the nearer adjacent point counts more
     tangent = unit_rows(incoming * length[:, None] + outgoing * _before(length)[:, None])
     at_start, at_end = tangent, _after(tangent)
     smooth_end = _after(smooth)
-    # where the curve ends or has a corner, the arc through both points that has the tangent of the other end
+    # at an end or corner, use the arc through both points with the tangent of the other end
     start = np.where(
         smooth[:, None], at_start, np.where(smooth_end[:, None], _mirrored(at_end, chord), chord)
     )
@@ -513,7 +520,7 @@ def _arcs(
 
 
 def _corners(incoming: Array, outgoing: Array, closed: bool) -> Mask:
-    """(n,) whether the path of segments with unit directions (n, 3) has a corner at the start of each segment."""
+    """Return whether the path has a corner at the start of each segment, (n,); unit directions (n, 3)."""
     turn = np.arctan2(
         lengths(crosses(incoming, outgoing)), np.einsum("ij,ij->i", incoming, outgoing)
     )
@@ -525,16 +532,16 @@ def _corners(incoming: Array, outgoing: Array, closed: bool) -> Mask:
 
 
 def _before(rows: NDArray[Any]) -> NDArray[Any]:
-    """The row before each, round again; np.roll takes many times as long for a few."""
+    """Return the previous row of each row, cyclically; np.roll is many times slower for small arrays."""
     return np.concatenate((rows[-1:], rows[:-1]))
 
 
 def _after(rows: NDArray[Any]) -> NDArray[Any]:
-    """The row after each, round again."""
+    """Return the next row of each row, cyclically."""
     return np.concatenate((rows[1:], rows[:1]))
 
 
 def _mirrored(tangent: Array, chord: Array) -> Array:
-    """The tangent at the other end of the arc with this chord."""
+    """Return the tangent at the other end of the arc with this chord."""
     mirrored: Array = 2.0 * np.einsum("ij,ij->i", tangent, chord)[:, None] * chord - tangent
     return mirrored

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Unsupported beads: neither earlier deposit nor the ground carries them.
+"""Unsupported beads: beads with neither earlier deposit nor ground below.
 
-Below is against the build direction. A piece of a bead is supported if the ray from its middle meets something no more than
-REACH layer heights below: earlier deposit as wide as it counts, or ground for the first layer; for other layers, whose own
-height is between their path and their support, ground DOWN layer heights below. So a bead may overhang by half of its width.
-It is also supported if both its sides are, as over a seam between two beads. A bead supported at both ends bridges a gap
-up to its own width.
+Below means against the build direction. A piece of a bead is supported if the ray from its midpoint meets earlier
+deposit, at its effective width, or, in the first layer, the ground at most REACH layer heights below. In later layers the
+ground may be at most DOWN layer heights below. A bead may thus overhang by half its width. A piece is also supported if
+both sides are supported, as over a seam between two beads. A bead supported at both ends bridges a gap of up to its
+width.
 """
 
 from __future__ import annotations
@@ -24,20 +24,22 @@ from ...types import Array, Index, Mask
 from .pieces import Pieces, cut_beads
 
 Ground = Callable[[Array, Array, Mask], Mask]
-Held = Callable[[Array, Index], Mask]  # places (n, 3) for pieces (n,): whether ground carries them
+Held = Callable[
+    [Array, Index], Mask
+]  # (points (n, 3), pieces (n,)) -> whether the ground supports them
 
 CODE = "UNSUPPORTED"
-REACH = 1.5  # layer heights that what carries a bead may be below it
-# layer heights that ground may be below beads of later layers: along slopes layers have steps of half of
-# one; with a whole one a layer is missing there
+REACH = 1.5  # layer heights; maximum depth of the support below a bead
+# layer heights; maximum depth of the ground below beads of later layers. Along slopes layers have
+# steps of half a layer height; a step of a whole layer height means that a layer is missing
 DOWN = 0.75
-LEVEL_WITH = 0.1  # layer heights; deposit no farther below than this is adjacent, not below
-GRACE = 0.05  # of the width that counts; pieces have places, and chords are not arcs
-PIECE = 0.25  # of the width; maximum length of a piece of a bead
-SIDE = 0.25  # of the width, from the middle of a bead to the middle of each half
-BACK = 1.5  # ratio to REACH of the arc along a bead beyond which it can support itself, as a spiral does
-MOST_NAMED = 10  # layers
-FIRST_ASKED = 8  # pieces about the place below that are asked before all
+LEVEL_WITH = 0.1  # layer heights; deposit at most this far below is adjacent, not below
+GRACE = 0.05  # fraction of the effective width; tolerance for sampling and chords
+PIECE = 0.25  # fraction of the width; maximum length of a piece of a bead
+SIDE = 0.25  # fraction of the width; distance from the centreline to the centre of each half
+BACK = 1.5  # times the distance to a possible support; minimum arc length after which a bead supports itself
+MOST_NAMED = 10  # maximum number of layers with an issue
+FIRST_ASKED = 8  # number of nearest pieces checked before all pieces
 PAIRS = 2_000_000  # pairs of pieces checked in one batch; bounds the memory
 
 
@@ -50,22 +52,21 @@ def find_unsupported(
 ) -> tuple[dict[int, float], list[Issue]]:
     """Return the unsupported length of the layers of a toolpath.
 
-    Time grows little faster than the number of pieces, memory in proportion.
+    Time grows slightly faster than the number of pieces, memory in proportion to it.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath in part coordinates.
     ground : Ground
-        Returns whether something other than deposit supports points (n, 3) with build
-        directions (n, 3); its last argument (n,) marks points in layers deposited on the
-        ground.
+        Returns whether anything other than deposit supports points (n, 3) with build
+        directions (n, 3). The last argument (n,) marks points in layers on the ground.
     is_first_carried : bool
-        Whether everything in the first layer of `numbers` is supported.
+        Whether the whole first layer of `numbers` is supported.
     lowest : (layers,) bool array
         Layers deposited on the ground.
     numbers : (k,) int array or None, optional
-        Layers to check, rising; None for every layer.
+        Layers to check, ascending; None for all layers.
 
     Returns
     -------
@@ -95,7 +96,7 @@ def find_unsupported(
 def _unsupported_at_a_side(
     pieces: Pieces, toolpath: Toolpath, is_on_ground: Held, rows: Index
 ) -> Index:
-    """The pieces of `rows` that are not supported at both of their sides."""
+    """Return the pieces of `rows` that are not supported on both sides."""
     open_sides = []
     for side in (SIDE, -SIDE):
         across = np.cross(pieces.build[rows], pieces.travel[rows])
@@ -108,14 +109,14 @@ def _unsupported_at_a_side(
 def _unsupported(
     pieces: Pieces, toolpath: Toolpath, is_on_ground: Held, some: Index, aside: Array | None = None
 ) -> Index:
-    """The pieces of `rows` that nothing supports, at their middles or offset by `aside` (n, 3) mm."""
+    """Return the unsupported pieces of `some`, at the midpoints or offset by `aside` (n, 3), mm."""
     height = toolpath.layer_height
     position = pieces.middle[some] if aside is None else pieces.middle[some] + aside
     open_ = np.arange(len(some))
     layer = pieces.layer[some]
     bounds = np.searchsorted(pieces.layer, np.arange(len(toolpath.layers) + 1))
     is_supported = np.zeros(len(some), dtype=bool)
-    # most are supported by the layer before: its nearest piece is tried first
+    # the previous layer supports most pieces, so its nearest piece is tried first
     order = np.argsort(layer, kind="stable")
     ends = np.searchsorted(layer[order], np.arange(len(toolpath.layers) + 1))
     for number in range(1, len(toolpath.layers)):
@@ -175,7 +176,7 @@ def _unsupported(
 
 
 def _chunks(tree: cKDTree, centre: Array, radius: float) -> Iterator[Index]:
-    """Chunks of the rows of centres with about PAIRS neighbours each."""
+    """Yield chunks of the rows of centres with about PAIRS pairs each."""
     sample = centre[:: max(1, len(centre) // 64)]
     dense = float(np.mean(tree.query_ball_point(sample, radius, return_length=True)))
     count = min(len(centre), 1 + int(dense * len(centre) / PAIRS))
@@ -183,7 +184,7 @@ def _chunks(tree: cKDTree, centre: Array, radius: float) -> Iterator[Index]:
 
 
 def _earlier(pieces: Pieces, rows: Index, other_rows: Index, toolpath: Toolpath) -> Mask:
-    """Whether other pieces are earlier, and not neighbours in the same layer; a bead may support itself, as spirals do."""
+    """Whether other pieces are earlier and not in an adjacent bead of the layer; a spiral may support itself."""
     back = BACK * np.hypot(0.5 * pieces.width[rows], REACH * toolpath.layer_height)
     same = pieces.bead[rows] == pieces.bead[other_rows]
     is_earlier = np.where(
@@ -199,7 +200,7 @@ def _earlier(pieces: Pieces, rows: Index, other_rows: Index, toolpath: Toolpath)
 def _below(
     pieces: Pieces, rows: Index, points: Array, other_rows: Index, toolpath: Toolpath
 ) -> Mask:
-    """Whether other pieces are below points (n, 3) of pieces; beads that close gaps need deposit near them on any side."""
+    """Whether other pieces are below points (n, 3) of pieces; for closing beads, near them on any side."""
     gap = points - pieces.middle[other_rows]
     build = pieces.build[rows]
     square = np.einsum("ij,ij->i", gap, gap)
@@ -215,7 +216,7 @@ def _below(
 
 @dataclass(frozen=True)
 class _Run:
-    """Pieces in a row that nothing carries: where they begin, and their length, mm."""
+    """A run of consecutive unsupported pieces: start and length, mm."""
 
     layer: int
     bead: int
@@ -224,7 +225,7 @@ class _Run:
 
 
 def _runs(pieces: Pieces, free: Mask, toolpath: Toolpath) -> Iterator[_Run]:
-    """The unsupported runs of beads, without bridged gaps and ends that overhang by at most half a width."""
+    """Yield the unsupported runs, except bridged gaps and ends that overhang by at most half a width."""
     marked = np.unique(pieces.bead[free])
     low = np.searchsorted(pieces.bead, marked)
     high = np.searchsorted(pieces.bead, marked, side="right")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Void and double deposit of plane layers: their sections and beads on a raster, as shares, places and issues."""
+"""Voids and over-deposition of planar layers, measured on a raster of section and beads."""
 
 from __future__ import annotations
 
@@ -21,15 +21,15 @@ from ...toolpath import Bead, Layer, Toolpath
 from ...types import Array, Integers, Mask
 
 CODE = "VOIDS"
-PIXELS_ACROSS = 16  # of a nominal bead
-MOST_PIXELS = 4e6  # of a layer; larger sections get larger pixels
-KEPT_PICTURES = 4  # of layers, for equal ones
-GRID_MM = 1e-4  # mm; layers whose borders and beads differ by less are equal
-CANDIDATES = 8  # the largest pieces of void or double deposit, one of which has the largest circle
+PIXELS_ACROSS = 16  # pixels per nominal bead width
+MOST_PIXELS = 4e6  # maximum number of pixels of a layer; larger sections get larger pixels
+KEPT_PICTURES = 4  # number of cached layer rasters, for equal layers
+GRID_MM = 1e-4  # mm; rounding of borders and beads in the comparison of layers
+CANDIDATES = 8  # number of largest voids or overlaps in which the largest circle is searched
 
 
 class Place(NamedTuple):
-    """The largest circle in void or double deposit: its middle (3,) in part coordinates and diameter, mm."""
+    """Largest circle in a void or overlap: centre (3,) in part coordinates and diameter, mm."""
 
     point: Array
     size: float
@@ -39,8 +39,8 @@ class Place(NamedTuple):
 class Picture:
     """A section and its beads on a raster; masks are (rows, columns).
 
-    inside: the section. reached: its part that the narrowest bead reaches. covered: with deposit. depth: how many
-    times deposit is there. deposit: mm^2, and single: mm^2 that this covers.
+    inside: pixels in the section. reached: pixels of the section that the narrowest bead can reach. covered: pixels with
+    deposit. depth: number of beads over each pixel. deposit: total bead area, mm^2. single: area covered by beads, mm^2.
     """
 
     section: Section
@@ -54,19 +54,19 @@ class Picture:
 
     @property
     def void(self) -> Mask:
-        """Where a bead is missing."""
+        """Pixels without a bead; none in a sparse section."""
         if self.section.is_sparse:
             return np.zeros_like(self.inside)
         return np.asarray(self.reached & ~self.covered)
 
     @property
     def double(self) -> Mask:
-        """Return the pixels where deposit overlaps."""
+        """Pixels where beads overlap."""
         return np.asarray(self.depth > 1)
 
     @cached_property
     def coverage(self) -> Coverage:
-        """The shares, without places."""
+        """Area fractions, without locations."""
         area = self.raster.pixel**2 * np.count_nonzero(self.reached)
         void, outside = (
             self.raster.pixel**2 * np.count_nonzero(mask)
@@ -79,7 +79,7 @@ class Picture:
         )
 
     def find_places(self) -> Coverage:
-        """The shares and the worst places."""
+        """Return the area fractions with the worst locations."""
         void, over = self._largest(self.void), self._largest(self.double)
         coverage = self.coverage
         if void is not None:
@@ -89,8 +89,8 @@ class Picture:
         return coverage
 
     def _largest(self, mask: Mask) -> Place | None:
-        """The largest circle in a mask; None in an empty one."""
-        from scipy import ndimage  # slow to import, and most layers need no places
+        """Return the largest circle in a mask; None for an empty mask."""
+        from scipy import ndimage  # slow to import, and most layers need no locations
 
         labels, count = ndimage.label(mask)
         if not count:
@@ -111,21 +111,21 @@ class Picture:
 
 
 def picture(toolpath: Toolpath, number: int, across: float = PIXELS_ACROSS) -> Picture | None:
-    """A layer on a raster of pixels.
+    """Draw a layer on a raster.
 
     Parameters
     ----------
     toolpath : Toolpath
-        Its layers have sections where these are known.
+        Toolpath whose layers have sections, if known.
     number : int
-        Number of the layer, from 0.
+        Index of the layer, from 0.
     across : float
-        Pixels to a nominal bead width. A large layer has larger pixels, to keep the raster below a limit.
+        Pixels per nominal bead width. A large layer has larger pixels, to limit the raster.
 
     Returns
     -------
     Picture or None
-        What is inside, reached and covered; None where the section is not known or has no area.
+        The raster; None if the section is unknown or has no area.
     """
     layer = toolpath.layers[number]
     one = toolpath.features[layer.feature].values if toolpath.features else toolpath
@@ -133,7 +133,7 @@ def picture(toolpath: Toolpath, number: int, across: float = PIXELS_ACROSS) -> P
 
 
 def _picture(layer: Layer, section: Section, toolpath: Toolpath, across: float) -> Picture | None:
-    """The same with the data of its feature; None too where the section has no area."""
+    """Draw a layer with the toolpath of its feature; None if the section has no area."""
     width = toolpath.bead_width or section.spacing
     return draw(section, strokes(layer, section, toolpath), width, across)
 
@@ -146,18 +146,18 @@ def draw(
     Parameters
     ----------
     section : Section
-        The section; where neighbours overlap as its spacing plans, nothing is double.
+        The section. Overlap of adjacent beads planned by its spacing does not count.
     wide : sequence of Stroke
-        Beads on its plane with their effective widths, mm.
+        Beads on the section's plane with effective widths, mm.
     width : float
         Nominal width of a bead, mm.
     across : float
-        Pixels to a nominal bead width.
+        Pixels per nominal bead width.
 
     Returns
     -------
     Picture or None
-        None where the section has no area.
+        The raster; None if the section has no area.
     """
     share = min(section.spacing / width, 1.0)
     narrow = [stroke._replace(widths=share * stroke.widths) for stroke in wide]
@@ -181,7 +181,10 @@ def draw(
 
 
 def _reached(section: Section, raster: Raster, inside: Mask, width: float) -> Mask:
-    """What of a section a bead of a width, mm, covers without leaving it; all of it where it covers nothing."""
+    """Return the pixels of a section that a bead of a width, mm, can cover without leaving it.
+
+    If the bead fits nowhere, return the whole section.
+    """
     half, error = 0.5 * width, 0.25 * raster.pixel
     middles = grow_regions(regions(section.loops), -half, error)
     opened = Section(
@@ -196,22 +199,22 @@ def _reached(section: Section, raster: Raster, inside: Mask, width: float) -> Ma
 
 
 def strokes(layer: Layer, section: Section, toolpath: Toolpath) -> list[Stroke]:
-    """The beads of a layer on the plane of its section.
+    """Project the beads of a layer onto the plane of its section.
 
     Parameters
     ----------
     layer : Layer
         Beads in part coordinates, mm.
     section : Section
-        The plane, and the bead width where the toolpath has none.
+        The plane, and the bead width if the toolpath has none.
     toolpath : Toolpath
         Bead width, layer height and bead model of the feature.
 
     Returns
     -------
     list of Stroke
-        Points (n, 2) mm without repeats, and effective widths (n - 1,) mm: volume / length / layer height. Beads without
-        length are left out.
+        Points (n, 2), mm, without repeats, and effective widths (n - 1,), mm: volume / length / layer height. Beads
+        without length are omitted.
     """
     result = []
     for bead in layer.beads:
@@ -224,7 +227,10 @@ def strokes(layer: Layer, section: Section, toolpath: Toolpath) -> list[Stroke]:
 
 
 def _effective_widths(bead: Bead, toolpath: Toolpath, section: Section) -> Array:
-    """(n,) mm at the points of a bead. Without a bead model, and in a layer of uneven height, beads are as high as the layer."""
+    """Return the effective widths at the points of a bead, (n,) mm.
+
+    Without a bead model, and in a layer of uneven height, beads are assumed to be as high as the layer.
+    """
     nominal = toolpath.bead_width or section.spacing
     width = np.full(len(bead), nominal) if bead.width is None else bead.width
     if bead.height is None or toolpath.law is None or toolpath.checks.uneven is not None:
@@ -233,15 +239,18 @@ def _effective_widths(bead: Bead, toolpath: Toolpath, section: Section) -> Array
 
 
 def measure(toolpath: Toolpath, max_void: float) -> Toolpath:
-    """The toolpath of one feature with the infill of its layers, and issues for those with more void than a share. The layers
-    with most void and most double deposit, and those with an issue, have places."""
+    """Return the toolpath of one feature with the coverage of its layers.
+
+    Layers whose void fraction exceeds `max_void` get an issue. These layers and the layers of maximum void and maximum
+    overlap have locations.
+    """
     coverages = _measure(toolpath)
     if not coverages:
         return toolpath
     placed = {number for number, coverage in coverages.items() if coverage.void > max_void} | set(
         worst_layers(coverages)
     )
-    pictures: dict[bytes, Picture] = {}  # the last few: of equal layers in turn
+    pictures: dict[bytes, Picture] = {}  # recent rasters, because equal layers often alternate
     for number in sorted(placed):
         section = toolpath.layers[number].section
         assert section is not None
@@ -261,7 +270,7 @@ def measure(toolpath: Toolpath, max_void: float) -> Toolpath:
 
 
 def _measure(toolpath: Toolpath) -> dict[int, Coverage]:
-    """The infill of each layer with a section, by its number; equal layers are measured once."""
+    """Return the coverage of each layer with a section, by index; equal layers are measured once."""
     coverages: dict[int, Coverage] = {}
     measured: dict[bytes, Coverage | None] = {}
     for number, layer in enumerate(toolpath.layers):
@@ -278,7 +287,7 @@ def _measure(toolpath: Toolpath) -> dict[int, Coverage]:
 
 
 def _key(layer: Layer, section: Section, toolpath: Toolpath) -> bytes:
-    """What equal layers have in common."""
+    """Return a key that equal layers share."""
     arrays = [
         *section.loops,
         *(array for stroke in strokes(layer, section, toolpath) for array in stroke),
@@ -289,7 +298,7 @@ def _key(layer: Layer, section: Section, toolpath: Toolpath) -> bytes:
 
 
 def worst_layers(coverages: dict[int, Coverage]) -> tuple[int, ...]:
-    """The layers with most void and with most double deposit."""
+    """Return the layers of maximum void and of maximum overlap."""
     return tuple(
         max(coverages, key=lambda number: np.nan_to_num(getattr(coverages[number], name)))
         for name in ("void", "over")
@@ -298,7 +307,7 @@ def worst_layers(coverages: dict[int, Coverage]) -> tuple[int, ...]:
 
 
 def _issues(layers: Sequence[Layer], max_void: float) -> list[Issue]:
-    """A warning for each layer with beads and more void than a share: its largest place, and what helps."""
+    """Return a warning for each layer with beads whose void fraction exceeds `max_void`."""
     issues = []
     for number, layer in enumerate(layers):
         coverage = layer.coverage
@@ -319,7 +328,7 @@ def _issues(layers: Sequence[Layer], max_void: float) -> list[Issue]:
 
 
 def as_dict(toolpath: Toolpath) -> dict[str, Any] | None:
-    """The key `infill` of report.json; None where no layer was measured."""
+    """Return the value of the key `infill` in report.json; None if no layer was measured."""
     coverages = {
         number: layer.coverage
         for number, layer in enumerate(toolpath.layers)
@@ -338,7 +347,7 @@ def as_dict(toolpath: Toolpath) -> dict[str, Any] | None:
 
 
 def _summary(coverages: dict[int, Coverage], name: str) -> dict[str, Any]:
-    """Median and worst share of the layers, with the worst layer, and its largest place."""
+    """Return median and maximum fraction over the layers, with the worst layer and its worst location."""
     shares = {
         number: share
         for number, coverage in coverages.items()

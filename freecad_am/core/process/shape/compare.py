@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A predicted deposit against the part: how far it reaches beyond the faces, and whether that is enough."""
+"""Comparison of a predicted deposit with the part: allowance on the faces, and whether it is sufficient."""
 
 from __future__ import annotations
 
@@ -19,18 +19,20 @@ from ...types import Array, Index, Mask
 from .laying import PredictedDeposit
 from .strands import Grid
 
-PLACES = 20_000  # about
+PLACES = 20_000  # approximate number of sample points
 LEAF_SIZE = 2 * PLACES
-FACING = 0.99  # cosine between faces that touch
-CONTACT = 0.05  # mm; maximum distance between such faces
-SPACINGS = 1.0  # of the sampling distance, between places of the same face
+FACING = 0.99  # minimum cosine between opposite faces in contact
+CONTACT = 0.05  # mm; maximum distance between faces in contact
+SPACINGS = 1.0  # sampling distances; maximum distance between points of faces in contact
 OUTSIDE, BOTH = "outside", "both"
 
 
 @dataclass(frozen=True, eq=False)
 class Faces:
-    """Sampled faces of a part. points: (n, 3) mm. normals: (n, 3) outward unit vectors. areas: (n,) mm2 that each represents. open:
-    (n,) faces that enclose nothing: both sides count, and the side with less.
+    """Sampled faces of a part.
+
+    points: (n, 3) mm. normals: (n, 3) outward unit vectors. areas: (n,) area that each point represents, mm2. open: (n,)
+    whether the face belongs to an open shell; the side with less allowance then counts.
     """
 
     points: Array
@@ -42,21 +44,21 @@ class Faces:
         return len(self.points)
 
     def rows(self, mask: Mask) -> Faces:
-        """The rows of a mask."""
+        """Return the faces selected by a mask."""
         return Faces(self.points[mask], self.normals[mask], self.areas[mask], self.open[mask])
 
 
 def faces(vertices: Array, triangles: Index, side: str = OUTSIDE) -> Faces:
-    """Return points evenly spread over triangles.
+    """Sample triangles with evenly distributed points.
 
     Parameters
     ----------
     vertices : (k, 3) array
         Vertices, mm.
     triangles : (m, 3) int array
-        Counter-clockwise seen from outside.
+        Vertex indices, counter-clockwise seen from outside.
     side : str, optional
-        OUTSIDE for a solid, BOTH for faces that enclose nothing.
+        OUTSIDE for a solid, BOTH for an open shell.
 
     Returns
     -------
@@ -70,7 +72,7 @@ def faces(vertices: Array, triangles: Index, side: str = OUTSIDE) -> Faces:
     corners, vectors, twice = corners[is_proper], vectors[is_proper], twice[is_proper]
     points, triangle = divide_triangles(
         corners, float(np.sqrt(2.0 * twice.sum() / PLACES))
-    )  # halves of squares
+    )  # triangles are half squares
     areas = 0.5 * twice[triangle] / np.bincount(triangle, minlength=len(corners))[triangle]
     return Faces(
         points, vectors[triangle] / twice[triangle, None], areas, np.full(len(points), side == BOTH)
@@ -78,8 +80,9 @@ def faces(vertices: Array, triangles: Index, side: str = OUTSIDE) -> Faces:
 
 
 def thin_faces(dense: Faces) -> Faces:
-    """Reduce faces with many more places than PLACES to places of about equal area. Slivers, whose normals are unreliable,
-    disappear.
+    """Reduce faces with far more than PLACES points to points of about equal area.
+
+    Slivers, whose normals are unreliable, disappear.
     """
     if len(dense) <= LEAF_SIZE:
         return dense
@@ -91,8 +94,10 @@ def thin_faces(dense: Faces) -> Faces:
 
 
 def uncovered_faces(parts: Sequence[Faces]) -> Faces:
-    """Faces of several parts as one, without contact areas between parts, where nothing is machined. A place is covered if the
-    nearest place of another part is in the same plane, faces the other way, and is no farther than the sampling distance.
+    """Join the faces of several parts, without the contact areas between parts, which are not machined.
+
+    A point is in contact if the nearest point of another part is in the same plane, faces the opposite way, and is
+    within the sampling distance.
     """
     free_faces = []
     for k, part in enumerate(parts):
@@ -112,7 +117,7 @@ def uncovered_faces(parts: Sequence[Faces]) -> Faces:
 
 
 def join_faces(parts: Sequence[Faces]) -> Faces:
-    """Faces of several parts as one."""
+    """Join the faces of several parts."""
     return Faces(
         *(
             np.concatenate([getattr(part, name) for part in parts])
@@ -122,24 +127,26 @@ def join_faces(parts: Sequence[Faces]) -> Faces:
 
 
 CODE, DRIFT = "ALLOWANCE", "LAYER_DRIFT"
-MAX_DRIFT_SHARE = 0.5  # of a layer height: layers that end farther off than this are reported
-KNOWN = 0.25  # of a cube's edge, to which a surface is known
-HALF = 0.5  # of a cube: the surface is where cubes are half full
-STEP = 0.5  # of a cube's edge, between places that are asked along a normal
-REACH = 2.0  # widths and layer heights that the deposit is looked for, outwards and inwards
-STANDS = 0.25  # layer heights above the start of a first layer, up to which a downward face is on the ground
-DOWN = 0.5  # cosine against the build direction of such a face
-KNOWN_WIDTHS = 1.5  # bead widths from a first layer; beyond them the ground is unknown
+MAX_DRIFT_SHARE = 0.5  # layer heights; maximum height error of a layer that is not reported
+KNOWN = 0.25  # cube edges; accuracy of the surface
+HALF = 0.5  # fill fraction of a cube on the surface
+STEP = 0.5  # cube edges; distance between samples along a normal
+REACH = 2.0  # bead widths plus layer heights; search range for the deposit, outwards and inwards
+STANDS = (
+    0.25  # layer heights; maximum height above the start of a first layer of a face on the ground
+)
+DOWN = 0.5  # minimum cosine between the normal of such a face and the downward direction
+KNOWN_WIDTHS = 1.5  # bead widths; distance from a first layer within which the ground is known
 AT_ONCE = 4_000
 
 
 @dataclass(frozen=True, eq=False)
 class Compared:
-    """The deposit against faces that must be covered.
+    """Comparison of the deposit with faces that must be covered.
 
-    deviation: (n,) mm that the deposit reaches beyond them along their normals, negative where the part sticks out; for open
-    faces on the side with less. bare: (n,) no deposit within `reach` mm, which limits deviations. piece_rows: (n,) the nearest piece
-    of the deposit.
+    deviation: (n,) distance that the deposit reaches beyond the faces along the normals, mm, negative where the part
+    protrudes; for open shells, on the side with less deposit. bare: (n,) where no deposit is within `reach` mm, the
+    limit of deviations. piece_rows: (n,) nearest piece of the deposit.
     """
 
     faces: Faces
@@ -155,14 +162,14 @@ class Compared:
         Returns
         -------
         (n, 3) array
-            mm.
+            Points, mm.
         """
         points: Array = self.faces.points + self.deviation[:, None] * self.faces.normals
         return points
 
 
 def compare_deposit(deposit: PredictedDeposit, faces: Faces) -> Compared:
-    """The deposit from all faces, except faces that the part stands on and faces below the first layer."""
+    """Compare the deposit with all faces, except faces on the ground and faces below the first layer."""
     pieces = deposit.pieces
     covered = faces.rows(_to_be_covered(deposit, faces))
     reach = REACH * (float(pieces.width.max()) + float(pieces.height.max()))
@@ -184,7 +191,7 @@ def compare_deposit(deposit: PredictedDeposit, faces: Faces) -> Compared:
 
 
 def _to_be_covered(deposit: PredictedDeposit, faces: Faces) -> Mask:
-    """Which points are not below a first layer, nor on faces that share its ground."""
+    """Return which points are neither below a first layer nor on faces on the layer's ground."""
     begins = deposit.pieces.rows(np.flatnonzero(deposit.pieces.is_first))
     distance, nearest = cKDTree(begins.middle).query(faces.points)
     build, height = begins.build[nearest], begins.height[nearest]
@@ -200,8 +207,10 @@ def _to_be_covered(deposit: PredictedDeposit, faces: Faces) -> Mask:
 
 
 def _reach_distances(grid: Grid, points: Array, normals: Array, reach: float) -> tuple[Array, Mask]:
-    """How far (n,) mm the deposit reaches from points (n, 3) along unit normals, to its first end; and whether none is within
-    `reach` mm. Negative at a point without deposit: the distance to it, inwards along the normal or nearer aside.
+    """Return how far (n,) mm the deposit extends from points (n, 3) along unit normals.
+
+    At a point without deposit the value is negative: the distance to the deposit, inwards along the normal or to a
+    nearer side. Also returns where no deposit is within `reach` mm.
     """
     count = int(np.ceil(reach / (STEP * grid.edge)))
     steps = np.linspace(0.0, reach, count + 1)
@@ -226,7 +235,7 @@ def _reach_distances(grid: Grid, points: Array, normals: Array, reach: float) ->
 def _first_change(
     grid: Grid, points: Array, directions: Array, steps: Array, inside: Mask
 ) -> Array:
-    """Distance (n,) mm along ways at which the deposit begins or ends; the last step where it does neither."""
+    """Return the distances (n,) along rays at which the deposit first begins or ends, mm, else the last step."""
     length = np.full(len(points), steps[-1])
     remaining = np.arange(len(points))
     previous = grid.fill_at(points)
@@ -243,7 +252,7 @@ def _first_change(
 
 
 def figures(deposit: PredictedDeposit, comparison: Compared, allowance: float) -> PredictedShape:
-    """Return the figures of a comparison.
+    """Return the statistics of a comparison.
 
     Parameters
     ----------
@@ -257,12 +266,12 @@ def figures(deposit: PredictedDeposit, comparison: Compared, allowance: float) -
     Returns
     -------
     PredictedShape
-        The figures.
+        The statistics.
 
     Raises
     ------
     ValueError
-        Without faces to be covered.
+        If there are no faces to cover.
     """
     if not len(comparison.faces):
         raise ValueError("there are no faces to be covered")
@@ -306,21 +315,20 @@ def issues(
     Parameters
     ----------
     shape : PredictedShape
-        The figures of the comparison.
+        The statistics of the comparison.
     layer_heights : (layers,) array
         Planned heights, mm.
     is_first : (layers,) bool array
-        Layers with nothing of their feature below.
+        Layers without a layer of their feature below.
     remedy : str
-        The remedy for a deposit that is too small, with {} for the missing mm.
+        Remedy for a deposit that is too small, with {} for the missing mm.
     courses : (layers,) array or None, optional
-        Turns stacked within a layer, 1 except for spirals; None for 1.
+        Number of turns stacked within a layer, 1 except for spirals; None for 1.
 
     Returns
     -------
     tuple of Issue
-        Layers higher or lower than planned, and a part not inside the predicted deposit by
-        the allowance.
+        Issues of layers higher or lower than planned, and of insufficient allowance.
     """
     courses = np.ones(len(layer_heights)) if courses is None else courses
     drifts, low = _drift(shape.drift, layer_heights, is_first, courses)
@@ -333,7 +341,7 @@ def issues(
         text = Text("the part protrudes by {:.3g} mm", -shape.least)
     else:
         text = Text("{:.3g} mm are left to machine", shape.least)
-    # if layers come out low, more is needed everywhere
+    # if layers are too low, more deposit is needed everywhere
     remedy = (
         "First set strategy.layer_height to the predicted height"
         if low
@@ -364,7 +372,10 @@ def issues(
 def _drift(
     drift: Array, layer_heights: Array, is_first: Mask, courses: Array
 ) -> tuple[tuple[Issue, ...], bool]:
-    """The issue of layers that end farther off the start of the next than MAX_DRIFT_SHARE of their height, at the worst, and whether it is below."""
+    """Report the layer whose top deviates most from the start of the next layer, if by more than MAX_DRIFT_SHARE.
+
+    Also returns whether this top is too low.
+    """
     off = np.nan_to_num(drift) / layer_heights
     worst = int(np.abs(off).argmax()) if len(off) else 0
     if not len(off) or abs(off[worst]) <= MAX_DRIFT_SHARE:
@@ -391,15 +402,15 @@ def _drift(
     ), bool(drift[worst] < 0.0)
 
 
-MOST_PLACES = 3000  # that are kept
-NAMED = 5  # worst places
-MIN_SEPARATION_SHARE = 0.1  # of the part's size, the least distance between two named places
-STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)  # widths of a histogram's bars, times powers of ten
-BARS = 40  # of a histogram, about
+MOST_PLACES = 3000  # maximum number of points kept in the map
+NAMED = 5  # number of worst points that are named
+MIN_SEPARATION_SHARE = 0.1  # fraction of the part size; minimum distance between two named points
+STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)  # bar widths of a histogram, times powers of ten
+BARS = 40  # approximate number of histogram bars
 
 
 def deviation_map(deposit: PredictedDeposit, comparison: Compared, layers: int) -> DeviationMap:
-    """Return the map of a comparison: regularly sampled places, the worst first.
+    """Return the deviation map of a comparison: evenly sampled points, worst first.
 
     Parameters
     ----------
@@ -413,7 +424,7 @@ def deviation_map(deposit: PredictedDeposit, comparison: Compared, layers: int) 
     Returns
     -------
     DeviationMap
-        The map with a histogram and figures by layer.
+        The map with a histogram and statistics by layer.
     """
     named = _worst(comparison.faces.points, comparison.deviation)
     count = len(comparison.deviation)
@@ -444,12 +455,12 @@ def deviation_map(deposit: PredictedDeposit, comparison: Compared, layers: int) 
 
 
 def name_of(number: int) -> str:
-    """The name of the worst place of this number."""
+    """Return the letter that names a worst point."""
     return "ABCDEFGHIJ"[number]
 
 
 def _worst(points: Array, deviation: Array) -> Index:
-    """Rows of the places with the least, each away from those before."""
+    """Return the rows of the points of least deviation, separated from each other."""
     separation = MIN_SEPARATION_SHARE * float(np.linalg.norm(np.ptp(points, axis=0)))
     remaining: Index = np.argsort(deviation, kind="stable")
     rows: list[int] = []
@@ -462,7 +473,7 @@ def _worst(points: Array, deviation: Array) -> Index:
 
 
 def _histogram(deviation: Array, areas: Array) -> tuple[Array, Array]:
-    """Edges (k + 1,) mm of bars, and the share (k,) of the area in each; 0 is an edge."""
+    """Return the bar edges (k + 1,), mm, including 0, and the area fraction (k,) in each bar."""
     low, high = float(deviation.min()), float(deviation.max())
     width = round_step(max(high - low, 1e-6) / BARS, STEPS)
     edges = width * np.arange(np.floor(low / width), np.floor(high / width) + 2)
@@ -470,7 +481,7 @@ def _histogram(deviation: Array, areas: Array) -> tuple[Array, Array]:
 
 
 def _by_layer(deviation: Array, areas: Array, layer: Index, layers: int) -> Array:
-    """Least and mean (layers, 2) mm at the places nearest to each layer, NaN without any."""
+    """Return minimum and mean deviation (layers, 2), mm, at the points nearest to each layer; NaN without points."""
     lowest, area = np.full(layers, np.inf), np.bincount(layer, areas, layers)
     np.minimum.at(lowest, layer, deviation)
     with np.errstate(invalid="ignore", divide="ignore"):

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The deposit predicted layer by layer: fed material fills the room under the surface of its bead.
+"""Layer-by-layer prediction of the deposit: fed material fills the space below the surface of its bead.
 
-An isolated bead has the section of a parabola as wide as it and as high as its feed makes it. Over the deposit below, that
-surface rises until the room under it equals the fed volume: over a bead of the same width it moves up by the layer's share,
-and the wall's sides are straight. Towards a neighbour a bead ends halfway, and rises by the volume it would have deposited on
-it: the area is kept. Up to a distance of 0.738 widths the surface between two is flat, beyond it falls into a valley (Ding,
-Pan, Cuiuri, Li 2015, tangent overlapping); beads that count as wide as their spacing are taken at that distance. Fed material
-spreads over a bead's width along and across, as a melt levels, before it finds its height.
+The cross-section of an isolated bead is a parabola. The bead width and the fed volume determine its height. Over existing
+deposit, the surface rises until the volume below it equals the fed volume. Over a bead of the same width, it rises by the
+layer height, and the sides of the wall are straight.
+
+A bead ends halfway to an adjacent bead and rises by the volume that it would have deposited there, so that the area is
+kept. Up to a spacing of 0.738 widths the surface between two beads is flat; beyond, it has a valley (Ding, Pan, Cuiuri, Li
+2015, tangent overlapping model). Beads that count as wide as their spacing are assumed to have this spacing. As a melt
+levels, fed material spreads over a bead width along and across the bead before its height is determined.
 """
 
 from __future__ import annotations
@@ -28,21 +30,22 @@ from .strands import Grid, Strands, join_strands, strands
 
 STEP = 1.0 / np.sqrt(
     3.0
-)  # of a cube's edge: a lattice of this step has a point in every cube, in any orientation
-SAMPLES = 1_500_000  # of such lattices made at once; bounds the memory
+)  # cube edges; a lattice of this step has a point in every cube, in any orientation
+SAMPLES = 1_500_000  # number of lattice points processed at once; bounds the memory
 FULL_SHARE = 1.0 - 1e-9
-BRIDGED = 1.25  # widths: a melt closes the gap between two beads that would be as wide as this
+BRIDGED = 1.25  # bead widths; a melt closes the gap between beads that would touch at this width
 
 
 @dataclass(frozen=True, eq=False)
 class Footprint:
-    """k cubes of a layer.
+    """Cubes (k) of a layer, with the pieces that fill them.
 
-    cubes: (k,) indices in the grid. piece_rows: (k,) the nearest piece; other_piece: (k,) the piece of the adjacent bead, or the
-    same without one, and share: (k,) how much of the cube is on the nearest piece's side of the border between. up: (k,) mm of the
-    middle of the cube along the piece's build direction, from the path; aside: (k,) mm from the middle of the bead, positive to
-    its left. cover: (k,) share of the cube that is within the beads' widths. pieces: (n, k) share of each cube that is on
-    each piece, of the two nearest along a bead too, so that cubes and pieces of about a length do not beat.
+    cubes: (k,) indices in the grid. piece_rows: (k,) nearest piece. other_piece: (k,) nearest piece of an adjacent bead,
+    or the nearest piece if there is none. share: (k,) fraction of the cube on the nearest piece's side of the border
+    between the two. up: (k,) height of the cube's centre above the path, along the piece's build direction, mm. aside:
+    (k,) distance from the bead's centreline, positive to the left, mm. cover: (k,) fraction of the cube within the bead
+    widths. pieces: (n, k) fraction of each cube that belongs to each piece. Along a bead it is split between the two
+    nearest pieces, to avoid a beat between cubes and pieces of similar length.
     """
 
     cubes: Index
@@ -95,7 +98,7 @@ def footprint(grid: Grid, pieces: Strands, low: Array, high: Array) -> Footprint
     cubes, piece_rows, up, aside, along, off = (
         np.concatenate(columns) for columns in zip(*candidates, strict=True)
     )
-    # the nearest first, measured by the width; ties go to the earlier piece
+    # nearest piece first, relative to the width; ties go to the earlier piece
     order = np.lexsort((piece_rows, off / pieces.width[piece_rows], cubes))
     cubes, piece_rows = cubes[order], piece_rows[order]
     up, aside, along, off = up[order], aside[order], along[order], off[order]
@@ -110,11 +113,11 @@ def footprint(grid: Grid, pieces: Strands, low: Array, high: Array) -> Footprint
     )
     other_rows = other_rows[
         np.sort(np.unique(cube_row[other_rows], return_index=True)[1])
-    ]  # of each cube the nearest one of another bead
+    ]  # nearest piece of another bead for each cube
     cover, second, share = alone[begins], piece_rows[begins], np.ones(len(begins))
     mine = cube_row[other_rows]
     second[mine] = piece_rows[other_rows]
-    # between beads; bridged where both are near
+    # gaps between beads are bridged if both beads are near
     bridged_cover = np.minimum(bridged[other_rows], bridged[begins][mine])
     cover[mine] = np.maximum(
         cover[mine] + alone[other_rows],
@@ -155,8 +158,10 @@ def footprint(grid: Grid, pieces: Strands, low: Array, high: Array) -> Footprint
 def _along_bead(
     pieces: Strands, piece_rows: Index, along: Array, edge: float
 ) -> tuple[tuple[Index, Array], tuple[Index, Array]]:
-    """The pieces (k,) of cubes `along` (k,) mm from their middles, and the next pieces of their beads on that side, each with its
-    share (k,) of the cube. edge: mm of a cube.
+    """Split cubes between the nearest piece and the next piece along the bead.
+
+    along: (k,) position of the cubes relative to the piece's midpoint, mm. edge: cube edge, mm. Returns both pieces (k,)
+    with their fraction (k,) of the cube.
     """
     beside = np.clip(piece_rows + np.where(along < 0.0, -1, 1), 0, len(pieces) - 1)
     share = np.clip((np.abs(along) - 0.5 * pieces.length[piece_rows]) / edge + 0.5, 0.0, 0.5)
@@ -165,7 +170,7 @@ def _along_bead(
 
 
 def _chunks(grid: Grid, pieces: Strands, low: Array, high: Array) -> Iterator[Index]:
-    """Chunks of pieces; end pieces, which reach farther, are separate."""
+    """Yield chunks of pieces; end pieces reach farther and have separate chunks."""
     for rows in (np.flatnonzero(~pieces.ends), np.flatnonzero(pieces.ends)):
         if not len(rows):
             continue
@@ -174,7 +179,7 @@ def _chunks(grid: Grid, pieces: Strands, low: Array, high: Array) -> Iterator[In
 
 
 def _reach(grid: Grid, pieces: Strands, rows: Index) -> tuple[Array, Array]:
-    """How far (n,) mm cubes may be from the middle of pieces along them, and to a side."""
+    """Return the maximum distances (n,) of cubes from the midpoint of pieces, along and across the bead, mm."""
     beyond = np.where(pieces.ends[rows], 0.5 * pieces.width[rows] + 0.5 * grid.edge, grid.edge)
     return 0.5 * pieces.length[rows] + beyond, 0.5 * BRIDGED * pieces.width[rows] + 0.5 * grid.edge
 
@@ -191,7 +196,10 @@ def _counts(
 def _near(
     grid: Grid, pieces: Strands, rows: Index, low: Array, high: Array
 ) -> tuple[Index, Index, Array, Array, Array, Array]:
-    """Cubes near some pieces: cube, piece, mm above the path, aside, along, and from the line of the piece, for each pair."""
+    """Return pairs of cubes and near pieces.
+
+    For each pair: cube, piece, and the cube's distance above the path, aside, along, and from the line of the piece, mm.
+    """
     ahead, aside = _reach(grid, pieces, rows)
     counts = _counts(grid, pieces, rows, low, high)
     lattice = [np.linspace(-1.0, 1.0, count) for count in counts]
@@ -202,7 +210,7 @@ def _near(
     )
     middle = pieces.middle[rows] + (0.5 * (low + high)[rows])[:, None] * pieces.build[rows]
     cubes, corner, spans = [], [], []
-    for axis in range(3):  # one after the other: sums of few numbers along each way first
+    for axis in range(3):  # axis by axis, to add the few offsets of each direction first
         samples = middle[:, axis, None] + axes[0][:, axis, None] * lattice[0]
         samples = samples[:, :, None] + (axes[1][:, axis, None] * lattice[1])[:, None]
         samples = samples[:, :, :, None] + (axes[2][:, axis, None] * lattice[2])[:, None, None]
@@ -211,7 +219,7 @@ def _near(
         cube -= corner[-1][:, None]
         spans.append(int(cube.max()) + 1)
         cubes.append(cube)
-    # each cube once for each piece, marked in a box around the piece: quicker than sorting
+    # mark each cube once per piece in a box around the piece; this is faster than sorting
     box = spans[0] * spans[1] * spans[2]
     ticked = np.zeros(len(rows) * box, dtype=np.bool_)
     ticked[
@@ -240,30 +248,30 @@ def _near(
     )
 
 
-MAX_CUBES = 400_000  # cubes, about, of a deposit
+MAX_CUBES = 400_000  # approximate maximum number of cubes of a deposit
 MIN_EDGE_SHARE = (
-    0.5  # of a layer height, and half of this share of a bead's width: no cube is smaller
+    0.5  # minimum cube edge as a fraction of the layer height; half of it for the bead width
 )
-PARABOLA = 1.5  # height of a parabola over its mean
-FLAT_SPACING_WIDTHS = 0.738  # of a width: beads no farther apart have a flat surface between them
-NEIGHBOUR_WIDTHS = 1.05  # of the mean of two widths: beads farther apart have a gap between
-SAG = 0.5  # layer heights that a bead fills at most below its planned height
-LOOKED = 2.0  # layer heights above and below, the search range for the deposit under a layer
-SEARCH_HEIGHT = 1.0  # layer heights that a bead is looked for above where it should end
-AGAIN = 4  # times that more room is looked for, twice as much each time
-POOL = 1.5  # widths over which a melt levels itself
-ROUNDS = 10  # in which levels are found
-MIN_RISING_SHARE = 0.05  # of a piece's area that counts as rising at least
+PARABOLA = 1.5  # ratio of the height of a parabola to its mean height
+FLAT_SPACING_WIDTHS = 0.738  # bead widths; maximum spacing with a flat surface between beads
+NEIGHBOUR_WIDTHS = 1.05  # mean widths; maximum distance of adjacent beads without a gap
+SAG = 0.5  # layer heights; maximum depth that a bead fills below its planned base
+LOOKED = 2.0  # layer heights; search range above and below for the deposit below a layer
+SEARCH_HEIGHT = 1.0  # layer heights; search range above the planned top of a bead
+AGAIN = 4  # maximum number of searches, each with twice the range
+POOL = 1.5  # bead widths; distance over which a melt levels
+ROUNDS = 10  # iterations of the levels
+MIN_RISING_SHARE = 0.05  # minimum fraction of a piece's area that counts as rising
 HALVINGS = 60
-ROUNDING = 1e-9  # of a cube
-ROUNDING_SHARE = 1e-12  # of the volume fed to a layer; a smaller remainder is rounding
+ROUNDING = 1e-9  # relative rounding error of a cube
+ROUNDING_SHARE = 1e-12  # fraction of the volume fed to a layer; rounding error
 
 Report = Callable[[float, str], None]
 
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """What a feature deposits: its toolpath, the numbers (k,) of its layers in the whole, and its process."""
+    """A feature's toolpath, the indices (k,) of its layers in the whole toolpath, and its process."""
 
     toolpath: Toolpath
     numbers: Index
@@ -272,9 +280,11 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class PredictedDeposit:
-    """A deposit. grid: its filled cubes. fed, deposited: mm3 that the wire fed, and that found room. pieces: all strands, with level
-    (n,): mm of the surface in their middle above the path, and bead_in_layer (n,). drift: (layers,) mm by which the mean surface
-    of each layer is above the start of the next one, NaN without beads.
+    """A predicted deposit.
+
+    grid: filled cubes. pieces: all strands. level: (n,) height of the surface above the path at the pieces' midpoints,
+    mm. bead_in_layer: (n,) bead index. fed: wire volume, mm3. deposited: volume that fits into the grid, mm3. drift:
+    (layers,) height of each layer's mean surface above the start of the next layer, mm, NaN without beads.
     """
 
     grid: Grid
@@ -310,8 +320,8 @@ def feature_parts(toolpath: Toolpath, processes: Sequence[ProcessParameters]) ->
 def edge_of(pieces: Strands) -> float:
     """Return the edge of the cubes for a deposit of these strands, mm.
 
-    The cubes are small compared with layers and beads, as far as their number allows, and the
-    lowest layer is a whole number of cubes high.
+    The cubes are small compared with layers and beads, as far as the limit of their number allows.
+    The minimum layer height is a whole number of cubes.
     """
     height = float(pieces.height.min())
     fine = MIN_EDGE_SHARE * min(height, 0.5 * float(pieces.width.min()))
@@ -322,16 +332,16 @@ def edge_of(pieces: Strands) -> float:
 def predicted_deposit(
     parts: Sequence[Part], report: Report, edge: float | None = None
 ) -> PredictedDeposit:
-    """Predict the deposit of features, one after the other.
+    """Predict the deposit of features, feature by feature.
 
     Parameters
     ----------
     parts : sequence of Part
         The features.
     report : Report
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
     edge : float or None, optional
-        Edge of the cubes, mm; None for `edge_of`.
+        Edge of the cubes, mm; None uses `edge_of`.
 
     Returns
     -------
@@ -341,7 +351,7 @@ def predicted_deposit(
     Raises
     ------
     ValueError
-        If the width of the beads is unknown.
+        If the bead width is unknown.
     """
     feature_strands = [strands(part.toolpath, part.process) for part in parts]
     pieces = join_strands(feature_strands)
@@ -393,8 +403,9 @@ def predicted_deposit(
 
 
 def _spiral_drift(means: Sequence[float]) -> float:
-    """mm by which turns of a spiral end too high, at the worst one, relative to the mean. The turn that rises from the flat first
-    one and the flat last one, which overlap the rising turns, are reported as deposited twice.
+    """Return the maximum height error of a spiral's turns, mm, relative to the first rising turn.
+
+    The first and the last turn are excluded. They overlap the rising turns and are reported as over-deposition.
     """
     rising = np.array(means[1:-1])
     if not len(rising):
@@ -404,8 +415,9 @@ def _spiral_drift(means: Sequence[float]) -> float:
 
 
 def _base(grid: Grid, pieces: Strands, below: tuple[Strands, Array] | None) -> Array:
-    """mm (n,) of the deposit below the middles of pieces, above their path; 0 without any. The search runs from about the top of the
-    layer below down to its planned height, and a little farther.
+    """Return the height of the deposit below the pieces' midpoints, relative to the path, (n,) mm; 0 without deposit.
+
+    The search runs from above the top of the layer below to below its planned height.
     """
     base = np.zeros(len(pieces))
     if below is None or pieces.is_first.all():
@@ -435,8 +447,8 @@ def _base(grid: Grid, pieces: Strands, below: tuple[Strands, Array] | None) -> A
 class _Layer:
     """One layer during its deposit.
 
-    The heights are in mm above the path of the pieces: base (n,) of the deposit below them, level
-    (n,) of their surface, and rise (n,) of the middle of a surface above its mean.
+    Heights are in mm above the path of the pieces. base: (n,) top of the deposit below. level: (n,)
+    surface of the pieces. rise: (n,) height of the surface's crest above its mean.
     """
 
     def __init__(self, grid: Grid, pieces: Strands, base: Array) -> None:
@@ -445,14 +457,14 @@ class _Layer:
         free = _free_sides(pieces)
         self.fall = (
             PARABOLA * (area / pieces.width)[:, None] * free
-        )  # mm (n, 2) of a surface from its middle to each side
+        )  # mm (n, 2); drop of the surface from the crest to each side
         self.rise = self.fall.sum(axis=1) / 6.0
         base = np.where(pieces.is_first | (base == 0.0), base, base - self.rise)
         self.base = base
         self.level = base + pieces.height + self.rise
 
     def lay(self) -> float:
-        """Fill the grid with the volume fed to the layer; mm3 that found room."""
+        """Fill the grid with the volume fed to the layer; return the volume that fits, mm3."""
         high = self.base + self.rise + (1.0 + SEARCH_HEIGHT) * self.pieces.height
         fed = float(self.pieces.volume.sum())
         placed, volumes = 0.0, self.pieces.volume
@@ -466,13 +478,13 @@ class _Layer:
         return placed
 
     def _fill(self, volumes: Array, high: Array) -> float:
-        """Deposit volumes (n,) mm3 up to `high` (n,) mm at most; mm3 that found room."""
+        """Deposit volumes (n,), mm3, up to heights `high` (n,), mm; return the volume that fits, mm3."""
         grid, pieces = self.grid, self.pieces
         low = self.base - np.where(pieces.is_first, 0.0, pieces.height)
         cells = footprint(grid, pieces, low - grid.edge, high)
         fall = self._fall(cells)
         surface = cells.up + fall
-        # nothing below the surface of the layer below, except a little of its shortfall, never its underside
+        # fill only above the surface of the layer below and a part of its shortfall, never below the layer
         lowest = np.where(pieces.is_first, 0.0, self.base - pieces.height)
         sagged = self.base - SAG * pieces.height + self.rise
         bottom = np.where(
@@ -489,7 +501,7 @@ class _Layer:
             return full
 
         level = np.minimum(self._level(volumes, cells, filled, high), high)
-        # the remainder of rounding and pools is spread evenly
+        # distribute the remainder from rounding and pools evenly
         lowest, highest, cube = low.min() - high.max(), high.max() - low.min(), grid.edge**3
         total = float(volumes.sum())
         for _ in range(HALVINGS):
@@ -504,8 +516,9 @@ class _Layer:
     def _level(
         self, volumes: Array, cells: Footprint, filled: Callable[[Array], Array], high: Array
     ) -> Array:
-        """mm (n,) of the surface of pieces at which the filled volume equals the fed one, each averaged over its pool. filled: (k,)
-        shares of cubes at levels (n,).
+        """Return the surface heights (n,) of pieces at which filled and fed volume are equal, averaged over pools, mm.
+
+        filled: returns the filled fractions of cubes (k,) for heights (n,).
         """
         pieces, edge = self.pieces, self.grid.edge
         pool = _pools(pieces)
@@ -517,7 +530,7 @@ class _Layer:
 
         for _ in range(ROUNDS):
             volume = margin(level)
-            # what a surface a quarter of a cube higher and lower would hold more
+            # finite difference of the volume over a half cube gives the rising area
             area = (margin(level + 0.25 * edge) - margin(level - 0.25 * edge)) / (0.5 * edge)
             step = (pool @ (volumes - volume)) / np.maximum(
                 pool @ area, MIN_RISING_SHARE * (pool @ (pieces.width * pieces.length))
@@ -527,7 +540,7 @@ class _Layer:
         return levels
 
     def _fall(self, cells: Footprint) -> Array:
-        """mm (k,) that the surface of beads is lower at cubes than in their middle."""
+        """Return the drop of the bead surface from the crest to each cube, (k,) mm."""
         offset = 2.0 * cells.aside / self.pieces.width[cells.piece_rows]
         fall: Array = self.fall[cells.piece_rows, (cells.aside < 0.0).astype(np.intp)] * np.minimum(
             offset * offset, 1.0
@@ -536,8 +549,9 @@ class _Layer:
 
 
 def _free_sides(pieces: Strands) -> Array:
-    """(n, 2) share of a parabola's fall that the surface has to the left and to the right of pieces of a layer: 1 without an
-    adjacent bead, 0 next to a close one.
+    """Return the drop of the surface to the left and right of pieces, (n, 2), as a fraction of a parabola's drop.
+
+    It is 1 without an adjacent bead, 0 next to a close bead.
     """
     free = np.ones((len(pieces), 2))
     reach = NEIGHBOUR_WIDTHS * float(pieces.width.max())
@@ -564,7 +578,7 @@ def _free_sides(pieces: Strands) -> Array:
 
 
 def _pools(pieces: Strands) -> csr_matrix:
-    """(n, n) of how much each piece is in the pool of another: a melt levels itself."""
+    """Return the weights (n, n) of pieces in each other's pool, in which a melt levels."""
     pairs = (
         cKDTree(pieces.middle)
         .query_pairs(POOL * float(pieces.width.max()), output_type="ndarray")

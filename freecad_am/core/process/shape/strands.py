@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads as short straight pieces with the volume fed along them."""
+"""Beads divided into short straight pieces with their fed volume."""
 
 from __future__ import annotations
 
@@ -15,27 +15,29 @@ from ...types import Array, Index, Mask
 from ..deposit.pieces import cut_beads, join_pieces
 from ..deposit.spacing import is_spiral, turns_of
 
-SIDE = 8  # cubes along a block
+SIDE = 8  # cubes along the edge of a block
 CUBES = SIDE**3
-_MIDDLE = 1 << 20  # numbers of blocks along an axis, on either side of the origin
+_MIDDLE = 1 << 20  # maximum number of blocks along an axis on either side of the origin
 
 
 class Grid:
-    """Cubes of an edge, mm, with a corner of one cube in the origin. filled: (blocks * CUBES,) shares of the cubes, by the indices
-    of `indices_of`, which do not change.
+    """Sparse grid of cubes with a given edge, mm; the origin is a corner of a cube.
+
+    filled: (blocks * CUBES,) filled fractions of the cubes. The indices, from `indices_of`, never change.
     """
 
     def __init__(self, edge: float) -> None:
         self.edge = edge
         self.filled = np.zeros(0)
-        self._keys = np.zeros(0, dtype=np.int64)  # of blocks, sorted
-        self._slots = np.zeros(0, dtype=np.int64)  # where each block is
-        self._corners = np.zeros(
-            (0, 3), dtype=np.int64
-        )  # the first cube of each block, by its slot
+        self._keys = np.zeros(0, dtype=np.int64)  # sorted block keys
+        self._slots = np.zeros(0, dtype=np.int64)  # slot of each block
+        self._corners = np.zeros((0, 3), dtype=np.int64)  # first cube of each block, by slot
 
     def indices_of(self, cubes: Index, make: bool = True) -> Index:
-        """Indices (n,) of cubes (n, 3), whole numbers along the axes; a missing block is made, or gives -1."""
+        """Return the indices (n,) of cubes at integer coordinates (n, 3).
+
+        A missing block is created if `make` is true, else its index is -1.
+        """
         block = cubes >> 3
         within = cubes - (block << 3)
         key = (
@@ -70,7 +72,7 @@ class Grid:
         self.filled = np.concatenate([self.filled, np.zeros(CUBES * int(new.sum()))])
 
     def centres(self, indices: Index) -> Array:
-        """Return the middles of cubes.
+        """Return the centres of cubes.
 
         Parameters
         ----------
@@ -80,7 +82,7 @@ class Grid:
         Returns
         -------
         (n, 3) array
-            mm.
+            Centres, mm.
         """
         slot, within = np.divmod(indices, CUBES)
         local = np.stack([within // (SIDE * SIDE), within // SIDE % SIDE, within % SIDE], axis=1)
@@ -88,7 +90,7 @@ class Grid:
         return centres_
 
     def fill_at(self, points: Array) -> Array:
-        """Return how full the grid is at points.
+        """Return the filled fraction of the grid at points.
 
         Parameters
         ----------
@@ -98,7 +100,7 @@ class Grid:
         Returns
         -------
         (n,) array
-            Shares, interpolated between the middles of cubes.
+            Fractions, interpolated between the centres of cubes.
         """
         along = points / self.edge - 0.5
         low = np.floor(along).astype(np.int64)
@@ -112,23 +114,23 @@ class Grid:
 
     @property
     def volume(self) -> float:
-        """mm3 that are filled."""
+        """Filled volume, mm3."""
         return float(self.filled.sum()) * self.edge**3
 
 
-PIECE = 0.25  # of a bead's width
-BEND = 0.25  # of a bead's width that its outer side gapes at most between two pieces that run into each other
+PIECE = 0.25  # bead widths; length of a piece
+BEND = 0.25  # bead widths; maximum gap on the outer side between two consecutive pieces without a corner
 
 
 @dataclass(frozen=True, eq=False)
 class Strands:
-    """n pieces in the order of deposit.
+    """Pieces (n) in print order.
 
-    middle: (n, 3) mm on the path. along, side, build: (n, 3) orthogonal unit vectors: travel direction, its left, and build
-    direction. length, width: mm. volume: mm3 fed there. height: mm of the layer. arc: mm from the start of the bead to the middle;
-    around: mm of the whole bead if closed, else infinite. ends: the bead does not go straight on. layer, bead (counted over the
-    toolpath), point: (n,). is_first: layers with nothing of their feature below. real: the width is from a bead model, not
-    counted.
+    middle: (n, 3) midpoint on the path, mm. along, side, build: (n, 3) orthogonal unit vectors: travel direction, left
+    of travel, build direction. length, width: mm. volume: fed volume, mm3. height: layer height, mm. arc: arc length
+    from the bead's start to the midpoint, mm. around: length of a closed bead, mm, else infinite. ends: whether the bead
+    ends or has a corner at the piece. layer, bead (counted over the toolpath), point: (n,) indices. is_first: whether
+    the layer has no layer of its feature below. real: whether the width is from a bead model.
     """
 
     middle: Array
@@ -152,11 +154,11 @@ class Strands:
         return len(self.middle)
 
     def rows(self, selection: slice | Index) -> Strands:
-        """The rows of a selection."""
+        """Return the selected pieces."""
         return Strands(*(column[selection] for column in vars(self).values()))
 
     def are_separate(self, i: Index, j: Index) -> Mask:
-        """Which pairs belong to two beads, or to one bead that returns to itself."""
+        """Return which pairs belong to two beads, or to one bead that returns to itself."""
         arc = np.abs(self.arc[i] - self.arc[j])
         arc = np.minimum(arc, self.around[i] - arc)
         result: Mask = (self.bead[i] != self.bead[j]) | (arc > 1.5 * self.width[i])
@@ -164,7 +166,7 @@ class Strands:
 
 
 def join_strands(parts: Sequence[Strands]) -> Strands:
-    """The strands of several features as one; their beads and layers count from 0 in each."""
+    """Join the strands of several features; beads and layers count from 0 in each feature."""
     return Strands(
         *(
             np.concatenate(columns)
@@ -174,22 +176,22 @@ def join_strands(parts: Sequence[Strands]) -> Strands:
 
 
 def sections(bead: Bead, toolpath: Toolpath, process: ProcessParameters) -> Array:
-    """Return the section that the wire feeds along a bead.
+    """Return the cross-section fed along a bead.
 
     Parameters
     ----------
     bead : Bead
         The bead of n points.
     toolpath : Toolpath
-        Its toolpath, with wire feed and bead size.
+        Toolpath of the bead, with wire feed and bead size.
     process : ProcessParameters
         Wire and schedules.
 
     Returns
     -------
     (n - 1,) array
-        mm3 per mm of each segment; width times height without a wire, or with a schedule of
-        the class, whose feed is unknown here.
+        Volume per length of each segment, mm3/mm. This is width times height without a wire, or
+        with a schedule of the class, whose feed is unknown here.
     """
     schedule = process.for_class(bead.role.bead_class).schedule
     if schedule == process.schedule and bead.wire_share is not None:
@@ -205,7 +207,7 @@ def sections(bead: Bead, toolpath: Toolpath, process: ProcessParameters) -> Arra
 
 
 def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
-    """All beads of one feature. ValueError if the width of the beads is not known."""
+    """Divide all beads of a feature into pieces. Raises ValueError if the bead width is unknown."""
     pieces = join_pieces(cut_beads(toolpath, PIECE), PIECE)
     beads = list(toolpath)
     bead, build = pieces.bead, pieces.build
@@ -221,7 +223,7 @@ def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
     layers = toolpath.layers
     is_first = np.array([number == 0 or layer.first for number, layer in enumerate(layers)])
     on_ground = is_first[pieces.layer]
-    if is_spiral(toolpath):  # which supports itself from its second turn on
+    if is_spiral(toolpath):  # a spiral supports itself from the second turn on
         on_ground &= turns_of(layers[0].beads[0])[pieces.point] == 0
     return Strands(
         pieces.middle,
@@ -246,13 +248,13 @@ def strands(toolpath: Toolpath, process: ProcessParameters) -> Strands:
 def _volumes(
     toolpath: Toolpath, process: ProcessParameters, bead_row: Index, arc: Array, length: Array
 ) -> Array:
-    """mm3 of pieces (n,) of the beads `bead_row`: the volume fed between the start and the end of each piece."""
+    """Return the volume fed between start and end of each piece, (n,) mm3; `bead_row` are the pieces' beads."""
     beads = [bead for _, _, bead in toolpath]
     steps = [lengths(np.diff(bead.points, axis=0)) for bead in beads]
     fed = [
         step * sections(bead, toolpath, process) for step, bead in zip(steps, beads, strict=True)
     ]
-    # all beads joined, so that one interpolation gives the volume fed up to any position
+    # join all beads, so that one interpolation gives the volume fed up to any position
     path_length = np.concatenate([[0.0], np.cumsum(np.concatenate(steps))])
     total = np.concatenate([[0.0], np.cumsum(np.concatenate(fed))])
     offset = np.concatenate([[0.0], np.cumsum([step.sum() for step in steps])])[bead_row]
@@ -262,7 +264,7 @@ def _volumes(
 
 
 def _ends(travel: Array, bead: Index, closed: Mask) -> Mask:
-    """Which pieces begin or end a bead, or meet their neighbour at a corner with nothing else outside it."""
+    """Return which pieces begin or end a bead, or are adjacent to a corner."""
     turn = (
         np.sqrt(np.maximum(2.0 - 2.0 * dots(travel[:-1], travel[1:]), 0.0))
         if len(travel) > 1
@@ -275,5 +277,5 @@ def _ends(travel: Array, bead: Index, closed: Mask) -> Mask:
         ((starts | is_end) & ~closed[bead]) | np.append(False, corner) | np.append(corner, False)
     )
     seam = np.flatnonzero(starts)
-    result[seam] |= closed[bead[seam]]  # whose beginning and end may meet at a corner
+    result[seam] |= closed[bead[seam]]  # a closed bead may have a corner at its seam
     return result

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Keeps the nozzle clear of bodies and deposit along any beads, by tilting the tool axis no more than needed.
+"""Keep the nozzle clear of bodies and deposit along any beads by tilting the tool axis as little as needed.
 
-The nozzle is a frustum without its lowest section (`collision.scene`), which touches the current bead and its neighbours on
-purpose. The deposit has its width and height at that moment; later deposit does not count, nor does anything at or behind
-the tip plane.
+The nozzle is a frustum without its lowest section (`collision.scene`), which touches the current bead and adjacent beads
+intentionally. Only deposit that exists at that time counts. Anything at or behind the tip plane is ignored.
 
-A bead on which the nozzle would touch gets tilts that are clear at every point and small and even along it (`tilt_search`).
-The nozzle is also checked halfway between clear points; if it touches there, the bead gets a point and is tilted again.
+A bead with contacts gets tilts that are clear at every point, small, and even along the bead (`tilt_search`). The nozzle
+is also checked halfway between clear points. On contact there, the bead gets another point and is tilted again.
 """
 
 from __future__ import annotations
@@ -38,11 +37,11 @@ from .nozzle_check import (
 )
 from .tilt_search import SPREAD, Change, TiltSearch, Touching, what_helps
 
-SLOWER = 6  # how often a bead that turns too fast is tilted again
-SEARCHED = 0.7  # share of the search that is complete when that begins
-POINTS_AT_ONCE = 10_000  # points of beads
+SLOWER = 6  # maximum number of new tilt searches for a bead that turns too fast
+SEARCHED = 0.7  # fraction of the progress at which these searches begin
+POINTS_AT_ONCE = 10_000  # bead points searched together
 ROUNDING = 1e-9
-HALVINGS = 3  # how often a segment is halved if the nozzle touches between its ends
+HALVINGS = 3  # maximum number of halvings of a segment with contact between its ends
 
 
 def keep_clear(
@@ -55,26 +54,26 @@ def keep_clear(
     watch: Watch | None = None,
     remedy: bool = True,
 ) -> Toolpath:
-    """Return the toolpath with tool axes tilted where the nozzle would touch bodies or deposit.
+    """Tilt the tool axes where the nozzle would touch bodies or deposit.
 
-    If no tilt of up to 90 deg helps, the axes stay, with an issue CLEARANCE. Beads get points
-    halfway between clear ones where the nozzle would touch.
+    If no tilt of up to 90 deg helps, the axes stay, with an issue CLEARANCE. Beads get midpoints
+    between clear points if the nozzle would touch there.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath in part coordinates.
     bodies : sequence of Body
-        Every body that counts, with the platform.
+        All obstacles, with the platform.
     nozzle : NozzleParameters
         The nozzle.
     build : BuildDirectionParameters
-        Build direction with the largest tilt and turn.
+        Build direction with the maximum tilt and turn rate.
     plane : (3,) array or None, optional
-        Unit normal of the plane that the tool must stay in; None for any direction.
+        Unit normal of the plane that must contain the tool axes; None for any direction.
     feature : int or None, optional
-        Number of the feature whose beads are kept clear, of earlier deposit of the others
-        too; None for all.
+        Index of the feature whose beads are kept clear, also of other features' earlier
+        deposit; None for all features.
     watch : Watch or None, optional
         Receives the progress of the search for tilts.
     remedy : bool, optional
@@ -127,12 +126,12 @@ def keep_clear(
 
 
 def _touches(tilted: Toolpath, original: Toolpath) -> bool:
-    """Whether a toolpath tilted from another has an issue about touching."""
+    """Whether tilting the original toolpath added an issue CLEARANCE."""
     return any(issue.code == CLEARANCE for issue in tilted.issues[len(original.issues) :])
 
 
 class _Way(NamedTuple):
-    """The tilts of a bead: axes (n, 3), tilts (n,) rad, and which points (n,) touch even so."""
+    """Tilts of a bead: axes (n, 3), tilts (n,) rad, and points (n,) where no tilt is clear."""
 
     tool: Array
     tilt: Array
@@ -150,12 +149,12 @@ def _tilted(
     watch: Watch,
     earlier: list[_Way | None],
 ) -> tuple[Toolpath, Mask, list[_Way | None]]:
-    """Return the toolpath tilted clear at its points, the points (n,) after which the nozzle
-    touches halfway to the next point, and the tilts of each bead.
+    """Tilt the toolpath clear at its points.
 
-    The last attempt leaves no halfway points, and an issue reports them. If the nozzle touches
-    halfway with the original axes, nothing is tilted yet. earlier: the tilts of an earlier attempt,
-    for beads with the same points.
+    Returns the toolpath, the points (n,) with a contact halfway to the next point, and the tilts of
+    each bead. The last attempt returns no such points but reports them in an issue. If there are
+    such contacts with the original axes, nothing is tilted yet. earlier: tilts of an earlier
+    attempt, for beads with the same points.
     """
     beads = [bead for _, _, bead in toolpath]
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
@@ -177,7 +176,7 @@ def _tilted(
     for k in blocked:
         row = slice(begin[k], begin[k + 1])
         solutions[k] = _Way(tool[row], tilt[row], stuck[row].copy())
-    # no more points for stuck beads: their present points are reported
+    # stuck beads get no more points; their current points are reported
     sound = in_feature & ~np.repeat(np.logical_or.reduceat(stuck, begin[:-1]), np.diff(begin))
     between = touched_between(space, beads, tool, sound)
     if between.any() and not is_last:
@@ -195,7 +194,7 @@ def _tilted(
 
 
 def _set_tools(toolpath: Toolpath, tools: Sequence[Array], issues: tuple[Issue, ...]) -> Toolpath:
-    """The toolpath with tool axes, bead by bead, and further issues."""
+    """Return the toolpath with new tool axes, bead by bead, and additional issues."""
     axes = iter(tools)
     layers = []
     for layer in toolpath.layers:
@@ -216,8 +215,9 @@ def _ways(
     watch: Watch,
     earlier: list[_Way | None],
 ) -> tuple[_Way, float]:
-    """Axes, tilts and stuck points of all points, and the fastest turn (rad/mm) of beads that turn faster than `max_rate` with their
-    tilts but not without. Earlier tilts of a bead stay while clear.
+    """Return axes, tilts and stuck points, and the maximum turn rate, rad/mm, of beads above `max_rate`.
+
+    Only beads whose original axes were within `max_rate` count. Earlier tilts of a bead are kept while clear.
     """
     tool = tool_before.copy()
     tilt = np.zeros(len(tool_before))
@@ -274,7 +274,7 @@ def _cleared(
     watch: Watch,
     spread: float = SPREAD,
 ) -> tuple[Array, Array, Index]:
-    """Axes (n, 3) of the toolpath's points, with the beads of `rows` tilted clear; tilts (n,) rad; the points that touch even so."""
+    """Tilt the beads of `rows` clear; return axes (n, 3) of all points, tilts (n,), rad, and the stuck points."""
     knots = [knots_along(row) for row in rows]
     for row, bead_knots in zip(rows, knots, strict=True):
         if len(bead_knots) < len(row):
@@ -306,20 +306,20 @@ def _cleared(
 
 
 def _blocks(counts: Index) -> list[Index]:
-    """Numbers of the beads, of `counts` points, that are searched together: so many that memory does not grow with their number."""
+    """Return blocks of beads, of `counts` points, that are searched together; this bounds the memory."""
     number = (np.cumsum(counts) - counts) // POINTS_AT_ONCE
     return np.split(np.arange(len(counts)), np.flatnonzero(np.diff(number)) + 1)
 
 
 def _fastest(space: Space, row: Index, axes: Array) -> float:
-    """The fastest turn (rad/mm) along the bead with the points `row`."""
+    """Return the maximum turn rate along the bead with the points `row`, rad/mm."""
     return float(turn_rates(space.points[row], axes[row]).max(initial=0.0))
 
 
 def _too_fast(
     space: Space, rows: list[Index], tool_before: Array, max_rate: float, tool: Array, stuck: Mask
 ) -> list[int]:
-    """The beads that turn faster than `max_rate` rad/mm with their tilts but not without."""
+    """Return the beads whose tilts raise the turn rate above `max_rate`, rad/mm."""
     if max_rate == np.inf:
         return []
     return [
@@ -341,10 +341,10 @@ def _slowed(
     tilt: Array,
     watch: Watch,
 ) -> float:
-    """Tilt again, in place, the beads that turn faster than `max_rate` rad/mm, given by their points and whether they are closed;
-    return the fastest remaining turn, 0 if none exceeds the limit.
+    """Tilt beads that turn faster than `max_rate`, rad/mm, again, in place.
 
-    Each trial slows the turn of the original axes by the excess, and tilts build up over a longer distance.
+    fast: points of each bead, and whether it is closed. Returns the maximum remaining turn rate, 0 if none exceeds the
+    limit. Each trial reduces the turn rate of the original axes by the excess and spreads tilts over a longer distance.
     """
     worst = 0.0
     for number, (row, loop) in enumerate(fast):
@@ -381,14 +381,14 @@ def _slowed(
     return worst
 
 
-# ---- Long beads are tilted clear at some of their points, the knots; between these their tilts
-# are interpolated and checked
+# ---- Long beads are tilted at some points, the knots; between knots, tilts are interpolated and
+# checked
 #
-# Tilts build up over millimetres, points may be hundredths apart: a search at every point costs
-# time, and the steps between its candidates, several degrees, would turn the tool too fast from
-# one point to the next.
+# Tilts change over millimetres, but points may be only hundredths of a millimetre apart. A search at
+# every point would take long, and candidates several degrees apart would turn the tool too fast
+# between adjacent points.
 
-MAX_POINTS = 2500  # points of a bead at which tilts are searched
+MAX_POINTS = 2500  # maximum number of points of a bead at which tilts are searched
 
 
 def knots_along(row: Index) -> Index:
@@ -397,12 +397,12 @@ def knots_along(row: Index) -> Index:
     Parameters
     ----------
     row : (n,) array of int
-        Numbers of the points of the bead, in order.
+        Indices of the bead's points, in order.
 
     Returns
     -------
     (k,) array of int
-        MAX_POINTS of them at most, evenly spread, both ends included.
+        At most MAX_POINTS evenly distributed points, including both ends.
     """
     if len(row) <= MAX_POINTS:
         return row
@@ -413,7 +413,7 @@ def knots_along(row: Index) -> Index:
 
 
 def free_about(row: Index, knots: Index, free: Mask) -> Mask:
-    """Return whether the points nearest to each knot are all free.
+    """Return whether all points nearest to each knot are free.
 
     Parameters
     ----------
@@ -438,7 +438,7 @@ def free_about(row: Index, knots: Index, free: Mask) -> Mask:
 def spread_out(
     space: Space, row: Index, knots: Index, tool: Array, axes: Array
 ) -> tuple[Array, Index]:
-    """Interpolate axes between the knots of a bead.
+    """Interpolate tool axes between the knots of a bead.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Nozzle contacts during deposition, checked without tilting anything."""
+"""Nozzle contacts during deposition, checked with the given tool axes."""
 
 from __future__ import annotations
 
@@ -20,13 +20,15 @@ from ...toolpath import Bead, Toolpath
 from ...types import Array, Index, Mask
 
 CAP = 1e-9  # rad
-SEAM = 1e-6  # rad by which the end of a closed bead may exceed a full turn
+SEAM = 1e-6  # rad; maximum excess of a closed bead over a full turn
 
 
 @dataclass(frozen=True, eq=False)
 class Space:
-    """Data that decide whether an axis at a point is clear: points (n, 3) in the order of deposit, own_start (n,) the first point
-    of the beads that each overlaps by intention next to them.
+    """Data that decide whether a tool axis at a point is clear.
+
+    points: (n, 3) in print order. own_start: (n,) first point of the adjacent beads that the bead at each point overlaps
+    intentionally.
     """
 
     points: Array
@@ -36,7 +38,7 @@ class Space:
     max_tilt: float
 
     def clear(self, rows_: Index, axis: Array) -> Mask:
-        """Whether the axes (k, 3) at the points numbered `rows_` (k,) are clear and within the cap."""
+        """Whether the axes (k, 3) at the points `rows_` (k,) are clear and within max_tilt."""
         x, y, z = columns(axis)
         clear: Mask = np.arctan2(np.hypot(x, y), z) <= self.max_tilt + CAP
         rows = np.flatnonzero(clear)
@@ -59,14 +61,14 @@ def nozzle_of(nozzle: NozzleParameters, bead_height: float = 0.0, lean: float = 
     nozzle : NozzleParameters
         The nozzle of the cell.
     bead_height : float, optional
-        Height of the highest bead, mm.
+        Maximum bead height, mm.
     lean : float, optional
         Intended angle between tool axis and build direction, rad.
 
     Returns
     -------
     Nozzle
-        The nozzle while it deposits.
+        The nozzle during deposition.
     """
     return depositing(
         0.5 * nozzle.diameter, float(np.tan(nozzle.half_angle)), nozzle.length, bead_height, lean
@@ -92,11 +94,11 @@ def space_of(
     nozzle : NozzleParameters
         The nozzle.
     max_tilt : float
-        Largest angle of the tool axis to the vertical, rad.
+        Maximum angle of the tool axis from the vertical, rad.
     often : bool, optional
-        Whether the data are used repeatedly; if not, they take less memory.
+        Whether the data are used repeatedly. Otherwise they take less memory.
     feature : int, optional
-        Number of the feature whose points are checked, if several.
+        Index of the checked feature, if there are several.
 
     Returns
     -------
@@ -113,7 +115,7 @@ def space_of(
     heights = toolpath.heights
     lean, own_start = 0.0, np.searchsorted(layer, layer)
     if (toolpath.features[feature].values if toolpath.features else toolpath).traits.has_axis:
-        # directions and tools are turned as one there; the last turn of a spiral belongs to the current layer
+        # directions and tools rotate together; the last turn of a spiral belongs to the current layer
         feature_rows = np.repeat(beads_of(toolpath, feature), counts)
         turned = np.arccos(
             np.clip(dot(build, np.concatenate([bead.tool for bead in beads])), -1.0, 1.0)
@@ -128,7 +130,7 @@ def space_of(
     nozzle_ = nozzle_of(nozzle, float(heights.max()), lean)
     build_obstacles = deposit.build_deposit if often else deposit.in_parts
     obstacles = build_obstacles(points, build, toolpath.widths, heights, starts, foot=nozzle_.foot)
-    # a bead that closes a gap overlaps those about the gap, of layers below too
+    # a closing bead overlaps the beads around the gap, also in layers below
     own_start = np.where(np.repeat([bead.role.closing for bead in beads], counts), 0, own_start)
     return Space(
         points, own_start, scene(bodies, points, nozzle_.reach, obstacles), nozzle_, max_tilt
@@ -136,14 +138,14 @@ def space_of(
 
 
 def beads_of(toolpath: Toolpath, feature: int | None) -> Mask:
-    """Return which beads are of a feature.
+    """Return which beads belong to a feature.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath.
     feature : int or None
-        Number of the feature.
+        Index of the feature.
 
     Returns
     -------
@@ -160,25 +162,25 @@ def beads_of(toolpath: Toolpath, feature: int | None) -> Mask:
 
 
 def _turn_before(angle: Array) -> Index:
-    """(n,) the first point of a bead that is a turn or less before each of its points, of angles rising or falling."""
+    """Return, for each point of a bead, the first point at most one turn before it, (n,); angles are monotonic."""
     turned = np.abs(angle - angle[0])
     return np.asarray(np.searchsorted(turned, turned - 2.0 * np.pi - SEAM))
 
 
 def halfway(beads: Sequence[Bead], tool: Array) -> tuple[Array, Array]:
-    """Return points and axes halfway to the next point of the bead.
+    """Return the midpoints and mean axes between each point and the next point of the bead.
 
     Parameters
     ----------
     beads : sequence of Bead
         The beads.
     tool : (n, 3) array
-        Tool axes at all their points.
+        Tool axes at all points.
 
     Returns
     -------
     points : (n, 3) array
-        Points, mm; the last point of a bead itself.
+        Midpoints, mm. The last point of a bead is returned unchanged.
     axes : (n, 3) array
         Unit vectors.
     """
@@ -196,7 +198,7 @@ def halfway(beads: Sequence[Bead], tool: Array) -> tuple[Array, Array]:
 
 
 def touched_between(space: Space, beads: Sequence[Bead], tool: Array, free: Mask) -> Mask:
-    """Return the points after which the nozzle touches halfway to the next.
+    """Return the points with a nozzle contact halfway to the next point.
 
     Parameters
     ----------
@@ -205,14 +207,14 @@ def touched_between(space: Space, beads: Sequence[Bead], tool: Array, free: Mask
     beads : sequence of Bead
         The beads.
     tool : (n, 3) array
-        Tool axes at all their points.
+        Tool axes at all points.
     free : (n,) bool array
         Points at which the nozzle is clear.
 
     Returns
     -------
     (n,) bool array
-        Clear points whose next point is also clear, but not the position halfway.
+        True if the point and the next point are clear, but not the midpoint.
     """
     points, axes = halfway(beads, tool)
     both_free = free & np.r_[free[1:], False]
@@ -227,19 +229,19 @@ def touched_between(space: Space, beads: Sequence[Bead], tool: Array, free: Mask
 
 
 def halved(toolpath: Toolpath, between: Mask) -> Toolpath:
-    """Return a toolpath with more points.
+    """Return a toolpath with midpoints added.
 
     Parameters
     ----------
     toolpath : Toolpath
         The toolpath, n points.
     between : (n,) array of bool
-        Points after which a point halfway to the next is added.
+        Points after which the midpoint to the next point is added.
 
     Returns
     -------
     Toolpath
-        The same beads.
+        The toolpath with more points.
     """
     marks = iter(np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1]))
     layers = []
@@ -252,18 +254,18 @@ def halved(toolpath: Toolpath, between: Mask) -> Toolpath:
     return dataclasses.replace(toolpath, layers=tuple(layers))
 
 
-CLEARANCE = "CLEARANCE"  # the nozzle touches something while it deposits
+CLEARANCE = "CLEARANCE"  # code of nozzle contacts during deposition
 
 
 def locate_row(
     bead_keys: list[tuple[int, int]], begin: Index, row: int
 ) -> tuple[tuple[int, int], int]:
-    """Return layer, bead and point of a row of the joined points.
+    """Return layer, bead and point of a row of the concatenated points.
 
     Parameters
     ----------
     bead_keys : list[tuple[int, int]]
-        Layer and bead of each bead.
+        Layer and bead index of each bead.
     begin : int array
         First row of each bead.
     row : int
@@ -272,9 +274,9 @@ def locate_row(
     Returns
     -------
     bead_key : tuple of int
-        Layer and bead.
+        Layer and bead index.
     point : int
-        Number of the point in the bead.
+        Index of the point in the bead.
     """
     bead = int(np.searchsorted(begin, row, side="right")) - 1
     return bead_keys[bead], row - int(begin[bead])
@@ -283,23 +285,23 @@ def locate_row(
 def tilt_issues(
     bead_keys: list[tuple[int, int]], begin: Index, tilt: Array, stuck: Mask
 ) -> list[Issue]:
-    """Report where tools are tilted, and where that does not help.
+    """Report where tool axes are tilted, and where no tilt helps.
 
     Parameters
     ----------
     bead_keys : list[tuple[int, int]]
-        Layer and bead of each bead.
+        Layer and bead index of each bead.
     begin : (beads + 1,) int array
         First row of each bead, and the number of rows.
     tilt : (n,) array
         Tilts, rad.
     stuck : (n,) bool array
-        Points at which the nozzle touches at every tilt.
+        Points with nozzle contact at every tilt.
 
     Returns
     -------
     list of Issue
-        An error for stuck points, a note for tilted ones.
+        An error for stuck points, a note for tilted points.
     """
     bead = np.repeat(np.arange(len(bead_keys)), np.diff(begin))
     layer = np.array([key[0] for key in bead_keys])[bead]
@@ -348,7 +350,7 @@ def tilt_issues(
 
 
 def turn_issues(fastest: float, limit: float) -> list[Issue]:
-    """A warning that tilted tools turn by `fastest` rad/mm, if not 0. limit: the maximum turn."""
+    """Return a warning if tilted tool axes turn by `fastest`, rad/mm, above the maximum `limit`; none if 0."""
     if not fastest:
         return []
     return [
@@ -368,9 +370,7 @@ def turn_issues(fastest: float, limit: float) -> list[Issue]:
 
 @dataclass(frozen=True)
 class Looked:
-    """The number of points checked, the number at which the nozzle touches, and the first of the latter: layer, bead and point, None
-    without any.
-    """
+    """Number of checked points, number of contacts, and layer, bead and point of the first contact, if any."""
 
     count: int
     touched: int
@@ -384,25 +384,25 @@ def check_nozzle(
     max_points: int,
     feature: int | None = None,
 ) -> Looked:
-    """Check at evenly spread points whether the nozzle touches bodies or earlier deposit.
+    """Check at evenly distributed points whether the nozzle touches bodies or earlier deposit.
 
     Parameters
     ----------
     toolpath : Toolpath
-        The toolpath in part coordinates; beads have their width and height.
+        The toolpath in part coordinates, with bead widths and heights.
     bodies : sequence of Body
         Bodies in part coordinates, with the platform.
     nozzle : NozzleParameters
         The nozzle.
     max_points : int
-        Largest number of points.
+        Maximum number of points.
     feature : int or None, optional
-        Number of the feature to check, if several; None for all.
+        Index of the feature to check; None for all features.
 
     Returns
     -------
     Looked
-        Numbers of checked and touching points, and the first of the latter.
+        Number of checked points and of contacts, and the first contact.
     """
     space = space_of(toolpath, bodies, nozzle, np.pi, often=False, feature=feature or 0)
     beads = list(toolpath)
@@ -424,7 +424,7 @@ def check_nozzle(
 
 
 def join_checks(looks: Sequence[Looked]) -> Looked | None:
-    """Several checks as one; None without any."""
+    """Combine several checks; None if there are none."""
     if not looks:
         return None
     first_touch = next(
@@ -438,9 +438,9 @@ def join_checks(looks: Sequence[Looked]) -> Looked | None:
 def nozzle_issues(
     toolpath: Toolpath, bodies: Sequence[Body], nozzle: NozzleParameters
 ) -> list[Issue]:
-    """Report where the nozzle would touch bodies while depositing.
+    """Report where the nozzle would touch bodies during deposition.
 
-    For toolpaths that are not tilted away from them.
+    For toolpaths that are not tilted for clearance.
 
     Parameters
     ----------

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tilts of the tool axis along beads that keep the nozzle clear at every point, and are small and even along the bead.
+"""Search for tool axis tilts that keep the nozzle clear at every point of a bead and are small and even along the bead.
 
-Each point has candidate axes on cones about the original axis, in growing angle until every point has a clear one, or a few of
-the points without have none on any cone. Among the sequences of clear candidates the search takes the one with the least
-integral of tilt^2 + (SPREAD d tilt / ds)^2 along the bead. Finer candidates about it follow, level by level.
+Each point has candidate axes on cones about the original axis. The cone angle grows until every point has a clear
+candidate, or until sampled points have none on any cone. Of all sequences of clear candidates, the search selects the
+sequence with the minimum integral of tilt^2 + (SPREAD d tilt / ds)^2 along the bead. It then refines the candidates about
+this sequence, level by level.
 
-A test of a candidate takes long. Candidates that are not tested count as clear while a sequence is sought; then those of the
-sequence are tested, and the search goes on without the ones that touch. A sequence of clear candidates is then the best one
-of all, as if every candidate had been tested.
+Testing a candidate takes long. Untested candidates count as clear while a sequence is selected. The candidates of the
+sequence are then tested, and the search continues without the candidates that touch. The first sequence of only clear
+candidates is optimal, as if every candidate had been tested.
 """
 
 from __future__ import annotations
@@ -29,24 +30,24 @@ from ...types import Array, Index, Mask
 from ..progress import Watch
 from .nozzle_check import CAP, Space, space_of
 
-BARRED = 1e9  # cost of a state that is not allowed; finite, so that a chain without a way through has a least bad one
-AT_ONCE = 1_000_000  # pairs of states worked on at once
-MAX_JOINT_STATES = 64  # states of a point, beyond which chains are worked on one by one without their barred states
+BARRED = 1e9  # cost of a barred state; finite, so that a chain without a feasible path has a least bad path
+AT_ONCE = 1_000_000  # pairs of states processed at once
+MAX_JOINT_STATES = 64  # maximum states per point for joint processing of chains with barred states
 
 
 def least_cost_states(states: Array, allowed: Mask, weight: Array, change: Array) -> Index:
-    """The number (b, n) of the state of each point of b chains for which the sum of two costs is least.
+    """Return the state index (b, n) of each point of b chains that minimises the sum of two costs.
 
     Parameters
     ----------
     states
-        (b, n, s, d), or (1, 1, s, d) if every point has the same.
+        (b, n, s, d), or (1, 1, s, d) if all points have the same states.
     allowed
         (b, n, s).
     weight
-        (b, n), of the square of a state.
+        (b, n), weight of the square of a state.
     change
-        (b, n - 1), of the square of the difference of neighbouring states; 0 behind the end of a shorter chain.
+        (b, n - 1), weight of the squared difference of adjacent states; 0 past the end of a shorter chain.
     """
     b, n, s = allowed.shape
     step = max(1, AT_ONCE // (s * s))
@@ -73,32 +74,32 @@ def least_cost_states(states: Array, allowed: Mask, weight: Array, change: Array
         target = states[chain, k, states_[:, k]]
         costs = change[:, k - 1, None] * _between(states[:, k - 1], target[:, None])[:, :, 0]
         costs += totals[:, k - 1]
-        # what index_of_minimum finds, of numbers that are all finite
+        # same result as index_of_minimum for finite numbers
         states_[:, k - 1] = is_tied(costs, costs.min(axis=1, keepdims=True)).argmax(axis=1)
     return states_
 
 
 def useful_states(states: Array, allowed: Mask, known: Mask, weight: Array, change: Array) -> Mask:
-    """Return the states that a way of least cost may lead through, of one chain.
+    """Return the states of one chain that a minimum-cost path may contain.
 
-    Whichever more of the allowed states are barred, no way through another state is as good as
-    the best one through known states.
+    Any path through another state costs more than the best path through known states, even if
+    more of the allowed states turn out to be barred.
 
     Parameters
     ----------
     states : (1, 1, s, d) or (1, n, s, d) array
-        States as of `least_cost_states`.
+        States as in `least_cost_states`.
     allowed : (1, n, s) bool array
         States that may be free.
     known : (1, n, s) bool array
-        States that are free.
+        States known to be free.
     weight, change : (1, n) and (1, n - 1) array
-        Costs as of `least_cost_states`.
+        Costs as in `least_cost_states`.
 
     Returns
     -------
     (n, s) bool array
-        True for the states that remain.
+        True for the remaining states.
     """
     states = np.broadcast_to(states, (*allowed.shape, states.shape[3]))
     size = weight[:, :, None] * (states**2).sum(axis=3)
@@ -111,7 +112,7 @@ def useful_states(states: Array, allowed: Mask, known: Mask, weight: Array, chan
 
 
 def _totals(states: Array, allowed: Mask, change: Array, own: Array) -> Array:
-    """(b, n, s) the least costs of the ways from the start to each state, with costs of their own (b, n, s)."""
+    """Return the minimum path cost from the start to each state, (b, n, s), with state costs `own` (b, n, s)."""
     totals = np.empty(own.shape)
     totals[:, 0] = own[:, 0]
     if len(own) == 1 and own.shape[2] > MAX_JOINT_STATES:
@@ -120,7 +121,7 @@ def _totals(states: Array, allowed: Mask, change: Array, own: Array) -> Array:
     costs = np.empty((len(totals), totals.shape[2], totals.shape[2]))
     between = _between(states[:, 0], states[:, 0])
     for k in range(1, totals.shape[1]):
-        if states.strides[1]:  # otherwise every point has the same states
+        if states.strides[1]:  # otherwise all points have the same states
             between = _between(states[:, k - 1], states[:, k])
         np.multiply(change[:, k - 1, None, None], between, out=costs)
         costs += totals[:, k - 1, :, None]
@@ -129,7 +130,7 @@ def _totals(states: Array, allowed: Mask, change: Array, own: Array) -> Array:
 
 
 def _add_allowed(states: Array, allowed: Mask, change: Array, own: Array, totals: Array) -> None:
-    """Fill in the costs (n, s) of a single chain, of its allowed states; the others get BARRED."""
+    """Fill in the costs (n, s) of the allowed states of a single chain, and BARRED for other states."""
     totals[1:] = BARRED
     between = _between(states[None, 0], states[None, 0])[0]
     barred = ~allowed.any(axis=1)
@@ -147,33 +148,31 @@ def _add_allowed(states: Array, allowed: Mask, change: Array, own: Array, totals
 
 
 def _between(a: Array, b: Array) -> Array:
-    """Squares (b, s, t) of the differences of states (b, s, d) and (b, t, d), component by component, which is quicker."""
+    """Return the squared differences (b, s, t) of states (b, s, d) and (b, t, d); faster by component."""
     total: Array = np.square(a[:, :, None, 0] - b[:, None, :, 0])
     for component in range(1, a.shape[2]):
         total += np.square(a[:, :, None, component] - b[:, None, :, component])
     return total
 
 
-RING, AZIMUTHS = np.radians(5.0), 16  # angle between cones of candidates, and candidates per cone
-MAX_TILT_RAD = np.radians(90.0)  # largest tilt tried
-# before cone PROBED all larger cones are tried at PROBES points of a bead
+RING, AZIMUTHS = np.radians(5.0), 16  # angle between candidate cones; candidates per cone
+MAX_TILT_RAD = np.radians(90.0)  # maximum tilt
+# before cone number PROBED, all larger cones are tried at PROBES points of a bead
 PROBED, PROBES = 7, 16
-CORRIDOR = 24  # candidates near a way, among which clear ones are sought first
-COST_TOLERANCE = 1e-5  # of costs, much more than ties
-NEIGHBOUR_COUNT = (
-    9  # candidates that are tested together, about one that the best way leads through
-)
-LEVELS = 4  # refinements of the candidates, each at half the distance
-COARSE = 0.6  # share of the progress before the refinements
-SPREAD = 5.0  # mm along the bead over which a tilt comes and goes
-RELEASED = 4.0  # times SPREAD, beyond which nothing is left of a tilt
+CORRIDOR = 24  # number of candidates near a path that are searched first
+COST_TOLERANCE = 1e-5  # tolerance of costs; much larger than ties
+NEIGHBOUR_COUNT = 9  # number of candidates tested together about a candidate of the best path
+LEVELS = 4  # number of refinements, each at half the distance
+COARSE = 0.6  # fraction of the progress before the refinements
+SPREAD = 5.0  # mm; distance along the bead over which a tilt builds up and decays
+RELEASED = 4.0  # times SPREAD; distance at which a tilt has decayed
 
 
 class TiltSearch:
-    """The blocked beads side by side: their points one after the other (m,), and padded to chains (b, n).
+    """Tilt search for several blocked beads: points concatenated (m,), and padded to chains (b, n).
 
-    A tilt is a turn from the original axis, given by two components (rad) along directions that are carried along the bead
-    without twist; one of the two is 0 where the tool must stay in a plane.
+    A tilt is a rotation from the original axis. Its two components, rad, are along directions that are carried along the
+    bead without twist. One component is 0 if the tool must stay in a plane.
     """
 
     def __init__(
@@ -192,7 +191,7 @@ class TiltSearch:
         self.counts = np.array([len(row) for row in rows])
         self.begin = np.r_[0, np.cumsum(self.counts)][:-1]
         self._bead = np.repeat(np.arange(len(self.counts)), self.counts)
-        # the other end of a closed bead, which is the same point
+        # index of the other end of a closed bead, which is the same point
         self._twin = np.arange(len(self.flat))
         start = self.begin[closed]
         end = start + self.counts[closed] - 1
@@ -215,7 +214,7 @@ class TiltSearch:
         Parameters
         ----------
         points : (k,) int array
-            Numbers of points of the blocked beads.
+            Indices of points of the blocked beads.
         offset : (k, 2) array
             Tilts, rad.
 
@@ -235,16 +234,16 @@ class TiltSearch:
         return np.where((angle > 0.0)[:, None], unit, self.asked[self.flat[row]])
 
     def _clear(self, row: Index, offsets: Array) -> Mask:
-        """(k, s) whether the tilts (s, 2) or (k, s, 2) are clear at the places (k,)."""
+        """Return whether the tilts (s, 2) or (k, s, 2) are clear at the points (k,), (k, s)."""
         offsets = np.broadcast_to(offsets, (len(row), *offsets.shape[-2:]))
         s = offsets.shape[1]
-        # neighbours along a bead follow each other, with the same tilt
+        # adjacent points of a bead with the same tilt are consecutive
         places, offsets = np.tile(row, s), offsets.transpose(1, 0, 2).reshape(-1, 2)
         clear = self.space.clear(self.flat[places], self._tilted(places, offsets))
         return clear.reshape(s, len(row)).T
 
     def search(self, watch: Watch) -> tuple[Array, Mask]:
-        """Search small and even tilts that keep the nozzle clear.
+        """Search for small and even tilts that keep the nozzle clear.
 
         Parameters
         ----------
@@ -265,7 +264,7 @@ class TiltSearch:
         return offset, stuck
 
     def coarse(self, watch: Watch) -> tuple[Array, Mask]:
-        """Search tilts on cones about the requested axes.
+        """Search for tilts on cones about the requested axes.
 
         Parameters
         ----------
@@ -277,20 +276,20 @@ class TiltSearch:
         offset : (m, 2) array
             Tilts, rad.
         stuck : (m,) bool array
-            Points without a clear tilt; they do not hinder the others.
+            Points without a clear tilt; they do not affect other points.
         """
         m, bead = len(self.flat), self._bead
         states = [np.zeros((1, 2))]
         open_ = [self._clear(np.arange(m), states[0]) | ~self.near[:, None]]
         tested = [np.ones((m, 1), dtype=bool)]
-        # beads whose end is their start have a way only where both are free
+        # closed beads have a path only if both ends are free
         has_way = self._both_ends(open_[0])[:, 0]
         pending = np.ones(len(self.counts), dtype=bool)
         last_ring = round(MAX_TILT_RAD / RING)
         for number in range(1, last_ring + 1):
             watch.share(number / (last_ring + 1))
             if number == PROBED:
-                # where nothing frees some of a bead's points there is no way, however many candidates the others have
+                # a bead with points that no tilt clears has no path, regardless of its other points
                 self.lost[
                     self._hopeless(~has_way & self.near, pending, range(number, last_ring + 1))
                 ] = True
@@ -298,14 +297,14 @@ class TiltSearch:
                 if not pending.any():
                     break
             ring = self._ring(number)
-            # points that have a way are tested later, where the tilts lead through these candidates
+            # points with a clear candidate are tested later, if a path contains these candidates
             wanted = pending[bead] & self.near
             rows = np.flatnonzero(wanted & ~has_way)
             ring_open = np.repeat(wanted[:, None], len(ring), axis=1)
             ring_open[rows] = self._clear(rows, ring)
             ring_tested = ~ring_open
             ring_tested[rows] = True
-            # one ring more than the first that frees every point, so that there is a way round
+            # one more ring after every point is free, to allow a detour
             had = np.logical_and.reduceat(has_way, self.begin)
             has_way |= (self._both_ends(ring_open) & ring_tested).any(axis=1)
             states.append(ring)
@@ -323,23 +322,23 @@ class TiltSearch:
         self.lost |= np.logical_or.reduceat(stuck, self.begin)
         open_[stuck] = True
         tested[stuck] = True
-        # a closed bead starts where least tilt is needed, and with it: all smaller tilts are tested
+        # a closed bead starts at the point of minimum tilt, with this tilt, as all smaller tilts are tested
         size = np.where(open_, np.linalg.norm(states, axis=1), np.inf)
         anchor = self._anchors(np.where(stuck, np.inf, size.min(axis=1)))
         fixed = index_of_minimum(size)
         if len(states) > MAX_JOINT_STATES:
             self._near_best(states, open_, tested, anchor, fixed)
             open_ = self._useful(states[None, None], open_, tested, anchor, fixed)
-        # few states remain at most points, in the same order
+        # keep the few remaining states of each point in their order
         number = np.argsort(~open_, axis=1, kind="stable")[:, : open_.sum(axis=1).max()]
         return self._least_clear_of(number, states, open_, tested, anchor, fixed), stuck
 
     def _near_best(
         self, states: Array, open_: Mask, tested: Mask, anchor: Index, fixed: Index
     ) -> None:
-        """Bring open_ and tested up to date near the ways that would be best if all open states were clear.
+        """Update open_ and tested near the paths that would be best if all open states were clear.
 
-        The ways through clear states are then about as good as any, which leaves few useful states.
+        The paths through clear states are then almost optimal, which leaves few useful states.
         """
         chosen = np.zeros(len(self.flat), dtype=np.intp)
         for bead in range(len(self.counts)):
@@ -347,7 +346,7 @@ class TiltSearch:
         apart = _between(states[None], states[None])[0][chosen]
         known = np.where(open_ & tested, apart, np.inf).argmin(axis=1)
         apart[~open_] = np.inf
-        apart[np.arange(len(apart)), known] = -1.0  # so that there is a way
+        apart[np.arange(len(apart)), known] = -1.0  # so that a path exists
         number = np.argsort(apart, axis=1, kind="stable")[:, :CORRIDOR]
         self._least_clear_of(number, states, open_, tested, anchor, fixed)
 
@@ -360,7 +359,7 @@ class TiltSearch:
         anchor: Index,
         fixed: Index,
     ) -> Array:
-        """(m, 2) `_least_clear` among the states (s, 2) numbered (m, w); open_ and tested (m, s) are brought up to date."""
+        """Return `_least_clear` (m, 2) among the states (s, 2) with indices (m, w); update open_ and tested (m, s)."""
         some_open, some_tested = (
             np.take_along_axis(mask, number, axis=1) for mask in (open_, tested)
         )
@@ -375,7 +374,7 @@ class TiltSearch:
     def _useful(
         self, states: Array, open_: Mask, tested: Mask, anchor: Index, fixed: Index
     ) -> Mask:
-        """(m, s) the states through which the best ways may lead, of those that may be open."""
+        """Return the open states (m, s) that the best paths may contain."""
         useful = open_.copy()
         for bead in range(len(self.counts)):
             at, ends = (
@@ -392,7 +391,7 @@ class TiltSearch:
         return self._both_ends(useful)
 
     def _hopeless(self, barred: Mask, pending: Mask, numbers: range) -> Index:
-        """The pending beads with a sampled point among the barred (m,) that is not free on any further cone either."""
+        """Return the pending beads with a sampled barred point (m,) that is not free on any larger cone."""
         samples = [np.zeros(0, dtype=np.intp)]
         for bead in np.flatnonzero(pending):
             rows = self.begin[bead] + np.flatnonzero(
@@ -410,22 +409,22 @@ class TiltSearch:
         return beads
 
     def finer(self, offset: Array, step: float, turn: int) -> Array:
-        """Improve tilts on a finer grid near them.
+        """Improve tilts on a finer grid about the present tilts.
 
         Parameters
         ----------
         offset : (m, 2) array
             The tilts, rad.
         step : float
-            Step of the grid, rad; at most two steps away in each component.
+            Grid step, rad; the grid extends two steps in each component.
         turn : int
-            Number of the refinement; each time another point of a closed bead stays
+            Index of the refinement. Each refinement keeps another point of a closed bead
             unchanged.
 
         Returns
         -------
         (m, 2) array
-            Better tilts, rad.
+            Improved tilts, rad.
         """
         around = step * np.arange(-2.0, 3.0)
         grid = np.stack(
@@ -438,7 +437,7 @@ class TiltSearch:
         open_ = self._both_ends(np.repeat(searched[:, None], offsets.shape[1], axis=1))
         tested = ~open_
         open_[:, centre_state] = tested[:, centre_state] = True
-        # each time another point of a closed bead stays as it is
+        # each refinement keeps another point of a closed bead unchanged
         anchor = (self.counts - 1) * (turn % 3) // 3
         fixed = np.full(len(offset), centre_state)
         chosen = self._least_clear(offsets, open_, tested, anchor, fixed)
@@ -457,7 +456,7 @@ class TiltSearch:
         return ring
 
     def _both_ends(self, allowed: Mask) -> Mask:
-        """The states allowed at both ends of a closed bead, which are one point."""
+        """Restrict both ends of closed beads, which are the same point, to the states allowed at both."""
         allowed = allowed.copy()
         start = self.begin[self.closed]
         end = start + self.counts[self.closed] - 1
@@ -466,7 +465,7 @@ class TiltSearch:
         return allowed
 
     def _anchors(self, size: Array) -> Index:
-        """For each bead the point that needs least tilt; of several, the one farthest from points that need more."""
+        """Return the point of minimum required tilt of each bead; in a tie, farthest from points of larger tilt."""
         anchors = []
         for start, count in zip(self.begin, self.counts, strict=True):
             need = size[start : start + count - 1]
@@ -479,11 +478,10 @@ class TiltSearch:
     def _least_clear(
         self, offsets: Array, open_: Mask, tested: Mask, anchor: Index, fixed: Index
     ) -> Index:
-        """(m,) the clear tilts of least cost, of tilts (m, s, 2) that may be open and are tested (m, s) or not.
+        """Return the minimum-cost clear tilts (m,) among tilts (m, s, 2), and update open_ and tested (m, s).
 
-        Only the tilts that the best way leads through are tested, with those next to them, until
-        all of that way are clear: with other tilts barred besides, no way is better. open_ and
-        tested are brought up to date.
+        Only the tilts of the best path and adjacent tilts are tested, until the whole path is
+        clear. Barring more tilts could not give a better path.
         """
         chosen = np.zeros(len(self.flat), dtype=np.intp)
         todo = np.ones(len(self.counts), dtype=bool)
@@ -497,7 +495,7 @@ class TiltSearch:
         return chosen
 
     def _test(self, rows: Index, picked: Index, offsets: Array, open_: Mask, tested: Mask) -> None:
-        """Test tilts picked at rows (k,), and those next to them that are not tested yet."""
+        """Test the tilts picked at rows (k,), and adjacent tilts that are not tested yet."""
         apart = np.square(offsets[rows] - offsets[rows, picked][:, None]).sum(axis=2)
         apart[~open_[rows]] = np.inf
         apart[np.arange(len(rows)), picked] = -1.0
@@ -518,9 +516,11 @@ class TiltSearch:
         fixed: Index,
         chosen: Index,
     ) -> None:
-        """Choose the tilts (m,) of least cost of some beads; a closed bead is run from the anchor all around, its tilt
-        there `fixed`."""
-        # chains of similar sizes together, because padding to the longest takes memory
+        """Choose the minimum-cost tilts (m,) of some beads.
+
+        A closed bead runs from the anchor around to the anchor, where its tilt is `fixed`.
+        """
+        # group chains of similar size, because padding to the longest chain takes memory
         last = allowed.shape[1] - np.argmax(allowed[:, ::-1], axis=1)
         width = np.maximum.reduceat(last, self.begin)[beads]
         sizes = np.ceil(np.log2(np.stack([self.counts[beads], width]))).astype(int)
@@ -543,7 +543,7 @@ class TiltSearch:
     def _chains(
         self, beads: Index, allowed: Mask, anchor: Index, fixed: Index, first: int = 0
     ) -> _Chains:
-        """Beads as chains; allowed: states (m - first, s) from the point `first` on."""
+        """Arrange beads as chains; allowed: states (m - first, s) from point `first` on."""
         n, s = int(self.counts[beads].max()), allowed.shape[1]
         position = np.zeros((len(beads), n), dtype=np.intp)
         weight, change = np.zeros(position.shape), np.zeros((len(position), n - 1))
@@ -567,8 +567,11 @@ class TiltSearch:
 
 
 class _Chains(NamedTuple):
-    """Chains (b, n) padded to the longest: their points among those searched (any for the pads), which states are free
-    (b, n, s), and weights and changes as of `least_cost_states`."""
+    """Chains padded to the longest.
+
+    position: (b, n) indices of the searched points, arbitrary for padding. free: (b, n, s) free states. weight, change:
+    as in `least_cost_states`.
+    """
 
     position: Index
     free: Mask
@@ -577,7 +580,7 @@ class _Chains(NamedTuple):
 
 
 def _near(points: Array, blocked: Mask, closed: bool, reach: float) -> Mask:
-    """Which points of a bead are within `reach` mm, along it, of the blocked ones."""
+    """Return which points of a bead are within `reach` mm along the bead of a blocked point."""
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
     is_near: Mask = nearest(length[blocked], length, float(length[-1]) if closed else None) <= reach
     return is_near
@@ -589,11 +592,11 @@ def nearest(marks: Array, positions: Array, length: float | None) -> Array:
     Parameters
     ----------
     marks : (k,) array
-        Rising positions of the marks, mm.
+        Ascending positions of the marks, mm.
     positions : (n,) array
         The positions, mm.
     length : float or None
-        Length of a closed line, mm; None for an open one.
+        Length of a closed line, mm; None for an open line.
 
     Returns
     -------
@@ -609,7 +612,7 @@ def nearest(marks: Array, positions: Array, length: float | None) -> Array:
     )
     if length is None:
         return distance
-    # the other way round the one that is farthest this way is nearest
+    # in the other direction, the farthest mark is the nearest
     around: Array = np.minimum(
         distance, length - np.maximum(np.abs(positions - marks[0]), np.abs(positions - marks[-1]))
     )
@@ -617,7 +620,7 @@ def nearest(marks: Array, positions: Array, length: float | None) -> Array:
 
 
 def _sides(tool: Array, plane: Array | None) -> Array:
-    """(n, 2, 3) unit vectors normal to the asked axes and to each other, carried along a bead; the first in the plane."""
+    """Return pairs of unit vectors (n, 2, 3) normal to the requested axes, carried along a bead; the first in the plane."""
     if plane is not None:
         side = np.cross(plane, tool)
         side /= np.linalg.norm(side, axis=1, keepdims=True)
@@ -630,16 +633,16 @@ def _sides(tool: Array, plane: Array | None) -> Array:
     return sides
 
 
-LOOKED_AT = 240  # points, at most
-BATCH_POINTS = 24  # points in a batch; if one has no room, later batches are skipped
-SHARES = (0.75, 0.5, 0.25)  # half angles of the nozzle that are tried
-FARTHER = np.radians(15.0)  # by which the largest tilt is raised
-MAX_TRIALS = 4  # changes with which every bead is tilted again, at most
-MAX_TRIAL_POINTS = 20_000  # points of a toolpath that is
+LOOKED_AT = 240  # maximum number of checked points
+BATCH_POINTS = 24  # points in a batch; if a point has no clear tilt, later batches are skipped
+SHARES = (0.75, 0.5, 0.25)  # fractions of the nozzle's half angle that are tried
+FARTHER = np.radians(15.0)  # step by which the maximum tilt is raised
+MAX_TRIALS = 4  # maximum number of changes for which every bead is tilted again
+MAX_TRIAL_POINTS = 20_000  # maximum number of points of a toolpath that is tilted again
 
 
 class Change(NamedTuple):
-    """Bodies, nozzle and build directions in place of others, and the words for it."""
+    """Alternative bodies, nozzle and build directions, with a description."""
 
     bodies: Sequence[Body]
     nozzle: NozzleParameters
@@ -648,8 +651,10 @@ class Change(NamedTuple):
 
 
 class Touching(NamedTuple):
-    """A toolpath with the axes asked for, and the points (k,) that no tilt clears. plane, feature: as of
-    `clear_by_tilt.keep_clear`."""
+    """A toolpath with the requested axes, and the points (k,) that no tilt clears.
+
+    plane, feature: as in `clear_by_tilt.keep_clear`.
+    """
 
     toolpath: Toolpath
     rows: Index
@@ -657,7 +662,7 @@ class Touching(NamedTuple):
     feature: int | None
 
     def clear_at(self, change: Change) -> bool:
-        """Whether each of the points has a clear tilt, by up to LARGEST, after a change; of many points, a regular sample is checked."""
+        """Whether each point has a clear tilt of up to MAX_TILT_RAD after a change; many points are sampled."""
         space = space_of(
             self.toolpath,
             change.bodies,
@@ -691,7 +696,7 @@ class Touching(NamedTuple):
         return False
 
     def _cone(self, tool: Array, angle: float) -> Array:
-        """Axes (k, s, 3) at an angle, rad, from those asked for (k, 3)."""
+        """Return axes (k, s, 3) at an angle, rad, from the requested axes (k, 3)."""
         if self.plane is not None:
             sides = np.cross(self.plane, tool)[:, None] * np.array([1.0, -1.0])[:, None]
         else:
@@ -747,7 +752,7 @@ def what_helps(touching: Touching, now: Change, clears: Callable[[Change], bool]
 
 
 def _useful_changes(touching: Touching, changes: list[Change]) -> list[Change]:
-    """The smallest change that gives every point room, and the largest; empty if the largest does not."""
+    """Return the smallest change that clears every point, and the largest; empty if the largest does not."""
     if not changes or not touching.clear_at(changes[-1]):
         return []
     smallest = next((change for change in changes[:-1] if touching.clear_at(change)), changes[-1])
@@ -755,7 +760,7 @@ def _useful_changes(touching: Touching, changes: list[Change]) -> list[Change]:
 
 
 def _tilts(now: Change) -> list[Change]:
-    """Larger tilts, the largest last."""
+    """Return changes to larger maximum tilts, ascending."""
     max_tilt = now.build.max_tilt
     angles = [
         min(np.pi, max_tilt + FARTHER * (k + 1))
@@ -771,13 +776,13 @@ def _tilts(now: Change) -> list[Change]:
 
 
 def _cleared_away(now: Change) -> list[Change]:
-    """Nothing but the deposit itself in the way."""
+    """Return the change that removes all bodies, so that only the deposit is an obstacle."""
     names = Text.joined(", ", (body.name for body in now.bodies))
     return [now._replace(bodies=(), words=Text("{} out of the way", names))] if now.bodies else []
 
 
 def _half_angles(now: Change) -> list[Change]:
-    """Slimmer nozzles, half angles in whole degrees, the slimmest last."""
+    """Return changes to slimmer nozzles, with half angles in whole degrees, slimmest last."""
     half = float(np.degrees(now.nozzle.half_angle))
     angles = sorted({round(share * half) for share in SHARES} - {0}, reverse=True)
     return [

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Clearance of the nozzle from earlier deposit and from the platform, for parts of revolution.
 
-The paper tilts the build directions near a closing top back by the nozzle's angle (Chalvin 2020, section 6.1). Here
-`core/collision` decides, as on walls, against beads with their width and height. A bead extends along its build direction: a
+Chalvin 2020, section 6.1, tilts the build directions near a closing top back by the nozzle's angle. Here, as on walls,
+`core/collision` decides against beads with their width and height. A bead extends along its build direction, so a
 tilt-back changes the obstacle for later beads.
 
-A full circle looks the same from each of its points, and an arc seen from all its points reaches equally far to both sides:
-one tip position represents a whole bead.
+A full circle looks the same from each of its points. An arc, seen from all its points, extends equally far to both sides.
+One tip position therefore represents a whole bead.
 """
 
 from __future__ import annotations
@@ -30,21 +30,21 @@ from ...issues import WARNING, InputError, Issue, Text, Word
 from ...parameters.cell import NozzleParameters
 from ...types import Array, Index, Mask
 
-UPRIGHT = 1e-6  # rad between the axis of the wall and the normal of the platform
+UPRIGHT = 1e-6  # rad; maximum angle between the wall axis and the platform normal
 TOUCH = 1e-6  # mm
-DEEP = 0.05  # mm; a depth below the platform that chords explain
+DEEP = 0.05  # mm; maximum depth below the platform that chords explain
 MOVE = (
     "move the part up in its file, or set cell.platform_diameter to the real diameter (0 for none)"
 )
 MOUNT = "use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set cell.platform_diameter to the real diameter (0 for none)"
-GRAIN = 0.05  # of the radius of the platform, between the sampled points of solids
+GRAIN = 0.05  # fraction of the platform radius; distance between sampled points of solids
 
 
 @dataclass(frozen=True)
 class Platform:
-    """A disc about the axis of the wall: radius mm, 0 without a platform, and height mm in the feature frame.
+    """A disc about the axis of the wall: radius, mm, 0 without a platform, and height in the feature frame, mm.
 
-    off: mm from the axis to the middle of the true disc, which `radius` includes.
+    off: distance from the axis to the centre of the true disc, mm, included in `radius`.
     """
 
     radius: float
@@ -55,8 +55,8 @@ class Platform:
 def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
     """Return the platform as seen from a wall of revolution.
 
-    A disc whose middle is off the axis counts as a larger one about the axis, which is on the
-    safe side.
+    A disc whose centre is off the axis counts as a larger disc about the axis, which is
+    conservative.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
     diameter : float
         Diameter of the platform, mm; 0 for none.
     frame : (4, 4) array or None
-        Pose of the platform in part coordinates; None if the feature frame sits on it.
+        Pose of the platform in part coordinates; None if the feature frame is on the platform.
 
     Returns
     -------
@@ -75,8 +75,8 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
     Raises
     ------
     InputError
-        OFF_PLATFORM when the axis of the wall misses the platform or is not along its
-        normal, or the wall starts below it.
+        OFF_PLATFORM if the wall axis misses the platform or is not along its normal, or if the
+        wall starts below the platform.
     """
     centre, normal = np.zeros(3), np.array([0.0, 0.0, 1.0])
     if frame is not None:
@@ -109,13 +109,13 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
 
 
 def overhanging(wall: RevolvedWall, platform: Platform) -> list[Issue]:
-    """A warning when the base of the wall reaches over the edge of the platform."""
+    """Return a warning if the base of the wall overhangs the edge of the platform."""
     base, edge = float(wall.meridian.points[0, 0]), platform.radius - 2.0 * platform.off
     if platform.radius == 0.0 or base <= edge + TOUCH:
         return []
     mounted = (
         platform.off > 0.0 and base <= platform.radius - platform.off + TOUCH
-    )  # its axis in the middle
+    )  # would fit with the axis at the platform's centre
     return [
         Issue(
             WARNING,
@@ -137,7 +137,7 @@ def refuse_below(
 ) -> None:
     """Reject deposit below the platform.
 
-    Outside the disc there is room below its plane.
+    Outside the disc, deposit may be below its plane.
 
     Parameters
     ----------
@@ -173,7 +173,7 @@ def refuse_below(
 
 
 def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> None:
-    """Reject solids on a hub that reach below the platform, outside their base surfaces.
+    """Reject solids on a hub that extend below the platform, outside their base surfaces.
 
     Parameters
     ----------
@@ -191,7 +191,7 @@ def refuse_solids_below(solids: SolidsOnHub, frame: Array, diameter: float) -> N
     """
 
     def over(corners: Array) -> Mask:
-        """Which triangles (n, 3, 3) may come over the disc, or below it."""
+        """Return which triangles (n, 3, 3) may be above or below the disc."""
         flat = (corners - frame[:3, 3]) @ frame[:3, :2]
         middle = flat.mean(axis=1)
         reach = np.linalg.norm(flat - middle[:, None], axis=2).max(axis=1)
@@ -216,18 +216,18 @@ def _off_platform(what: str, remedy: str) -> InputError:
     )
 
 
-CHORD = 0.01  # mm; chord error of the beads in the check, unless their own is larger
-# mm; largest nozzle movement that an incompletely converged direction may cause
+CHORD = 0.01  # mm; minimum chord error of the beads in the check
+# mm; maximum nozzle movement that an incompletely converged direction may cause
 CONVERGED = 0.01
 
 
 @dataclass(frozen=True, eq=False)
 class Deposit:
-    """Points (k,) of every bead in the order of deposit, in the feature frame: radius, height mm, azimuth rad.
+    """Points (k,) of all beads in print order, in the feature frame: radius and height, mm, azimuth, rad.
 
-    build: (k, 3) the requested build directions, along radius, azimuth and axis. moment: (k,) at which each is there. starts: (k,)
-    where a bead begins. case: (k,) the number of the case whose tilt-back applies, interpolated between two cases. size: width
-    and height of the beads, mm.
+    build: (k, 3) requested build directions along radius, azimuth and axis. moment: (k,) time index at which the point
+    is deposited. starts: (k,) whether a bead begins. case: (k,) index of the case whose tilt-back applies, fractional
+    between two cases. size: width and height of the beads, mm.
     """
 
     radius: Array
@@ -246,15 +246,17 @@ class Deposit:
         Returns
         -------
         (k, 3) array
-            mm.
+            Points, mm.
         """
         return _place(self.radius, self.azimuth, self.height)
 
 
 @dataclass(frozen=True, eq=False)
 class Tips:
-    """Tip positions, case by case: radius, height mm and azimuth rad (c,); the moment before which deposit exists, and the moment
-    from which it belongs to the current layer (c,).
+    """Tip positions of c cases: radius and height, mm, azimuth, rad, (c,).
+
+    moment: (c,) time index before which deposit exists. own_moment: (c,) time index from which deposit belongs to the
+    current layer.
     """
 
     radius: Array
@@ -264,30 +266,33 @@ class Tips:
     own_moment: Index
 
     def rows(self, index: Index) -> Tips:
-        """The rows of an index."""
+        """Return the selected tips."""
         return Tips(*(getattr(self, entry.name)[index] for entry in dataclasses.fields(self)))
 
 
 @dataclass(frozen=True)
 class Clearance:
-    """The nozzle, enlarged by the tolerance of the deposit, at tips above bodies. foot: mm, the tolerance about the current bead."""
+    """The nozzle, enlarged by the tolerance of the deposit, at tips above bodies.
+
+    foot: tolerance about the current bead, mm.
+    """
 
     tips: Tips
     deposit: Deposit
     nozzle: Nozzle
     foot: float
     bodies: Bodies
-    between: Tips | None = None  # the points of the deposit, if the tips do not represent it
+    between: Tips | None = None  # points of the deposit, if the tips do not represent them
 
     def standing(self, build: Array, like: Scene | None = None) -> Scene:
-        """Return the scene with the deposit of beads in given directions.
+        """Return the scene with the deposit for given build directions.
 
         Parameters
         ----------
         build : (k, 3) array
             Build directions at the points of the deposit, along radius, azimuth and axis.
         like : Scene, optional
-            The scene with other directions, whose order is used again.
+            A scene with other directions, whose order is reused.
 
         Returns
         -------
@@ -317,7 +322,7 @@ class Clearance:
         among : Scene
             The scene with tilted beads.
         case : (n,) int array
-            Numbers of the cases.
+            Indices of the cases.
         tool : (n, 3) array
             Tool axes along radius, azimuth and axis.
 
@@ -329,7 +334,7 @@ class Clearance:
         return self._clear(among, self.tips, case, tool)
 
     def clear_between(self, among: Scene, tool: Array) -> Mask:
-        """Return where the nozzle is clear at the points between.
+        """Return where the nozzle is clear at the points `between`.
 
         Parameters
         ----------
@@ -341,7 +346,7 @@ class Clearance:
         Returns
         -------
         (k,) array of bool
-            True where it touches nothing.
+            True where clear.
         """
         assert self.between is not None
         return self._clear(among, self.between, np.arange(len(tool)), tool)
@@ -363,7 +368,7 @@ def nozzle_clearance(
     chord_error: float,
     between: Tips | None = None,
 ) -> Clearance:
-    """Return the nozzle over a platform and a deposit.
+    """Build the clearance check of a nozzle against a platform and a deposit.
 
     Parameters
     ----------
@@ -378,7 +383,7 @@ def nozzle_clearance(
     deposit : Deposit
         The deposit.
     chord_error : float
-        Largest distance of the deposit's points from their curves, mm.
+        Chord error of the deposit, mm.
     between : Tips or None, optional
         Points of the deposit, if the tips do not represent them; None otherwise.
 
@@ -408,8 +413,8 @@ def arc_points(
 ) -> tuple[Index, Array]:
     """Return the points of arcs seen from a point at azimuth 0.
 
-    Points to both sides, or to one side only; of full circles one half. They have the spacing
-    of a bead, so that the arc has the same segments.
+    The points are on both sides, or only on one side; of a full circle, on one half. They have
+    the point spacing of a bead, so that the arc has the same segments.
 
     Parameters
     ----------
@@ -420,7 +425,7 @@ def arc_points(
     chord_error : float
         Chord error of the bead, mm.
     min_points : int
-        Fewest points of a full turn.
+        Minimum number of points of a full turn.
     one_side : bool
         Whether only one side is needed.
 
@@ -429,7 +434,7 @@ def arc_points(
     bead : (k,) int array
         Arc of each point.
     azimuth : (k,) array
-        Its azimuth, rad.
+        Azimuth of each point, rad.
     """
     full = turn >= 2.0 * np.pi
     counts = np.array(
@@ -448,7 +453,7 @@ def _place(radius: Array, azimuth: Array, height: Array) -> Array:
 
 
 def _in_space(direction: Array, azimuth: Array) -> Array:
-    """Directions (n, 3) in the feature frame from their components along radius, azimuth and axis."""
+    """Convert directions (n, 3) from components along radius, azimuth and axis to the feature frame."""
     c, s = np.cos(azimuth), np.sin(azimuth)
     along, across, up = columns(direction)
     return np.stack([along * c - across * s, along * s + across * c, up], axis=1)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts of revolution: a wall in, layers of beads or one spiral with build directions out
-(Chalvin 2020, sections 2.1 and 6.1)."""
+"""Parts of revolution: layers of beads or one spiral, with build directions.
+
+Chalvin 2020, sections 2.1 and 6.1.
+"""
 
 from __future__ import annotations
 
@@ -29,12 +31,12 @@ from . import clearance
 from .clearance import Deposit, Tips
 from .tilt import Tilting
 
-SPACING_BAND = 0.2  # of the layer height (Chalvin 2020, section 2.1)
+SPACING_BAND = 0.2  # fraction of the layer height; maximum deviation (Chalvin 2020, section 2.1)
 
 
 @dataclass(frozen=True, eq=False)
 class Slices:
-    """The beads of every layer in the order of deposit: layer index (m,), radius and height (m,) mm, tangent (m, 2)."""
+    """Beads of all layers in print order: layer index (m,), radius and height (m,) mm, tangent (m, 2)."""
 
     layer: Index
     radius: Array
@@ -52,11 +54,11 @@ def plan(
     platform_frame: Array | None = None,
     progress: Progress = silent,
 ) -> Toolpath:
-    """Return the toolpath of a wall of revolution.
+    """Plan the toolpath of a wall of revolution.
 
-    Layers are spaced by arc length or height; points per bead follow from the chord error;
-    build directions from the mode, capped and tilted back until the nozzle is clear. A spiral
-    is one layer with one open bead.
+    Layers are spaced by arc length or height. The chord error determines the number of points per
+    bead. Build directions follow from the mode; they are capped, and tilted back until the nozzle
+    is clear. A spiral is one layer with one open bead.
 
     Parameters
     ----------
@@ -71,11 +73,11 @@ def plan(
     nozzle : NozzleParameters
         The nozzle to keep clear.
     platform_diameter : float
-        Diameter of the platform, mm; 0 without one.
+        Diameter of the platform, mm; 0 without a platform.
     platform_frame : (4, 4) array or None, optional
         Pose of the platform in part coordinates; None if the feature frame is on it.
     progress : callable, optional
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
@@ -134,9 +136,9 @@ def plan(
 
 
 def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, list[Issue]]:
-    """Return the beads of every layer of a wall of revolution.
+    """Slice a wall of revolution into the beads of its layers.
 
-    A bead whose radius is no more than the chord error is a point, and is skipped.
+    A bead with a radius of at most the chord error would be a point and is skipped.
 
     Parameters
     ----------
@@ -148,14 +150,14 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
     Returns
     -------
     slices : Slices
-        The beads in the order of deposit.
+        The beads in print order.
     issues : list of Issue
         Notes on the remainder at the top, skipped beads and uneven spacing.
 
     Raises
     ------
     InputError
-        LAYER_HEIGHT if the wall is lower than a layer.
+        LAYER_HEIGHT if the wall is lower than a layer height.
     """
     meridian = wall.meridian
     along_wall = strategy.spacing == "arc-length"
@@ -236,7 +238,7 @@ def _layers(
     tilting: Tilting,
     first_tilting: Tilting,
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
-    """One layer per index, its beads turned about the axis. first_tilting: the lean of the tool on the first layer."""
+    """Build the layers by rotating the beads about the axis; first_tilting: tilting on the first layer."""
     azimuths, rising = [], []
     for index, (layer, radius) in enumerate(zip(slices.layer, slices.radius, strict=True)):
         segments = turn_segments(
@@ -252,7 +254,7 @@ def _layers(
     builds, tools, issues = tilting.resolve(
         slices.radius, slices.height, slices.tangent, azimuths, rising, slices.layer
     )
-    if first_tilting.parameters != tilting.parameters:  # below it is nothing that leans another way
+    if first_tilting.parameters != tilting.parameters:  # no layer with another lean is below
         count = int((slices.layer == 0).sum())
         below, below_tools, first_issues = first_tilting.resolve(
             slices.radius[:count],
@@ -285,7 +287,7 @@ def _bead(
 ) -> Bead:
     angles = azimuth.copy()
     if wall.full:
-        angles[-1] = angles[0]  # the last point is the first, to the bit
+        angles[-1] = angles[0]  # first and last point are bit-identical
     n = len(azimuth)
     points = wall.points(np.full(n, slices.radius[index]), np.full(n, slices.height[index]), angles)
     return Bead(
@@ -299,9 +301,9 @@ def _bead(
     )
 
 
-# ---- The wall as one continuous open bead that rises along the wall by a layer height per turn
+# ---- The wall as one continuous open bead that rises by a layer height per turn along the wall
 
-PER_TURN = 8  # places to a turn at which the tilt-back is settled
+PER_TURN = 8  # positions per turn at which the tilt-back is computed
 
 
 def spiral_layers(
@@ -309,10 +311,9 @@ def spiral_layers(
 ) -> tuple[tuple[Layer, ...], list[Issue]]:
     """Return the spiral of a wall as one layer with one open bead.
 
-    It starts with the full turn of the base circle, rises by a layer height per turn along the
-    wall, and ends with a full turn at an open top. On a top closed on the axis it ends where
-    the radius is half a layer height. The bead's parameter is the angle unwrapped over all
-    turns.
+    The spiral starts with a full turn on the base circle, rises by a layer height per turn along
+    the wall, and ends with a full turn at an open top. On a top closed on the axis it ends where
+    the radius is half a layer height. The bead's parameter is the angle unwrapped over all turns.
 
     Parameters
     ----------
@@ -330,12 +331,12 @@ def spiral_layers(
     layers : tuple of Layer
         The layer.
     issues : list of Issue
-        Notes on tilts and on places with less room than a layer height.
+        Notes on tilts and on over-deposited turns.
 
     Raises
     ------
     InputError
-        PARTIAL_TURN for a wall that is not a full turn; LAYER_HEIGHT as layers do.
+        PARTIAL_TURN for a wall that is not a full turn; LAYER_HEIGHT as for layers.
 
     References
     ----------
@@ -368,8 +369,10 @@ def spiral_layers(
 
 
 def _over_itself(turns: Array, end: float, pitch: float, closed_top: bool) -> list[Issue]:
-    """Notes with the places where the spiral has less than a layer height of room above its turn before: in the turn that
-    rises from the flat first one, and in the flat last one of an open top."""
+    """Return notes where the spiral is less than a layer height above its previous turn.
+
+    This is in the turn that rises from the flat first turn, and in the flat last turn at an open top.
+    """
     issues = []
     start = int(np.searchsorted(turns, 2.0 * math.pi - 1e-9))
     if end > 0.0 and start < len(turns) - 1:
@@ -392,7 +395,7 @@ def _over_itself(turns: Array, end: float, pitch: float, closed_top: bool) -> li
 
 
 def _end(meridian: Meridian, pitch: float) -> float:
-    """Arc length at which the spiral ends."""
+    """Return the arc length at which the spiral ends."""
     if not meridian.closed_top:
         return meridian.length
     low, high = 0.0, meridian.length
@@ -409,7 +412,10 @@ def _end(meridian: Meridian, pitch: float) -> float:
 def _turn_angles(
     meridian: Meridian, end: float, pitch: float, strategy: RevolutionParameters
 ) -> Array:
-    """Angles turned (n,) rad, from 0; each turn evenly divided within the chord error, with a point on each kink."""
+    """Return the angles (n,) of the spiral's points, rad, from 0.
+
+    Each turn is divided evenly within the chord error, with a point on each kink.
+    """
     flat_from = 2.0 * math.pi * (1.0 + end / pitch)
     total = flat_from + (0.0 if meridian.closed_top else 2.0 * math.pi)
     kinks = 2.0 * math.pi * (1.0 + meridian.kinks / pitch)
@@ -429,14 +435,14 @@ def _turn_angles(
 def _segments(
     meridian: Meridian, a: float, b: float, pitch: float, end: float, strategy: RevolutionParameters
 ) -> int:
-    """Segments between two angles turned: the second derivative of the curve in the angle bounds the chord error."""
+    """Return the number of segments between two angles; the curve's second derivative bounds the chord error."""
     rate = pitch / (2.0 * math.pi)
     s = np.clip(rate * (np.linspace(a, b, 17) - 2.0 * math.pi), 0.0, end)
     radius, _, tangent = meridian.at(s)
     bend = np.linalg.norm(np.diff(tangent, axis=0), axis=1)[1:-1] / np.maximum(
         np.diff(s)[1:-1], 1e-12
     )
-    # 1.05: the meridian's bend is sampled, not bounded
+    # 1.05: the meridian's curvature is sampled, not bounded
     acceleration = math.hypot(radius.max() + 1.05 * bend.max() * rate**2, 2.0 * rate)
     step = min(
         largest_step(acceleration, strategy.chord_error), 2.0 * math.pi / strategy.min_points
@@ -447,8 +453,11 @@ def _segments(
 def _directions(
     meridian: Meridian, turns: Array, s: Array, rising: bool, tilting: Tilting
 ) -> tuple[Array, Array, list[Issue]]:
-    """Build directions and tool axes (n, 3) at angles turned and arc lengths (n,). The tilt-back is settled at PER_TURN
-    places to a turn; between them it is interpolated from the larger of neighbours, so that it is never too small."""
+    """Return build directions and tool axes (n, 3) at angles and arc lengths (n,).
+
+    The tilt-back is computed at PER_TURN positions per turn. In between it is interpolated from the larger of adjacent
+    values, so that it is never too small.
+    """
     knots = np.linspace(0.0, turns[-1], step_count(turns[-1] * PER_TURN, 2.0 * math.pi) + 1)
     knot_s = np.interp(knots, turns, s)
     radius, height, tangent = meridian.at(knot_s)
@@ -457,7 +466,7 @@ def _directions(
     number = np.arange(len(s))
 
     def tips(where: tuple[Array, Array, Array], turned: Array, moment: Index) -> Tips:
-        # deposit of the last turn belongs to the current layer
+        # deposit of the previous turn belongs to the current layer
         own_moment = np.searchsorted(turns, turned - 2.0 * math.pi - SEAM)
         return Tips(where[0], where[1], sense * turned, moment, own_moment)
 

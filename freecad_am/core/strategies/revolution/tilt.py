@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Build directions and tool axes of circles about the axis: mode, lead and tilt, cap, clearance of the nozzle.
+"""Build directions and tool axes of circles about the axis: mode, lead and tilt, cap, nozzle clearance.
 
-All beads of a layer turn as one: a bead is tilted back as a whole, by what its worst point needs. Only the bead of
-a part of a turn with one direction per layer differs from point to point.
+A bead is tilted back as a whole, by the angle that its worst point needs. Only for partial turns with one direction per
+layer does the required angle differ from point to point.
 """
 
 from __future__ import annotations
@@ -35,8 +35,10 @@ from .clearance import (
 
 @dataclass(frozen=True, eq=False)
 class Cases:
-    """One row per case to be judged: bead (k,), build direction (k, 3), running sense (k,). chained: all are along one bead,
-    on which directions run evenly from one to the next."""
+    """Cases to check: bead (k,), build direction (k, 3), running sense (k,).
+
+    chained: whether all cases are along one bead, with directions interpolated between cases.
+    """
 
     bead: Index
     build: Array
@@ -49,7 +51,7 @@ class Cases:
         Parameters
         ----------
         mask : (k,) array of bool
-            Some cases, at least one.
+            Marked cases, at least one.
 
         Returns
         -------
@@ -60,10 +62,10 @@ class Cases:
         return earlier
 
     def together(self, angle: Array) -> Array:
-        """Return the tilt-back that all cases of a bead have in common.
+        """Return the common tilt-back of all cases of a bead.
 
-        In a chain each case takes the largest of its own and its neighbours' angles, so
-        that interpolated ones are never too small.
+        In a chain, each case takes the maximum of its angle and the adjacent angles, so that
+        interpolated angles are never too small.
 
         Parameters
         ----------
@@ -73,7 +75,7 @@ class Cases:
         Returns
         -------
         (k,) array
-            The largest, rad; NaN if a case has none.
+            Maximum angles, rad; NaN if a case has no solution.
         """
         if self.chained:
             larger: Array = np.maximum(
@@ -85,19 +87,17 @@ class Cases:
         return worst
 
 
-PLACES_PER_ARC = 12  # points of an arc at which the nozzle is checked before every point is
-COARSE = 0.01  # rad, to which directions are found while they still change much
-SWEEPS = 40  # over all beads, at most
-FREE_SWEEPS = 6  # after which no direction goes back
-MAX_ROUNDS = (
-    8  # times that directions are tilted back further where others, or points between, need it
-)
-STEP_RAD, SLIGHT = np.radians(10.0), np.radians(1.0)  # by how much
+PLACES_PER_ARC = 12  # points of an arc at which the nozzle is checked before all points are checked
+COARSE = 0.01  # rad; accuracy of directions while they still change much
+SWEEPS = 40  # maximum number of sweeps over all beads
+FREE_SWEEPS = 6  # number of sweeps after which no tilt-back may decrease
+MAX_ROUNDS = 8  # maximum number of rounds that tilt directions back further for other beads or points between
+STEP_RAD, SLIGHT = np.radians(10.0), np.radians(1.0)  # maximum tilt-back steps of these rounds
 
 
 @dataclass(frozen=True)
 class Tilting:
-    """Everything that decides the tool axes of a wall. bead_width: mm."""
+    """Inputs that determine the tool axes of a wall. bead_width: mm."""
 
     wall: RevolvedWall
     strategy: RevolutionParameters
@@ -113,7 +113,7 @@ class Tilting:
         Returns
         -------
         width, height : float
-            mm.
+            Width and height, mm.
         """
         return self.bead_width, self.strategy.layer_height
 
@@ -136,7 +136,7 @@ class Tilting:
         Parameters
         ----------
         radius, height : (m,) array
-            The beads in the order of deposit, mm.
+            Radius and height of the beads in print order, mm.
         tangent : (m, 2) array
             Meridian tangents, radius and axis.
         azimuths : sequence of Array
@@ -144,13 +144,13 @@ class Tilting:
         rising : sequence of bool
             Whether each bead runs with rising azimuth.
         layer : (m,) int array
-            Layers that issues name.
+            Layer of each bead, for issues.
 
         Returns
         -------
         build : list of (n, 3) or (1, 3) array
-            Build directions of each bead along radius, azimuth and axis; one row if the
-            same at every point.
+            Build directions of each bead along radius, azimuth and axis; one row if equal at all
+            points.
         tool : list of (n, 3) or (1, 3) array
             Tool axes.
         issues : list of Issue
@@ -162,7 +162,7 @@ class Tilting:
                 radius, height, self._means(tangent, azimuths), azimuths, sense, layer
             )
         cases = self._circles(tangent, sense)
-        # a tool in the plane of the axis meets the same on both sides
+        # a tool in the plane of the axis has the same obstacles on both sides
         turn = 2.0 * np.pi if self.wall.full else self.wall.end - self.wall.start
         bead, azimuth = arc_points(
             radius, turn, self.chord, self.strategy.min_points, self._upright
@@ -202,8 +202,9 @@ class Tilting:
         rising: Mask,
         layer: Index,
     ) -> tuple[list[Array], list[Array], list[Issue]]:
-        """The same if directions (k, 3) differ from point to point along the beads: the nozzle is checked at PLACES_PER_ARC points of
-        each, and then at every point.
+        """Resolve beads whose directions (k, 3) differ from point to point.
+
+        The nozzle is checked at PLACES_PER_ARC points of each bead, and then at every point.
         """
         counts = np.array([len(azimuth) for azimuth in azimuths])
         bead, azimuth = np.repeat(np.arange(len(counts)), counts), np.concatenate(azimuths)
@@ -215,7 +216,7 @@ class Tilting:
         rows = np.concatenate([start + sample for start, sample in zip(begin, looks, strict=True)])
         number = (
             np.searchsorted(rows, np.arange(len(bead)), side="right") - 1
-        )  # the last place before each point
+        )  # the last checked point before each point
         cases = Cases(bead[rows], build[rows], rising[bead[rows]])
         tips = Tips(
             radius[bead], height[bead], azimuth, bead + 1, np.searchsorted(layer, layer)[bead]
@@ -244,7 +245,7 @@ class Tilting:
     def tilt_back(
         self, tangent: Array, rising: bool, tips: Tips, deposit: Deposit, between: Tips
     ) -> tuple[Array, list[Issue]]:
-        """Return the tilt-back of tips along one bead, never less than a neighbour's.
+        """Return the tilt-back of tips along one bead, never less than that of adjacent tips.
 
         Parameters
         ----------
@@ -257,7 +258,7 @@ class Tilting:
         deposit : Deposit
             The deposit.
         between : Tips
-            Every point of the bead.
+            All points of the bead.
 
         Returns
         -------
@@ -316,7 +317,7 @@ class Tilting:
     def _resolved(
         self, cases: Cases, clearance: Clearance, layer: Index
     ) -> tuple[Array, list[Issue]]:
-        """Tilt-back (k,) rad of the cases, and issues; layer: (m,) layers of the beads, that issues name."""
+        """Return the tilt-back of the cases, (k,) rad, and issues; layer: (m,) layers of the beads, for issues."""
         capped = self._capped(cases)
         if self.parameters.clearance == "nozzle":
             angle = self._cleared(cases, capped, clearance)
@@ -339,7 +340,7 @@ class Tilting:
 
     @property
     def _lean(self) -> float:
-        """Between tool axis and build direction, rad."""
+        """Angle between tool axis and build direction, rad."""
         return float(np.arccos(np.cos(self.parameters.lead) * np.cos(self.parameters.tilt)))
 
     @property
@@ -356,7 +357,7 @@ class Tilting:
         return tool
 
     def _capped(self, cases: Cases) -> Array:
-        """Tilt-back (k,) that brings the tool within the cap; the whole way where even that is not enough."""
+        """Return the tilt-back (k,) that brings the tool within the cap; the full angle if even that is insufficient."""
         cap = self.parameters.max_tilt
         if self._upright:
             return np.maximum(directions.from_vertical(cases.build) - cap, 0.0)
@@ -369,9 +370,9 @@ class Tilting:
         return np.where(np.isnan(angle), directions.from_vertical(cases.build), angle)
 
     def _cleared(self, cases: Cases, low: Array, clearance: Clearance) -> Array:
-        """Tilt-back (k,) that clears the nozzle, `low` or more; NaN where none does.
+        """Return the tilt-back (k,), at least `low`, that clears the nozzle; NaN if none does.
 
-        Obstructing beads before a bead without a solution are tilted back further if that helps.
+        If it helps a bead without a solution, earlier obstructing beads are tilted back further.
         """
         max_angle = directions.from_vertical(cases.build)
         first_angles = angles = self._resolved_over(cases, low, clearance, low)
@@ -384,8 +385,9 @@ class Tilting:
         return angles if not np.isnan(angles).any() else first_angles
 
     def _further(self, cases: Cases, angle: Array, clearance: Clearance) -> Array:
-        """Tilt-back (k,) rad that cases need at least, 0 if the present one suffices: for cases before one without a solution, and for
-        cases next to deposit points at which the nozzle touches even so.
+        """Return the minimum tilt-back of cases, (k,) rad, 0 if the present tilt-back suffices.
+
+        It is raised for cases before a case without a solution, and for cases next to deposit points with contact.
         """
         max_angle = directions.from_vertical(cases.build)
         tips = clearance.tips
@@ -396,7 +398,7 @@ class Tilting:
             distance = np.hypot(
                 *(column[:, None] - column[stuck] for column in (tips.radius, tips.height))
             )
-            # the nearest beads most, so that directions change gradually from bead to bead
+            # most for the nearest beads, so that directions change gradually from bead to bead
             share = np.where(
                 np.arange(len(angle))[:, None] < stuck, 1.0 - distance / deposit.size[0], 0.0
             ).max(axis=1)
@@ -414,10 +416,11 @@ class Tilting:
         return further
 
     def _resolved_over(self, cases: Cases, low: Array, clearance: Clearance, start: Array) -> Array:
-        """Tilt-back (k,) that clears the nozzle over tilted beads, `low` or more, searched from `start` on; NaN where none does.
+        """Return the tilt-back (k,), at least `low`, that clears the nozzle over tilted beads; NaN if none does.
 
-        Beads extend along their directions: the tilt of one depends on earlier beads, and on itself on the far side. So every case is
-        solved again over the new tilts of the others, until none changes. If that oscillates, no tilt decreases.
+        The search begins at `start`. Beads extend along their directions, so the tilt of a bead depends on earlier beads
+        and on its own far side. Every case is therefore solved again with the new tilts of other cases until none
+        changes. To end oscillations, tilts may no longer decrease after FREE_SWEEPS sweeps.
         """
         max_angle, deposit = directions.from_vertical(cases.build), clearance.deposit
         number = np.arange(len(low), dtype=float)
@@ -447,7 +450,7 @@ class Tilting:
             if change.max() <= still:
                 break
             angle = now
-            # cases without tilt before every changed case stay without
+            # cases without tilt before every changed case keep no tilt
             free = (needed_angle == low) & cases.before(change > 0.0)
             about = needed_angle[:, None] + np.outer(2.0 * change + within, [-1.0, 1.0])
         return np.where(stuck, np.nan, now)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads of a layer from curves on the plane: wrapped, with directions and speeds."""
+"""Beads of a layer from curves on the plane: wrapped onto the layer, with directions and speeds."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ from .filling import bead_width
 from .flattened_bead import Course
 from .torch_tilt import Lean, Turned, hold_torch
 
-OUTLINE = 0.55  # of the bead spacing; beads along an outline are half a spacing inside, the next are farther
-PROBES = 9  # the longest edges, which decide the side of the outline
+OUTLINE = 0.55  # bead spacings; maximum distance from the outline of beads along it (nominal: 0.5)
+PROBES = 9  # number of longest edges that decide the side of the outline
 
 
 def leaning(
@@ -47,15 +47,15 @@ def leaning(
 ) -> Lean:
     """Return how the torch leans on a curve.
 
-    The lead and tilt of the build direction apply. A contour, or a spiral as long as it runs
-    along the outline, is also deflected towards the outline.
+    The lead and tilt of the build direction apply. On a contour, and on a spiral while it runs
+    along the outline, the torch is also deflected towards the outline.
 
     Parameters
     ----------
     curve : PlaneCurve
         The curve on the plane.
     layer : Slice
-        Its layer.
+        Layer of the curve.
     strategy : FilledParameters
         Deflection and bead spacing.
     build : BuildDirectionParameters
@@ -82,25 +82,31 @@ def leaning(
     middle = curve.points[longest] + 0.5 * edges[longest]
     is_left = (
         sines(edges[longest], nearest_among(layer.borders, middle)[0] - middle).sum() > 0.0
-    )  # the outline, of the curve
+    )  # the outline is left of the curve
     side = -1.0 if is_left else 1.0
     return Lean(build.lead, build.tilt + side * strategy.deflection, build.tilt, until)
 
 
-WRAP_SHARE = 0.5  # share of the chord error between a bead's chords and the surface
-GRID = 6  # decimals of mm that decide between points
-NEEDLESS = 0.02  # share of the chord error that a point has to matter by: offsets leave pairs of points at each node
-SHARES = 0.02  # of a bead's usual width, resolution of the shares
-MIN_DISTANCE_MM = (
-    2e-3  # mm; nearer points are merged: no controller resolves the time of such a move
+WRAP_SHARE = 0.5  # fraction of the chord error between a bead's chords and the surface
+GRID = 6  # decimals of mm to which points are rounded for comparison
+NEEDLESS = (
+    0.02  # fraction of the chord error; minimum effect of a needed point (offsets double the nodes)
 )
-AGILE = 500.0  # mm/s^2; what every machine follows, where nothing but the speed sets the width
-BRIEF = 1.0001e-4  # s; shortest move, for narrow beads, which are deposited faster, would have shorter ones
+SHARES = 0.02  # resolution of bead shares, as a fraction of the nominal width
+MIN_DISTANCE_MM = (
+    2e-3  # mm; nearer points are merged, because no controller resolves the time of such a move
+)
+AGILE = (
+    500.0  # mm/s^2; acceleration that every machine follows, used if only the speed sets the width
+)
+BRIEF = 1.0001e-4  # s; minimum duration of a move (narrow, fast beads would have shorter moves)
 
 
 class MadeBead(NamedTuple):
-    """A bead with its report: where (n,) the speed cannot hold the width, where it bends more than the table's beads, None without a
-    bead model; and how the torch turns.
+    """A bead with its report.
+
+    clamped: (n,) where the speed for the width is outside the table. tight: (n,) where the bend is tighter than in the
+    table. Both are None without a bead model. turned: rotation of the torch.
     """
 
     bead: Bead
@@ -119,14 +125,14 @@ def bead_of(
 ) -> MadeBead:
     """Return the bead of a curve, with the settings and lean of its class.
 
-    The variable of its polynomial is the arc length, scaled to one turn (2 pi).
+    The variable of the bead's polynomial is the arc length, scaled to one turn (2 pi).
 
     Parameters
     ----------
     curve : PlaneCurve
         The curve on the plane.
     layer : Slice
-        Its layer.
+        Layer of the curve.
     strategy : FilledParameters
         Chord error, spacing and deflection.
     build : BuildDirectionParameters
@@ -134,7 +140,7 @@ def bead_of(
     process : ProcessParameters
         Speeds by class.
     model : BeadModel or None
-        Bead model that sets the speeds; None for the travel speed.
+        Bead model that sets the speeds; None to use the travel speed.
 
     Returns
     -------
@@ -181,7 +187,7 @@ def bead_of(
 
 
 class BeadMaker:
-    """Makes beads of curves by `bead_of`. A curve that comes again in another plane layer has the same bead, moved."""
+    """Make beads of curves with `bead_of`; a curve repeated in another planar layer reuses its bead, translated."""
 
     def __init__(
         self,
@@ -195,7 +201,7 @@ class BeadMaker:
         self._made: dict[tuple[PlaneCurve, str], tuple[Base, PlaneLayer, MadeBead]] = {}
 
     def bead_of(self, curve: PlaneCurve, layer: Slice) -> MadeBead:
-        """The bead of a curve of a layer."""
+        """Return the bead of a curve in a layer."""
         surface = layer.surface
         if not self._may_move or not isinstance(surface, PlaneLayer):
             return bead_of(curve, layer, *self._parameters)
@@ -210,7 +216,7 @@ class BeadMaker:
 
 
 def _thinned(dense: MadeBead) -> MadeBead:
-    """The bead without points that follow another too soon for any controller."""
+    """Remove points that follow the previous point too soon for any controller."""
     is_kept = _sparse(dense.bead.points, dense.bead.speed[1:], BRIEF)
     if is_kept.all():
         return dense
@@ -230,8 +236,10 @@ def _set_speed(
     process: ProcessParameters,
     model: BeadModel | None,
 ) -> MadeBead:
-    """The bead, flat (n, 2) on the plane, at the speeds that hold its width. share: (n,) of the usual width; heights: (n,) mm of
-    the layer there, not used with a bead model; None if uniform.
+    """Return a bead at the speeds that keep its width.
+
+    flat: (n, 2) points on the plane. share: (n,) fraction of the nominal width, None if uniform. heights: (n,) local
+    layer height, mm, None if uniform; not used with a bead model.
     """
     if model is not None:
         radius = radii(flat, closed, process.bead_width)
@@ -245,7 +253,7 @@ def _set_speed(
     speed = limit_acceleration(
         flat, process.travel_speed / section, closed, max(process.acceleration, AGILE)
     )
-    section = process.travel_speed / speed  # at one wire feed
+    section = process.travel_speed / speed  # at constant wire feed
     bead = replace(bead, speed=segment_speeds(speed))
     if share is None:
         return MadeBead(replace(bead, height=strategy.layer_height * section))
@@ -254,8 +262,9 @@ def _set_speed(
 
 
 def _sparse(points: Array, speed: Array, min_step: float) -> Mask:
-    """Mask of the points (n, k) of a polyline with at least `min_step` between them along it, lengths divided by the pace (n-1,) of
-    its segments; both ends stay.
+    """Return the mask of polyline points (n, k) at least `min_step` apart; both ends stay.
+
+    Distances are along the polyline and divided by the speed (n-1,) of the segments.
     """
     arc = running_sums(np.linalg.norm(np.diff(points, axis=0), axis=1) / speed)
     is_kept: Mask = np.ones(len(arc), dtype=bool)
@@ -264,13 +273,13 @@ def _sparse(points: Array, speed: Array, min_step: float) -> Mask:
     is_kept[0] = is_kept[-1] = True
     rows = np.flatnonzero(is_kept)
     between = np.linalg.norm(np.diff(points[rows], axis=0), axis=1) / speed[rows[1:] - 1]
-    # neighbours across a step of the count: the first of the two is enough
+    # of two adjacent points on both sides of a step, the first is enough
     is_kept[rows[1:-1][between[:-1] < min_step]] = False
     return is_kept
 
 
 def needed(line: Array, chord_error: float, besides: Mask | None = None) -> Array:
-    """Remove points that the chord error does not need, and coinciding ones.
+    """Remove coinciding points and points that the chord error does not need.
 
     Parameters
     ----------
@@ -288,7 +297,7 @@ def needed(line: Array, chord_error: float, besides: Mask | None = None) -> Arra
     """
     grid = np.ascontiguousarray(
         np.round(line, GRID) + 0.0
-    )  # the same rounding for equal points wherever the hub is
+    )  # equal points round equally for any position of the hub
     simple = np.ascontiguousarray(simplified(grid, NEEDLESS * chord_error))
     is_kept = np.isin(grid.view(np.complex128).ravel(), simple.view(np.complex128).ravel())
     is_kept[[0, -1]] = True
@@ -297,13 +306,13 @@ def needed(line: Array, chord_error: float, besides: Mask | None = None) -> Arra
     return result
 
 
-EXACT = 3e-3  # of the volume of a part; solids that share more overlap
+EXACT = 3e-3  # fraction of the part volume; solids that share more overlap
 
 
 def layer_volumes(
     strategy: FilledParameters, covers: Sequence[Cover]
 ) -> tuple[float, float, float]:
-    """Return the volumes of layers.
+    """Return total, missed and stray volume of layers.
 
     Parameters
     ----------
@@ -333,29 +342,28 @@ def volumes(
     within: Array | None = None,
     numbers: Sequence[int] = (),
 ) -> tuple[float, float, float]:
-    """Return the volumes of the part, of its missed places, and of stray deposit.
+    """Return part volume, missed volume and stray volume.
 
-    The cut solids count as high as their layers, so that the volume above the last cut is
-    missed, and layers beyond the part are stray.
+    Each cut solid counts as high as its layers. Volume above the last cut is therefore missed,
+    and layers beyond the part are stray.
 
     Parameters
     ----------
     part_volume : float or None
-        Volume of the part, mm3; None, with a margin or an open part, for a part as large as
-        its layers.
+        Volume of the part, mm3. None, with a margin or an open part, means a part as large as its
+        layers.
     strategy : FilledParameters
         Layer height.
     covers : sequence of Cover
         Areas of the layers.
     uncut : float, optional
-        Volume of solids without a layer cut, which are missed, whatever layers of others
-        reach beyond them, mm3.
+        Volume of solids without a layer cut, mm3. It counts as missed even if other solids'
+        layers extend beyond the part.
     within : (k,) array or None, optional
-        Volume of the part within each layer, mm3, so that missed volume of one layer is not
-        balanced by stray deposit of another. None: only the sum over the layers is
-        compared.
+        Volume of the part within each layer, mm3, so that stray deposit in a layer does not
+        offset missed volume in another layer. None compares only the sum over the layers.
     numbers : sequence of int, optional
-        Layer numbers of the covers.
+        Layer indices of the covers.
 
     Returns
     -------
@@ -404,7 +412,7 @@ def slab_volumes(solids: SolidsOnHub, strategy: FilledParameters) -> Array | Non
     Returns
     -------
     (k,) array or None
-        Volumes, mm3; None for layers that are not planes.
+        Volumes, mm3; None if layers are not planes.
     """
     group = group_of(solids)
     if group is None or strategy.has_curved_layers or strategy.follows_guide:
@@ -418,7 +426,7 @@ def twice_volume(
     covers: Sequence[Cover],
     width: float,
 ) -> float:
-    """Return the volume of beads beyond the area that they cover.
+    """Return the over-deposited volume: bead volume in excess of the covered area.
 
     Each bead counts as wide as its spacing.
 
@@ -431,12 +439,12 @@ def twice_volume(
     covers : sequence of Cover
         Areas of the layers.
     width : float
-        Width of beads without their own, mm.
+        Width of beads without a predicted width, mm.
 
     Returns
     -------
     float
-        mm3.
+        Volume, mm3.
     """
     area = 0.0
     for bead in (made_bead.bead for made_bead in made_beads):

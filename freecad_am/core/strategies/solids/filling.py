@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers filled: equal regions once, and open gaps reported with their position in the part."""
+"""Filling of layers: equal regions are filled once, and open gaps reported with their location in the part."""
 
 from __future__ import annotations
 
@@ -36,24 +36,28 @@ from ...types import Array
 
 Same = TypeVar("Same", bound=FilledParameters)
 
-TOLERANCE_MM = 1e-6  # mm; regions whose borders are no farther apart are equal
-DEFAULT_WIDTH_MM = ProcessParameters().bead_width  # mm; a width that is other than that was given
-AREA_STEP = 0.01  # mm^2; areas of regions equal within TOLERANCE_MM differ by less
-PLACES = 7  # of moves in mm; the same with other rounding errors are one
-SIZE_STEP = 0.001  # mm; so do widths
-MOST_FED = 1.5  # of the room in a layer; beads that overlap by a third
-USUAL_SPACING = (
-    0.738  # of a width, at which the surface between beads is flat (Ding, Pan, Cuiuri, Li 2015)
+TOLERANCE_MM = 1e-6  # mm; maximum distance between the borders of equal regions
+DEFAULT_WIDTH_MM = ProcessParameters().bead_width  # mm; any other width was set by the user
+AREA_STEP = 0.01  # mm^2; more than the area difference of regions equal within TOLERANCE_MM
+PLACES = 7  # decimals of translations, mm, that are compared without rounding errors
+SIZE_STEP = 0.001  # mm; more than the width difference of equal regions
+MOST_FED = (
+    1.5  # maximum ratio of fed volume to layer volume; 1.5 corresponds to an overlap of one third
 )
-WELL_FILLED = 0.01  # of a region; where beads of the usual width miss or repeat less, they stay
-BETTER = 0.8  # of the faults of beads of the usual width; others must have fewer to be used
-OVERLAP_SHARE = 0.03  # of a region, deposited over its other beads
-FULL_RANGE = (1.0, 1.0)  # widths that all beads have
-WALL_KINDS = ("contour", "centre")  # of beads that are no part of a sparse pattern
+USUAL_SPACING = (
+    0.738  # bead widths; spacing with a flat surface between beads (Ding, Pan, Cuiuri, Li 2015)
+)
+WELL_FILLED = 0.01  # fraction of a region; maximum fault at which beads of nominal width stay
+BETTER = 0.8  # maximum ratio of the fault of adaptive beads to the fault of beads of nominal width
+OVERLAP_SHARE = (
+    0.03  # fraction of a region; maximum over-deposition at which beads are not narrowed
+)
+FULL_RANGE = (1.0, 1.0)  # width range of beads of nominal width
+WALL_KINDS = ("contour", "centre")  # kinds of beads that are not part of a sparse pattern
 
 
 class Bare(NamedTuple):
-    """A place without a bead: its area, mm^2, its width, mm, and a point (2,) in it."""
+    """An area without a bead: area, mm^2, width, mm, and a point (2,) in it."""
 
     area: float
     width: float
@@ -61,7 +65,9 @@ class Bare(NamedTuple):
 
 
 class Filled(NamedTuple):
-    """The beads of a layer on the plane, its issues, the bead numbers of each region, from inside out, the coverage, and the places
+    """A filled layer.
+
+    curves: beads on the plane. islands: bead indices of each region, from inside out. cover: coverage. bare: areas
     without a bead.
     """
 
@@ -73,7 +79,7 @@ class Filled(NamedTuple):
 
 
 class _Filling(NamedTuple):
-    """What a layer is filled with, and at what angle, rad, on its plane."""
+    """Fill settings of a layer, with the fill angle on its plane, rad."""
 
     beads: Beads
     angle: float
@@ -89,10 +95,10 @@ class _Picture(NamedTuple):
     gaps: Gaps
     cover: Cover
     bare: list[Bare]
-    unfilled: list[Bare]  # rooms inside the walls where a sparse pattern has no line
+    unfilled: list[Bare]  # areas inside the walls without a line of the sparse pattern
 
     def move(self, by: Array) -> _Picture:
-        """The picture of the region moved by (2,) mm."""
+        """Return the picture translated by (2,) mm."""
         return self._replace(
             curves=[replace(curve, points=curve.points + by) for curve in self.curves],
             gaps=[(point + by, width) for point, width in self.gaps],
@@ -102,8 +108,10 @@ class _Picture(NamedTuple):
 
 
 class _Outline(NamedTuple):
-    """What equal regions have in common wherever they are: the numbers of points of their borders; area in steps of AREA_STEP;
-    width and height in steps of SIZE_STEP.
+    """Translation-invariant key of a region.
+
+    point_counts: number of points of each border. area_steps: area in steps of AREA_STEP. size_steps: width and height
+    in steps of SIZE_STEP.
     """
 
     point_counts: tuple[int, ...]
@@ -111,7 +119,7 @@ class _Outline(NamedTuple):
     size_steps: tuple[int, int]
 
     def similar(self) -> Iterator[_Outline]:
-        """Outlines of regions that are equal within TOLERANCE_MM: a size may be on either side of a step."""
+        """Yield the keys of regions equal within TOLERANCE_MM; a size may be on either side of a step."""
         for by, wider, higher in product((0, -1, 1), repeat=3):
             wide, high = self.size_steps
             yield _Outline(self.point_counts, self.area_steps + by, (wide + wider, high + higher))
@@ -125,14 +133,15 @@ def _outline(region: Region) -> _Outline:
 
 
 class Pictures:
-    """Fills layers. Solids that differ by a turn about the hub's axis have equal regions up to rounding: the beads of the first
-    serve for all within TOLERANCE_MM.
+    """Fill layers, reusing the beads of regions equal within TOLERANCE_MM.
+
+    Solids that differ by a rotation about the hub's axis have equal regions, except for rounding.
     """
 
     def __init__(
         self, strategy: FilledParameters, process: ProcessParameters, width: float = 0.0
     ) -> None:
-        """width: mm of a bead, 0: the spacing."""
+        """Create the cache; `width` is the bead width, mm, 0 for the bead spacing."""
         self._strategy = strategy
         self._process = process
         self._width = width
@@ -143,8 +152,10 @@ class Pictures:
         self._turned: dict[PlaneCurve, PlaneCurve] = {}
 
     def filled(self, layer: Slice, name: str) -> Filled:
-        """The beads of a layer, with a name for messages; every other curve is reversed if directions of closed ones alternate, or
-        starts of open ones are spread. Raises InfeasibleError THIN_REGION.
+        """Return the filled layer; `name` is for messages.
+
+        Every other curve is reversed if closed curves alternate their direction or open curves spread their starts.
+        Raises InfeasibleError THIN_REGION.
         """
         strategy, filling = self._strategy, self._filling(layer)
         curves: list[PlaneCurve] = []
@@ -187,14 +198,14 @@ class Pictures:
             bare += picture.bare
             unfilled += picture.unfilled
         issues = self._issues(layer, curves, gaps, filling)
-        if curves and bare:  # layers without any bead are named together
+        if curves and bare:  # layers without beads share one issue
             issues = (*issues, _no_bead(layer, bare))
         if unfilled:
             issues = (*issues, _no_infill(layer, unfilled, strategy.fill_density))
         return Filled(curves, issues, islands, total(covers), bare)
 
     def _reversed(self, curve: PlaneCurve) -> PlaneCurve:
-        """A curve the other way, the same object each time: its bead is made once."""
+        """Return the reversed curve, always the same object so that its bead is made once."""
         if curve not in self._turned:
             self._turned[curve] = curve.reversed()
         return self._turned[curve]
@@ -202,13 +213,13 @@ class Pictures:
     def _issues(
         self, layer: Slice, curves: Sequence[PlaneCurve], gaps: Gaps, filling: _Filling
     ) -> tuple[Issue, ...]:
-        """The issues of a layer: open gaps, single beads that protrude, a replaced pattern."""
+        """Return the issues of a layer: open gaps, protruding single beads, a replaced pattern."""
         strategy, beads, issues = self._strategy, filling.beads, []
         regions = tuple(region for region in layer.regions if isinstance(region, Region))
         all_round = len(regions) < len(layer.regions)
         if not all_round and strategy.fill_density == 1.0:
             regions = join(regions, beads.gap)
-            if regions != layer.regions:  # open places on both sides of a slit are one gap
+            if regions != layer.regions:  # openings on both sides of a slit are one gap
                 gaps = [gap for region in regions for gap in open_places(region, curves, beads)]
         if gaps:
             point, width = max(gaps, key=lambda gap: gap[1])
@@ -245,9 +256,14 @@ class Pictures:
         return tuple(issues)
 
     def _filling(self, layer: Slice) -> _Filling:
-        """What a layer is filled with: the same picture wherever round the hub its solid is, turned from layer to layer."""
+        """Return the fill settings of a layer.
+
+        They do not depend on the azimuth of the solid on the hub. The fill angle rotates from layer to layer.
+        """
         strategy, process = self._strategy, self._process
-        turned = layer.surface.plane_rotation(layer.azimuth)  # the picture, by the cutting line
+        turned = layer.surface.plane_rotation(
+            layer.azimuth
+        )  # rotation of the plane by the cutting line
         beads = Beads(
             strategy.bead_spacing,
             strategy.gap * strategy.bead_spacing,
@@ -273,7 +289,7 @@ class Pictures:
         )
 
     def _picture(self, layer: Slice, region: Region | Strip, filling: _Filling) -> _Picture:
-        """A region filled, as one before it where that was the same."""
+        """Fill a region, or reuse the picture of an equal region."""
         flat = layer.surface.period is None
         if isinstance(region, Strip):
             return self._fill_region(
@@ -281,7 +297,7 @@ class Pictures:
             )
         period, outline = layer.surface.period, _outline(region)
         has_direction = self._strategy.has_direction
-        may_move = flat and filling.infill.density == 1.0  # sparse patterns have fixed places
+        may_move = flat and filling.infill.density == 1.0  # sparse patterns have a fixed position
         for similar in outline.similar():
             for picture in self._pictures.get((period, similar), ()):
                 assert isinstance(picture.region, Region)
@@ -299,17 +315,17 @@ class Pictures:
         return picture
 
     def _move(self, picture: _Picture, by: Array) -> _Picture:
-        """A picture moved by (2,) mm, the same object for the same place in other layers."""
+        """Translate a picture by (2,) mm; equal translations return the same object."""
         place = (
             id(picture),
             tuple(np.round(by, PLACES).tolist()),
-        )  # pictures are kept, so an id is not used again
+        )  # pictures stay alive, so ids are not reused
         if place not in self._moved:
             self._moved[place] = picture.move(by)
         return self._moved[place]
 
     def _fill_region(self, region: Region | Strip, filling: _Filling, flat: bool) -> _Picture:
-        """Fill a region; open places are not reported if room is left on purpose. flat: no curve goes round the surface."""
+        """Fill a region; intentional gaps are not reported. flat: no curve closes around the surface."""
         strategy, (beads, angle, infill) = self._strategy, filling
         sparse, (min_share, max_share) = infill.density < 1.0, strategy.spacing_range
         share = 1.0
@@ -341,7 +357,7 @@ class Pictures:
         ):
             curves = narrow_beads(
                 curves, filling.beads, angle, strategy.narrowest
-            )  # no wider than their room, and centred in it
+            )  # limits the width to the available space and centres the curves in it
             cover = measure_cover(region, curves, filling.beads)
         adapted = None
         if strategy.adapts_widths and flat and isinstance(region, Region):
@@ -363,9 +379,7 @@ class Pictures:
 def _adapt_widths(
     region: Region, curves: Sequence[PlaneCurve], beads: Beads, strategy: FilledParameters
 ) -> tuple[Sequence[PlaneCurve], Cover, Gaps] | None:
-    """Contours of adaptive width, their cover and the gaps they leave; None where they fill a region no
-    better than its curves.
-    """
+    """Return contours of adaptive width with cover and gaps; None if they do not fill the region better."""
     fault = _fault(region, curves, beads)
     if fault < WELL_FILLED:
         return None
@@ -377,7 +391,7 @@ def _adapt_widths(
 
 
 def _fault(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> float:
-    """Share of a region that beads miss, deposit twice or deposit beside it, as reports measure it."""
+    """Return the fraction of a region with missed, over-deposited or stray area, as in reports."""
     section = Section(np.eye(4), tuple(region.borders()), beads.spacing, narrowest=beads.narrowest)
     width = 2.0 * beads.inset
     strokes = [_stroke(curve, width) for curve in curves]
@@ -388,7 +402,7 @@ def _fault(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> float:
 
 
 def _stroke(curve: PlaneCurve, width: float) -> Stroke:
-    """The deposit of a curve, with the usual width in mm."""
+    """Return the deposit of a curve; `width` is the nominal width, mm."""
     points, share = curve.closed_points()
     widths = np.full(len(points), width) if share is None else width * share
     return Stroke(points, 0.5 * (widths[1:] + widths[:-1])).drop_repeats()
@@ -397,7 +411,7 @@ def _stroke(curve: PlaneCurve, width: float) -> Stroke:
 def _unfilled(
     region: Region, curves: Sequence[PlaneCurve], beads: Beads, rounds: float
 ) -> list[Bare]:
-    """Rooms inside the walls of a region, each with space for a bead, if its sparse pattern has no line."""
+    """Return the areas inside a region's walls that could hold a bead, if the sparse pattern has no line in the region."""
     is_pattern = [curve.kind not in WALL_KINDS or curve.ring >= rounds for curve in curves]
     if math.isinf(rounds) or any(is_pattern):
         return []
@@ -411,7 +425,7 @@ def _unfilled(
 
 
 def _no_infill(layer: Slice, unfilled: Sequence[Bare], density: float) -> Issue:
-    """The issue of rooms of a layer where a sparse pattern has no line."""
+    """Report the areas of a layer without a line of the sparse pattern."""
     largest = max(unfilled, key=lambda room: room.area)
     return Issue(
         NOTE,
@@ -430,7 +444,7 @@ def _no_infill(layer: Slice, unfilled: Sequence[Bare], density: float) -> Issue:
 
 
 def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
-    """The issue of places of a layer without a bead."""
+    """Report the areas of a layer without a bead."""
     largest = max(bare, key=lambda bare_place: bare_place.area)
     return Issue(
         WARNING,
@@ -450,7 +464,7 @@ def _no_bead(layer: Slice, bare: Sequence[Bare]) -> Issue:
 
 
 def _weighed(curve: PlaneCurve) -> float:
-    """mm of usual bead that deposits as much as a curve."""
+    """Return the length of a bead of nominal width with the same volume as a curve, mm."""
     points, share = curve.closed_points()
     segment_lengths = np.hypot(*np.diff(points, axis=0).T)
     return float(
@@ -459,7 +473,7 @@ def _weighed(curve: PlaneCurve) -> float:
 
 
 def spaced(strategy: Same, process: ProcessParameters) -> Same:
-    """The same with the bead spacing that the overlap asks for, if one is given."""
+    """Return the parameters with the bead spacing that follows from the overlap, if one is given."""
     if strategy.bead_overlap is None:
         return strategy
     return replace(strategy, bead_spacing=process.bead_width * (1.0 - strategy.bead_overlap))
@@ -468,26 +482,26 @@ def spaced(strategy: Same, process: ProcessParameters) -> Same:
 def bead_width(
     strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None
 ) -> float:
-    """Return how wide beads count, as `process.fill_width` says.
+    """Return the effective bead width, as selected by `process.fill_width`.
 
     Parameters
     ----------
     strategy : FilledParameters
         Bead spacing, mm, and overlap.
     process : ProcessParameters
-        Bead width, mm, and which of width and spacing counts.
+        Bead width, mm, and the choice between width and spacing.
     model : BeadModel or None
         The bead model.
 
     Returns
     -------
     float
-        mm.
+        Width, mm.
 
     Raises
     ------
     InputError
-        BEAD_SPACING if the spacing is larger, so that stripes would stay open.
+        BEAD_SPACING if the spacing exceeds the width, so that stripes would stay open.
     """
     spacing, width = strategy.bead_spacing, process.bead_width
     is_known = model is not None or strategy.bead_overlap is not None or width != DEFAULT_WIDTH_MM
@@ -510,10 +524,10 @@ def bead_width(
 def over_fed(
     strategy: FilledParameters, process: ProcessParameters, model: BeadModel | None, width: float
 ) -> list[Issue]:
-    """Warn if beads are so close that the wire fills a layer more than MOST_FED times.
+    """Warn if the wire feeds more than MOST_FED times the layer volume because beads are too close.
 
-    The feed is for their width, from the bead model or as given. If beads are not much wider than
-    their spacing, `wire.set_wire_feed` checks a given feed.
+    The feed is that for the bead width, from the bead model or as given. If beads are not much wider
+    than their spacing, `wire.set_wire_feed` checks a given feed.
 
     Parameters
     ----------
@@ -524,7 +538,7 @@ def over_fed(
     model : BeadModel or None
         The bead model.
     width : float
-        How wide beads count, mm.
+        Effective bead width, mm.
 
     Returns
     -------
@@ -553,7 +567,7 @@ def over_fed(
 
 
 def _fed_section(process: ProcessParameters, model: BeadModel | None, usual: float) -> float:
-    """What the wire feeds for each mm of a straight bead, mm2; usual: where nothing else says how much."""
+    """Return the wire volume per mm of a straight bead, mm2; `usual` if the feed is automatic."""
     if model is not None:
         speed = model.straight_speed(process.bead_width)
         return process.wire.section * model_wire_feed(process, model) / speed
@@ -579,7 +593,7 @@ def _wider_apart(
             USUAL_SPACING * width,
             spacing / USUAL_SPACING,
         )
-    balanced = section / strategy.layer_height  # mm apart
+    balanced = section / strategy.layer_height  # mm; bead spacing that balances the feed
     if balanced > width:
         return Text(
             "set strategy.layer_height to {:.3g} mm, or reduce the wire feed",
@@ -594,7 +608,7 @@ def _wider_apart(
 
 
 def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> list[Issue]:
-    """The issue of single beads in regions narrower than they are."""
+    """Report single beads in regions narrower than the bead."""
     curves = [
         curve for curve in curves if curve.kind == "centre" and curve.ring == 0 and not curve.dot
     ]
@@ -624,7 +638,7 @@ def _standing_out(layer: Slice, curves: Sequence[PlaneCurve], beads: Beads) -> l
 
 
 def _same(filling: _Filling, other_filling: _Filling, has_direction: bool) -> bool:
-    """Whether equal regions are filled in the same way. has_direction: whether the angle matters."""
+    """Whether two fillings of equal regions are the same; has_direction: whether the angle matters."""
     between = filling.angle - other_filling.angle if has_direction else 0.0
     turned = max(
         abs(math.remainder(between, 2.0 * math.pi)),
@@ -649,7 +663,7 @@ def _same(filling: _Filling, other_filling: _Filling, has_direction: bool) -> bo
 
 
 def _equal(borders: Sequence[Array], other_borders: Sequence[Array]) -> bool:
-    """Whether borders (n, 2) are the same within TOLERANCE_MM, wherever they begin."""
+    """Whether borders (n, 2) are equal within TOLERANCE_MM, for any start point."""
     if [len(border) for border in borders] != [len(other_border) for other_border in other_borders]:
         return False
     for border, other_border in zip(borders, other_borders):

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A flattened bead with its surface, and its normals spread along it where they turn too fast.
+"""A flattened bead with its surface; normals that turn too fast are spread along the bead.
 
-A curved layer through a solid bends as sharply as corners of its outline: one layer height from it, its normals turn by a
-radian per layer height. Such normals may depart from the layer there. Normals of a hub, or of faces, may not.
+A curved layer through a solid bends as sharply as the corners of the outline: at one layer height from a corner, its
+normals turn by a radian per layer height. Such normals may deviate from the layer's normals. The normals of a hub or of
+faces may not.
 """
 
 from __future__ import annotations
@@ -20,15 +21,17 @@ from ...parameters.build_direction import TURN_ON_HUBS, BuildDirectionParameters
 from ...slicing.wall_directions import limit_turns, turn_rates
 from ...types import Array
 
-OF_NORMAL = 1.5  # a leaning torch may always turn this much faster than the normals
-RATE_MARGIN = 0.98  # of the turn asked for, so that points added later keep to it too
-LEAST_DEPARTURE = math.radians(0.1)  # a departure from the requested axis that counts
+OF_NORMAL = 1.5  # ratio of the allowed turn rate of a leaning torch to the turn rate of the normals
+RATE_MARGIN = 0.98  # fraction of the requested turn rate, so that points added later stay within it
+LEAST_DEPARTURE = math.radians(0.1)  # minimum deviation from the requested axis that counts
 
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """A flattened bead (n, 2), and its surface; a closed one repeats its first point, or ends a period from it. spread: normals
-    (n, 3) at its points that replace the normals of the surface.
+    """A flattened bead (n, 2) with its surface.
+
+    A closed bead repeats its first point, or ends one period from it. spread: (n, 3) normals at the points that replace
+    the surface normals, if any.
     """
 
     flat: Array
@@ -55,7 +58,7 @@ class Course:
         normals : (n, 3) array
             Unit normals.
         turn : (n,) array
-            Angle of the plane's x from the first axis of the surface, rad.
+            Angle of the plane's x axis from the first axis of the surface, rad.
         """
         flat = np.stack([np.interp(s, arc, column) for column in self.flat.T], axis=-1)
         points, normals, turn = self.surface.wrap(flat)
@@ -69,8 +72,10 @@ class Course:
 
 
 class Evened(NamedTuple):
-    """The bead with normals that turn no faster than asked, by how much (rad) they depart from the surface's at most, and
-    over how much of the length (mm)."""
+    """A bead whose normals are within the allowed turn rate.
+
+    departure: maximum angle from the surface normals, rad. length: length with changed normals, mm.
+    """
 
     course: Course
     departure: float
@@ -78,21 +83,21 @@ class Evened(NamedTuple):
 
 
 def limit(surface: LayerSurface, build: BuildDirectionParameters, normal_rate: float) -> float:
-    """Return how fast the torch may turn on a bead.
+    """Return the maximum turn rate of the torch on a bead.
 
     Parameters
     ----------
     surface : LayerSurface
         The layer surface.
     build : BuildDirectionParameters
-        Build direction with the largest turn.
+        Build direction with the maximum turn rate.
     normal_rate : float
-        Turn of the bead's normals, rad/mm.
+        Turn rate of the bead's normals, rad/mm.
 
     Returns
     -------
     float
-        rad/mm.
+        Turn rate, rad/mm.
     """
     max_rate = build.turn(max(TURN_ON_HUBS, OF_NORMAL * normal_rate))
     return min(max_rate, build.turn()) if surface.bends_freely else max_rate
@@ -101,23 +106,23 @@ def limit(surface: LayerSurface, build: BuildDirectionParameters, normal_rate: f
 def evened(course: Course, arc: Array, build: BuildDirectionParameters, leaning: bool) -> Evened:
     """Spread the normals of a bead where they turn too fast.
 
-    This takes as little length as possible. Normals that cannot be slowed enough stay.
+    The changed length is as short as possible. Normals that cannot be slowed enough stay.
 
     Parameters
     ----------
     course : Course
         The flattened bead with its surface.
     arc : (n,) array
-        Positions of its points, mm.
+        Positions of the bead's points, mm.
     build : BuildDirectionParameters
-        Build direction with the largest turn.
+        Build direction with the maximum turn rate.
     leaning : bool
-        Whether the torch also turns against the normals.
+        Whether the torch also rotates relative to the normals.
 
     Returns
     -------
     Evened
-        The bead, the departure of its normals and the length concerned.
+        The bead, the deviation of its normals and the affected length.
     """
     max_rate = build.turn() / (OF_NORMAL if leaning else 1.0)
     if not course.surface.bends_freely or max_rate == math.inf:

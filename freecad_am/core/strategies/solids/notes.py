@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Issues about the beads of solids: speeds, widths, heights against the layer height, waits, repairs; and how the torch turns
-along them: spread at corners, leaning less, fast normals.
+"""Issues about the beads of solids.
+
+Speeds, widths, heights against the layer height, waits and repairs; and torch rotation: spread at corners, reduced lean,
+fast normals.
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ from .filling import FULL_RANGE
 from .flattened_bead import LEAST_DEPARTURE
 from .torch_tilt import Turned
 
-SLIGHTLY = 0.01  # of the travel speed; smaller differences are not reported
+SLIGHTLY = 0.01  # fraction of the travel speed; minimum difference that is reported
 WIDTH_TEXT = "as wide as the available space, {:.3g} to {:.3g} mm"
 HIGH = "as high as their layer is there, {:.3g} to {:.3g} mm"
 
@@ -43,20 +45,20 @@ def notes(
     made_beads : sequence of MadeBead
         The beads with their reports.
     layers : sequence of Layer
-        The layers in the order of deposit.
+        The layers in print order.
     strategy : FilledParameters
         Layer height, spacing and waits.
     build : BuildDirectionParameters
-        Build direction with the largest turn.
+        Build direction with the maximum turn rate.
     process : ProcessParameters
         Speeds and wire.
     model : BeadModel or None
-        Bead model that sets the speeds; None without one.
+        Bead model that sets the speeds, if any.
 
     Returns
     -------
     list of Issue
-        Speeds or model, single layers, waits and turns of the torch.
+        Issues about speeds or model, single layers, waits and torch rotation.
     """
     height = strategy.layer_height
     issues = (
@@ -106,8 +108,10 @@ def notes(
 def _speeds(
     layers: Sequence[Layer], strategy: FilledParameters, process: ProcessParameters
 ) -> list[Issue]:
-    """At which speeds one wire feed makes beads as wide as their room and as high as their layer, where these are others
-    than usual; at the bead that departs most from its travel speed."""
+    """Report the speeds at which a constant wire feed gives beads of varying width or height.
+
+    The issue is at the bead that deviates most from its travel speed.
+    """
     classes = {bead.role.bead_class for layer in layers for bead in layer.beads}
     usual = {name: process.for_class(name).travel_speed for name in classes}
     deviations = [
@@ -145,8 +149,10 @@ def _speeds(
 
 
 def _for_one_speed(strategy: FilledParameters, high: bool) -> str:
-    """What gives all beads the same width and height, and so one speed; '' where nothing is left to give. high: heights
-    differ, which layers along a guide have."""
+    """Return the settings that give all beads the same width and height, and so the same speed; '' if none.
+
+    high: whether heights differ, as in layers along a guide.
+    """
     settings = [
         *(["strategy.layers: planes"] if high else []),
         *(["strategy.fill: contours"] if strategy.fill == "connected" else []),
@@ -161,14 +167,14 @@ def _for_one_speed(strategy: FilledParameters, high: bool) -> str:
 
 
 def _ends(columns: Sequence[Array]) -> tuple[float, float]:
-    """The least and the largest value of several columns."""
+    """Return the minimum and the maximum of several columns."""
     return min(float(column.min()) for column in columns), max(
         float(column.max()) for column in columns
     )
 
 
 def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[Issue]:
-    """The issue of solids, or groups of solids deposited in turn, with a single layer."""
+    """Report solids, or groups of solids deposited together, with a single layer."""
     starts = [*(index for index, layer in enumerate(layers) if layer.first), len(layers)]
     single = [start for start, end in zip(starts, starts[1:]) if end - start == 1]
     if not single:
@@ -192,7 +198,7 @@ def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[
 def _leans(
     made_beads: Sequence[MadeBead], layers: Sequence[Layer], build: BuildDirectionParameters
 ) -> list[Issue]:
-    """At most one issue of a kind, at the bead where it is worst."""
+    """Report torch rotation with at most one issue of each kind, at the worst bead."""
     turned = {
         id(made_bead.bead): made_bead.turned
         for made_bead in made_beads

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids: cut by a field of layers, filled, ordered and deposited at speeds that hold the bead's width (Dai 2020)."""
+"""Solids: cut into layers, filled, ordered and deposited at speeds that keep the bead width (Dai 2020)."""
 
 from __future__ import annotations
 
@@ -44,16 +44,23 @@ from .beads import BeadMaker, MadeBead, slab_volumes, twice_volume, volumes
 from .filling import Bare, Pictures, bead_width, over_fed, spaced
 from .notes import notes
 
-FINER = 8.0  # times, where a solid cuts another one
-INWARDS = 1e-3  # of the distance to its middle, by which a corner of a triangle is moved inwards
-PLACES = 10_000  # squares of the surface of the solids, for the side length of triangles
-CONTACT_CHORDS = 3.0  # chord errors; closer surfaces count as one
-MIN_CONTACT_MM = 1e-3  # mm; the same, however small the chord error
-TOUCHING = 3e-3  # of the volume; solids that share less, as far as it can be measured, only touch
+FINER = 8.0  # refinement factor where a solid cuts another solid
+INWARDS = (
+    1e-3  # fraction of the distance to the centroid by which a triangle corner is moved inwards
+)
+PLACES = (
+    10_000  # number of squares on the surface of the solids; their size limits the triangle edges
+)
+CONTACT_CHORDS = 3.0  # chord errors; maximum distance of coinciding surfaces
+MIN_CONTACT_MM = 1e-3  # mm; lower bound of this distance
+TOUCHING = 3e-3  # fraction of the volume; solids that share less only touch, within accuracy
 
 
 def part_volume(solids: SolidsOnHub) -> float | None:
-    """Volume, mm3, of the solids outside of their hubs, shared volume counted once; None if one is open."""
+    """Return the volume of the solids outside of their hubs, mm3; None if a solid is open.
+
+    Volume shared by several solids counts once.
+    """
     exact_volume = solids_beyond(solids)
     if exact_volume is not None:
         return exact_volume
@@ -63,7 +70,7 @@ def part_volume(solids: SolidsOnHub) -> float | None:
 
 
 def _union_volume(bodies: Sequence[Body], tolerance: float) -> float | None:
-    """Volume, mm3, of the union of bodies. tolerance: mm within which surfaces count as one."""
+    """Return the volume of the union of bodies, mm3; surfaces within `tolerance`, mm, coincide."""
     insides = [inside_of(body) for body in bodies]
     volumes = [SolidMesh(body.vertices, body.triangles).volume for body in bodies]
     if any(inside is None for inside in insides):
@@ -95,8 +102,9 @@ def _union_volume(bodies: Sequence[Body], tolerance: float) -> float | None:
 
 
 def _hidden_volume(corner: Array, longest: float, hidden: Callable[[Array, Array], Mask]) -> float:
-    """The volume, mm3, of the hidden sections of triangles (m, 3, 3); partly hidden pieces are divided FINER times finer. hidden:
-    of points (n, 3) with areas (n, 3).
+    """Return the volume, mm3, below the hidden parts of triangles (m, 3, 3), from the origin.
+
+    Partly hidden pieces are divided FINER times finer. hidden: predicate for points (n, 3) with areas (n, 3).
     """
     pieces = _divided(corner, longest)
     areas, middles = doubled_areas(pieces) / 2.0, pieces.mean(axis=1)
@@ -118,8 +126,10 @@ def _hidden_volume(corner: Array, longest: float, hidden: Callable[[Array, Array
 def _hiding(
     number: int, other_bodies: Sequence[tuple[int, Inside]], tolerance: float, origin: Array
 ) -> Callable[[Array, Array], Mask]:
-    """The predicate for points (n, 3) from an origin, on the surface of a body with outward areas (n, 3): inside other bodies, or on
-    surfaces of others that face the other way; if surfaces face the same way the first one counts.
+    """Return the predicate `hidden` for surface points (n, 3) of a body, from an origin, with outward areas (n, 3).
+
+    A point is hidden inside another body, or on a coinciding surface that faces the opposite way. Of coinciding
+    surfaces that face the same way, only the first body's surface is visible.
     """
 
     def hidden(points: Array, areas: Array) -> Mask:
@@ -135,7 +145,7 @@ def _hiding(
 
 
 def _divided(corner: Array, longest: float) -> Array:
-    """Triangles (n, 3, 3): those given, (m, 3, 3), halved until no side is longer than `longest`."""
+    """Halve triangles (m, 3, 3) until no side is longer than `longest`; return triangles (n, 3, 3)."""
     pieces = []
     while len(corner):
         side = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
@@ -152,7 +162,7 @@ def _divided(corner: Array, longest: float) -> Array:
 
 
 class BareLayer(NamedTuple):
-    """A layer of a stack without a bead, although the part has places there."""
+    """A layer of a stack that has regions of the part but no bead."""
 
     stack: Stack
     layer: Slice
@@ -160,7 +170,7 @@ class BareLayer(NamedTuple):
 
 
 def empty_layer_issues(bare: Sequence[BareLayer], course: Course) -> list[Issue]:
-    """One issue for the layers of each stack without beads: which they are, the area of each, and the largest place."""
+    """Return one issue per stack that lists the layers without beads, with area and largest location."""
     issues = []
     for stack in dict.fromkeys(bare_layer.stack for bare_layer in bare):
         stack_layers = [bare_layer for bare_layer in bare if bare_layer.stack == stack]
@@ -208,7 +218,7 @@ def empty_layer_issues(bare: Sequence[BareLayer], course: Course) -> list[Issue]
 
 
 def ranges(numbers: Sequence[int]) -> str:
-    """Format numbers, with consecutive ones as a range: 0-6, 9."""
+    """Format numbers, with consecutive numbers as ranges: 0-6, 9."""
     runs: list[list[int]] = []
     for number in sorted(set(numbers)):
         if runs and number == runs[-1][-1] + 1:
@@ -218,7 +228,7 @@ def ranges(numbers: Sequence[int]) -> str:
     return ", ".join(str(run[0]) if len(run) == 1 else f"{run[0]}-{run[-1]}" for run in runs)
 
 
-PLANE_TOLERANCE_MM = 1e-6  # mm, and of the cosine of an angle
+PLANE_TOLERANCE_MM = 1e-6  # mm; also the tolerance of cosines
 
 
 def plan(
@@ -229,12 +239,12 @@ def plan(
     model: BeadModel | None,
     progress: Progress = silent,
 ) -> Toolpath:
-    """Return the toolpath of solids: layer i is i layer heights above their base.
+    """Plan the toolpath of solids; layer i is i layer heights above the base.
 
     Parameters
     ----------
     solids : SolidsOnHub
-        The solids and their bases.
+        The solids with their bases.
     strategy : FilledParameters
         Layers, filling, margin and order.
     build : BuildDirectionParameters
@@ -242,9 +252,9 @@ def plan(
     process : ProcessParameters
         Speeds and bead width.
     model : BeadModel or None
-        Bead model that sets the speeds; None if the travel speed applies everywhere.
+        Bead model that sets the speeds; None to use the travel speed everywhere.
     progress : callable, optional
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
@@ -278,11 +288,11 @@ def plan(
     issues: list[tuple[Stack, Issue]] = []
     bare: list[BareLayer] = []
     covers: list[Cover] = []
-    numbers: list[int] = []  # of the layers of the covers
+    numbers: list[int] = []  # layer index of each cover
     sections: list[tuple[Stack, int, Section]] = []
     heights: dict[
         int, list[float]
-    ] = {}  # least and largest of each layer in all stacks, where it is not as high everywhere
+    ] = {}  # minimum and maximum height of each uneven layer over all stacks
     order = IslandOrder(as_below=strategy.min_layer_time > 0.0)
     stacks = list(field.stacks(solids, strategy))
     for stack_number, stack in enumerate(stacks):
@@ -375,7 +385,7 @@ def plan(
 
 
 def _numbered(issue: Issue, stack: Stack, course: Course) -> Issue:
-    """An issue of a layer of a stack with the number that this layer has in the toolpath; without one where it is not in it."""
+    """Return an issue of a stack's layer with the layer index in the toolpath, None if the toolpath lacks the layer."""
     if issue.layer is None:
         return issue
     return replace(issue, layer=course.number(stack.group, stack.solid, issue.layer))
@@ -407,8 +417,10 @@ def _refuse_mode(planes: bool, strategy: FilledParameters, build: BuildDirection
 
 
 def clear_by_itself(toolpath: Toolpath, solids: SolidsOnHub) -> bool:
-    """Whether nothing can be above the tip of the nozzle: layers are planes, each wholly below the next, the tool is upright, and
-    the surroundings end below the first.
+    """Whether nothing can be above the nozzle tip.
+
+    This is so if each layer is a plane below the next layer, the tool is upright, and all obstacles are below the first
+    layer.
     """
     up, origin = solids.groups[0].base.frame[:3, 2], solids.groups[0].base.frame[:3, 3]
     previous_height = -np.inf
@@ -427,16 +439,15 @@ def clear_by_itself(toolpath: Toolpath, solids: SolidsOnHub) -> bool:
 
 
 def lift_axis_limits(build: BuildDirectionParameters) -> BuildDirectionParameters:
-    """The same with tool axes that may point anywhere: on a hub they do, and the machine turns it."""
+    """Remove the tilt limit: on a hub tool axes point in any direction, because the machine rotates the hub."""
     return replace(build, max_tilt=np.pi)
 
 
-# ---- Sections of the part in plane layers, kept in the toolpath to measure how well the beads fill
-# them
+# ---- Sections of the part in planar layers, kept in the toolpath to measure how well beads fill them
 
 
 def section_of(layer: Slice, strategy: FilledParameters) -> Section | None:
-    """The section of a part in a layer; None where the layer is curved."""
+    """Return the section of the part in a layer; None for a curved layer."""
     surface = layer.surface
     regions = [region for region in layer.regions if isinstance(region, Region)]
     if not isinstance(surface, Flat) or not regions:
@@ -455,21 +466,22 @@ def section_of(layer: Slice, strategy: FilledParameters) -> Section | None:
 def add_sections(
     layers: Sequence[Layer], sections: Sequence[tuple[Stack, int, Section]], course: Course
 ) -> tuple[Layer, ...]:
-    """The layers with the sections they fill.
+    """Store in each layer the section that its beads fill.
 
     Parameters
     ----------
     layers : sequence of Layer
         All layers of the toolpath, in the order of the course.
     sections : sequence of (Stack, int, Section)
-        A section, its stack, and the number of its layer in this stack.
+        Stack, layer index in this stack, and section.
     course : Course
-        Finds the layer of the toolpath; sections of layers it leaves out are dropped.
+        Maps layers of stacks to layers of the toolpath. Sections of omitted layers are dropped.
 
     Returns
     -------
     tuple of Layer
-        Several sections in one layer are joined, and sparse if one of them is. Layers without a section have None.
+        The layers. Several sections in one layer are joined, and sparse if any of them is sparse. Layers without a
+        section have None.
     """
     by_layer: dict[int, Section] = {}
     for stack, stack_layer, section in sections:
@@ -488,21 +500,25 @@ def add_sections(
     )
 
 
-# ---- Solids, and closed pieces of meshes, without a layer cut: thinner than a layer, or between
-# two cuts. Regions covered by the beads of other solids are deposited all the same, such as a thin
-# sheet below a thick one.
+# ---- Solids and closed mesh pieces without a layer cut: thinner than a layer, or between two cuts.
+# They count as deposited where beads of other solids cover them, such as a thin sheet below a thick
+# one.
 
-PIECE_PLACES = 4000  # in the box about a piece, at which it is looked whether beads cover it
-MIN_SAMPLES, MAX_SAMPLES = 3, 60  # sample points along one axis
-LEAST_SHARE = 0.05  # of a piece, which is no more than rounding at its borders
-STEPS = 4  # to the width of a bead, of points along it
-MAX_NAMED = 8
-MM3 = 1000.0  # in a cm3
+PIECE_PLACES = 4000  # number of sample points in the bounding box of a piece
+MIN_SAMPLES, MAX_SAMPLES = 3, 60  # limits of the sample points along one axis
+LEAST_SHARE = (
+    0.05  # fraction of a piece; a smaller uncovered fraction is due to sampling at the borders
+)
+STEPS = 4  # number of sample points per bead width along a bead
+MAX_NAMED = 8  # maximum number of pieces named in a message
+MM3 = 1000.0  # mm3 per cm3
 
 
 class Uncut(NamedTuple):
-    """A solid, or a closed piece, without a layer cut: its name, its volume and the volume that no bead covers, mm3, a point (3,) in
-    it in part coordinates, and its height across the layers, mm.
+    """A solid or closed piece without a layer cut.
+
+    volume: mm3. bare: volume without bead, mm3. point: (3,) point in the piece, in part coordinates. height: height
+    across the layers, mm.
     """
 
     name: str
@@ -515,9 +531,9 @@ class Uncut(NamedTuple):
 def uncut(
     solids: SolidsOnHub, strategy: FilledParameters, ranked: Sequence[RankedBead], width: float
 ) -> list[Uncut]:
-    """Return the pieces of solids without a layer cut that beads do not cover either.
+    """Return the pieces of solids without a layer cut that other beads do not cover.
 
-    Curved layers are not checked: they reach everything connected with their start.
+    Curved layers are not checked, because they reach everything connected with their start.
 
     Parameters
     ----------
@@ -528,12 +544,12 @@ def uncut(
     ranked : sequence of RankedBead
         The beads.
     width : float
-        Width of beads without their own, mm.
+        Width of beads without a predicted width, mm.
 
     Returns
     -------
     list of Uncut
-        Pieces with more than LEAST_SHARE uncovered.
+        Pieces of which more than LEAST_SHARE is uncovered.
     """
     if strategy.has_curved_layers:
         return []
@@ -551,7 +567,7 @@ def uncut(
 
 
 def uncut_issues(missed: Sequence[Uncut], strategy: FilledParameters) -> list[Issue]:
-    """One warning that names them, the largest first."""
+    """Return one warning that names the missed pieces, largest first."""
     if not missed:
         return []
     named = [
@@ -584,7 +600,7 @@ def uncut_issues(missed: Sequence[Uncut], strategy: FilledParameters) -> list[Is
 
 
 def _pieces(body: Body) -> Iterator[Body]:
-    """The closed pieces of a body, without the walls of hollows in it."""
+    """Yield the closed pieces of a body, without the walls of internal hollows."""
     triangles = np.asarray(body.triangles, dtype=np.intp)
     label = connected_pieces(triangles)
     volume = SolidMesh(body.vertices, triangles).volume
@@ -595,7 +611,7 @@ def _pieces(body: Body) -> Iterator[Body]:
 
 
 def _levels(group: Group, points: Array) -> Array:
-    """How far (n,) mm points (n, 3) of the part are from where the layers of a group begin, across the layers."""
+    """Return the heights (n,) of points (n, 3) above the base of a group's layers, mm."""
     surface, inside = group.base.surface, group.base.inside(points)
     if isinstance(surface, Plane):
         height: Array = inside[:, 2]
@@ -605,7 +621,7 @@ def _levels(group: Group, points: Array) -> Array:
 
 
 def _is_cut(low: float, high: float, strategy: FilledParameters) -> bool:
-    """Whether a layer is cut between two levels, mm; a cut in a face of a solid is moved aside as `plane_field` does it."""
+    """Whether a layer is cut between two levels, mm; as in `plane_field`, a cut in a face is moved aside."""
     aside = CLEARANCE_SHARE * strategy.chord_error
     share = strategy.share_of_cut
     if share == 1.0:  # at the top
@@ -621,7 +637,7 @@ def _missed(
     ranked: Sequence[RankedBead],
     width: float,
 ) -> Uncut:
-    """The volume that beads leave of a piece."""
+    """Estimate the volume of a piece that no bead covers."""
     corners = piece.vertices[np.unique(piece.triangles)]
     points = _places_in(piece, corners)
     levels = _levels(group, points)
@@ -643,7 +659,10 @@ def _missed(
 
 
 def _places_in(piece: Body, corners: Array) -> Array:
-    """Points (n, 3) in a piece, evenly in the box about its corners (k, 3); the middles of its triangles where none is in it."""
+    """Return points (n, 3) in a piece from an even grid in the bounding box of its corners (k, 3).
+
+    If no grid point is inside, return the centroids of the triangles.
+    """
     low, size = corners.min(axis=0), np.maximum(np.ptp(corners, axis=0), 1e-9)
     step = float((np.prod(size) / PIECE_PLACES) ** (1.0 / 3.0))
     count = np.clip(np.rint(size / step), MIN_SAMPLES, MAX_SAMPLES).astype(np.intp)
@@ -656,7 +675,7 @@ def _places_in(piece: Body, corners: Array) -> Array:
 
 
 def _sample_beads(beads: Sequence[Bead], step: float) -> Array:
-    """Points (n, 3) along the middles of beads, no more than `step` mm apart."""
+    """Return points (n, 3) along beads, at most `step` mm apart."""
     points = []
     for bead in beads:
         lengths = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How the torch is held along a bead on a hub: lead, tilt and the deflection of outer contours (Dai 2020, section 3), turned
-no faster than `build_direction.max_turn`.
+"""Tool axes along a bead on a hub: lead, tilt and the deflection of outer contours (Dai 2020, section 3).
 
-The torch leans from the surface's normal by angles forward and to the right of the direction of travel. At a corner the torch
-leans by the same angle, and goes round the normal from one side to the other over a stretch of the bead about the corner. On
-the flattened bead this is a heading, a number that continues along the bead, and its means over stretches.
+`build_direction.max_turn` limits the turn rate. The torch leans from the surface normal by angles forward and to the
+right of the travel direction. At a corner it keeps the lean angle and rotates about the normal from one side to the other
+over a stretch of the bead. On the flattened bead this rotation is the moving average of the unwrapped heading.
 """
 
 from __future__ import annotations
@@ -25,27 +24,27 @@ from ...slicing.wall_directions import turn_rates
 from ...types import Array, Index, Mask
 from .flattened_bead import LEAST_DEPARTURE, OF_NORMAL, RATE_MARGIN, Course, evened, limit
 
-SLOPE = 0.75  # of half a stretch: the wider of the two boxes that make the trapezoid; a jump's ramp is steepest over it
-BLOCK = 128  # places worked on at once: their integrals begin nearby and keep their digits
-PARTS = 6  # points on half a stretch
-MIN_STRETCH_MM = 0.05  # mm between points added
+SLOPE = 0.75  # half stretches; width of the wider box of the trapezoidal window, which limits the slope of a jump
+BLOCK = 128  # positions processed at once; their integrals start nearby, which keeps precision
+PARTS = 6  # number of points on half a stretch
+MIN_STRETCH_MM = 0.05  # mm; minimum distance between added points
 
 
 class Line(NamedTuple):
-    """Values (k, c) linear between positions (k,) mm, rising; constant beyond the ends."""
+    """Values (k, c), piecewise linear between ascending positions (k,), mm, and constant beyond the ends."""
 
     positions: Array
     values: Array
 
     def __call__(self, s: Array) -> Array:
-        """The values (n, c) at places (n,)."""
+        """Return the values (n, c) at positions (n,)."""
         values_: Array = np.stack(
             [np.interp(s, self.positions, column) for column in self.values.T], axis=-1
         )
         return values_
 
     def mirrored(self, length: float) -> Line:
-        """The values of an open bead, mirrored at both ends: bends next to an end then count for little."""
+        """Mirror the values of an open bead at both ends, so that bends near an end have little effect."""
         positions_ = np.concatenate(
             [-self.positions[::-1], self.positions, 2.0 * length - self.positions[::-1]]
         )
@@ -62,14 +61,14 @@ def means(line: Line, s: Array, half: Array) -> Array:
     line : Line
         The line.
     s : (n,) array
-        Middles of the stretches, mm.
+        Midpoints of the stretches, mm.
     half : (n,) array
-        Half their lengths, mm.
+        Half lengths of the stretches, mm.
 
     Returns
     -------
     (n, c) array
-        Means; the values themselves where half is 0.
+        Means; the line's values where `half` is 0.
     """
     means_ = line(s)
     wide = np.flatnonzero(half > 1e-6)
@@ -109,7 +108,11 @@ def _means(line: Line, s: Array, half: Array) -> Array:
 
 @dataclass
 class Zones:
-    """Stretches where values change too fast, low .. high (z,) mm, and half the length (z,) mm over which each is spread."""
+    """Zones where values change too fast.
+
+    low, high: (z,) limits, mm. half: (z,) half length over which the values are spread, mm. length: length of a closed
+    bead, mm, None for an open bead.
+    """
 
     low: Array
     high: Array
@@ -120,17 +123,17 @@ class Zones:
         return (0.0,) if self.length is None else (-self.length, 0.0, self.length)
 
     def stretches(self, s: Array) -> Array:
-        """Return half the stretch over which values are spread.
+        """Return the half stretch over which values are spread.
 
         Parameters
         ----------
         s : (n,) array
-            Rising positions, mm.
+            Ascending positions, mm.
 
         Returns
         -------
         (n,) array
-            mm; constant near a zone, then less along a ramp.
+            Half lengths, mm; constant near a zone, then decreasing along a ramp.
         """
         half = np.zeros(len(s))
         moved = np.array(self._copies())[:, None]
@@ -152,7 +155,7 @@ class Zones:
         return half
 
     def places(self, s: Array) -> Array:
-        """Return positions to add to a bead, so that the ramps are followed.
+        """Return positions to add to a bead so that it follows the ramps.
 
         Parameters
         ----------
@@ -189,19 +192,19 @@ class Zones:
         return free
 
     def widened(self, positions: Array, factor: float) -> Zones:
-        """Return zones with longer stretches next to places.
+        """Return zones with longer stretches near positions.
 
         Parameters
         ----------
         positions : (n,) array
-            Places, mm.
+            Positions, mm.
         factor : float
-            By which half the length of a zone near a place is multiplied.
+            Factor for the half length of a zone near a position.
 
         Returns
         -------
         Zones
-            A place out of reach of all zones becomes one.
+            The zones. The first position out of reach of all zones becomes a new zone.
         """
         low, high, half, unreached = self.low, self.high, self.half.copy(), positions
         if len(low):
@@ -215,7 +218,7 @@ class Zones:
         return Zones(low, high, half, self.length)
 
     def _nearest(self, positions: Array) -> tuple[Index, Array]:
-        """The zone (n,) next to each of the places (n,), and how far (n,) mm off it is."""
+        """Return the nearest zone (n,) of each position (n,), and its distance (n,), mm."""
         best, distance = np.zeros(len(positions), dtype=np.intp), np.zeros(len(positions))
         for start in range(0, len(positions), BLOCK):
             block = positions[start : start + BLOCK, None]
@@ -243,16 +246,16 @@ def too_fast(
     weights : (c,) array
         Weights of the values.
     max_rate : float
-        Largest change per mm.
+        Maximum change per mm.
     length : float or None
-        Length of a closed bead, mm; None for an open one.
+        Length of a closed bead, mm; None for an open bead.
     end : float
-        End of the range to check, from 0, mm.
+        End of the checked range, from 0, mm.
 
     Returns
     -------
     Zones
-        The zones; their stretches begin short.
+        The zones, initially with short stretches.
     """
     step = np.diff(line.positions)
     change = np.linalg.norm(np.diff(line.values, axis=0) * weights, axis=1)
@@ -275,29 +278,25 @@ GROWTH, SHRINK = 1.1, 0.9
 ROUNDS = 100
 MAX_DEPARTURE_SHARE = math.radians(
     40.0
-)  # largest mean of how far the heading of the lean may be from the bead's
-MAX_STRETCH_SHARE = 0.7  # of a bead; maximum reach of a stretch
-MIN_LEAN_SHARE = 0.02  # share of the lean asked for below which it is none
+)  # maximum mean deviation between the heading of the lean and the bead
+MAX_STRETCH_SHARE = 0.7  # fraction of a bead; maximum reach of a stretch
+MIN_LEAN_SHARE = 0.02  # fraction of the requested lean; a smaller lean counts as none
 STEEPEST = math.radians(
     300.0
-)  # rad/mm; without a limit, so that lean and bead agree next to corners
+)  # rad/mm; turn rate if there is no limit, so that lean and bead agree next to corners
 FINE, STRETCH = (
     math.radians(0.02),
     1e4,
-)  # largest loss of a direction between points; mm stretched so that only this counts
-LEAST_MM = (
-    4e-3  # mm; no shorter are the pieces of a segment on which the torch goes round the normal
-)
-EDGE = 1e-3  # mm over which a deflection ends before it is spread
-SIMPLIFY_SHARE = 0.05  # share of the chord error that the heading's course need not follow
-CORNER = 0.5  # ratio of point distance to that of a curve from which points make a corner
+)  # maximum loss of lean between points; scale of positions, so that only this loss counts
+LEAST_MM = 4e-3  # mm; minimum length of the pieces of a segment on which the torch rotates about the normal
+EDGE = 1e-3  # mm; length over which a deflection ends, before spreading
+SIMPLIFY_SHARE = 0.05  # fraction of the chord error; tolerance of the heading's path
+CORNER = 0.5  # minimum ratio of point distance to that of a curve at a corner
 
 
 @dataclass(frozen=True)
 class Lean:
-    """The requested lean of a bead: forward and to its right by `lead` and `side`, rad; beyond `until` mm by `side_beyond` to the
-    right.
-    """
+    """Requested lean of a bead, rad: `lead` forward and `side` to the right, or `side_beyond` past `until` mm."""
 
     lead: float
     side: float
@@ -306,19 +305,22 @@ class Lean:
 
     @property
     def most(self) -> float:
-        """The largest angle (rad) between the torch and the normal."""
+        """Maximum angle between torch and normal, rad."""
         return math.acos(
             math.cos(self.lead) * math.cos(max(abs(self.side), abs(self.side_beyond), key=abs))
         )
 
     def less(self, share: float) -> Lean:
-        """The lean scaled by a share."""
+        """Return the lean scaled by a fraction."""
         return Lean(share * self.lead, share * self.side, share * self.side_beyond, self.until)
 
 
 class Turned(NamedTuple):
-    """Torch turning of a bead: its share of the requested lean, the largest departure (rad) from the requested axis at corners, the
-    length affected (mm), and the turn of the normals (rad/mm) if the normals turn faster than the limit, else 0.
+    """Torch rotation on a bead.
+
+    share: fraction of the requested lean. requested: requested lean, rad. departure: maximum deviation from the
+    requested axis at corners, rad. length: affected length, mm. normals: turn rate of the normals, rad/mm, if above the
+    limit, else 0.
     """
 
     share: float
@@ -329,7 +331,7 @@ class Turned(NamedTuple):
 
 
 class Held(NamedTuple):
-    """A bead in the hub's frame with the points it needs: flat (n, 2), points, normals and tool axes (n, 3)."""
+    """A bead in the hub frame with all needed points: flat (n, 2), points, normals and tool axes (n, 3)."""
 
     flat: Array
     points: Array
@@ -341,7 +343,7 @@ class Held(NamedTuple):
 def hold_torch(
     course: Course, lean: Lean, build: BuildDirectionParameters, chord_error: float
 ) -> Held:
-    """Return a bead with its tool axes, and points added where they turn.
+    """Return a bead with its tool axes, and with points added where the axes turn.
 
     Parameters
     ----------
@@ -350,14 +352,14 @@ def hold_torch(
     lean : Lean
         The requested lean.
     build : BuildDirectionParameters
-        Build direction with the largest turn.
+        Build direction with the maximum turn rate.
     chord_error : float
         Chord error, mm.
 
     Returns
     -------
     Held
-        The bead and how its torch turns.
+        The bead and its torch rotation.
 
     References
     ----------
@@ -377,7 +379,7 @@ def hold_torch(
     limited, max_rate = max_rate < math.inf, min(max_rate, STEEPEST)
     line, period = _line(course, arc, float(phi[-1] - phi[0]), chord_error)
     share = 1.0
-    if course.closed:  # it cannot go round the normal faster than that
+    if course.closed:  # limits the lean by the rotation about the normal per loop
         share = min(
             1.0,
             RATE_MARGIN
@@ -406,11 +408,10 @@ def hold_torch(
 
 
 def _line(course: Course, arc: Array, round_: float, chord_error: float) -> tuple[Line, float]:
-    """Return the heading (rad) along the bead in the plane, and its increase per round if closed.
+    """Return the heading along the bead in the plane, rad, and its increase per loop if closed.
 
-    At each point the heading turns over as much of the path as a curve within the chord error
-    would, at most half of the shorter edge; at corners it turns almost at once. round_: increase of
-    phi per round.
+    At each point the heading turns over the length of a curve within the chord error, at most half
+    of the shorter edge. At corners it turns almost at once. round_: increase of phi per loop.
     """
     x, y = columns(course.flat)
     is_kept = np.isin(
@@ -443,7 +444,7 @@ def _line(course: Course, arc: Array, round_: float, chord_error: float) -> tupl
 
 
 def _add_sides(line: Line, lean: Lean) -> Line:
-    """Heading and angle to the right along the bead."""
+    """Return heading and sideways angle along the bead."""
     if math.isinf(lean.until):
         return Line(
             line.positions, np.column_stack([line.values, np.full(len(line.positions), lean.side)])
@@ -457,9 +458,9 @@ def _add_sides(line: Line, lean: Lean) -> Line:
 def _spread_lean(
     course: Course, arc: Array, heading: Line, lean: Lean, max_rate: float, budget: float
 ) -> Held | None:
-    """The bead with its lean spread so that the torch turns no faster than `max_rate`; None if that departs too far.
+    """Spread the lean of a bead to limit the turn rate to `max_rate`; None if the deviation is too large.
 
-    budget: rate of turn reserved for the lean.
+    budget: turn rate reserved for the lean.
     """
     length = float(arc[-1])
     line = _add_sides(heading, lean)
@@ -497,7 +498,7 @@ def _spread_lean(
     share = np.diff(s) / length
     leans = np.hypot(
         math.sin(lean.lead), np.sin(requested[:, 1])
-    )  # where the torch is upright its heading is undefined
+    )  # an upright torch has no heading
     off, weight = (
         0.5 * (row[1:] + row[:-1]) @ share
         for row in (np.abs(values[:, 0] - requested[:, 0]) * leans, leans)
@@ -521,8 +522,9 @@ def _spread_lean(
 
 
 def _within_bends(line: Line, s: Array, zones: Zones, values: Array, lean: float) -> Array:
-    """Positions (m,) mm to add between positions s (n,) with values (n, c) where the heading bends on a short section of a long
-    segment: interpolated linearly, the torch would lean by more than FINE less.
+    """Return positions (m,), mm, to add where the heading bends on a short section of a long segment.
+
+    Without them, linear interpolation between positions s (n,) with values (n, c) would lose more than FINE of the lean.
     """
     bends = line.positions[(line.positions > s[0] + LEAST_MM) & (line.positions < s[-1] - LEAST_MM)]
     bends = bends[np.diff(bends, prepend=-math.inf) >= LEAST_MM]
@@ -536,14 +538,14 @@ def _within_bends(line: Line, s: Array, zones: Zones, values: Array, lean: float
 
 
 def _straight_turn(lean: float) -> float:
-    """How far (rad) the torch may go round the normal on a straight way from one side to the other and lean by no more than
-    FINE less."""
+    """Return the maximum rotation about the normal, rad, that linear interpolation may span with a lean loss of FINE."""
     return 2.0 * math.acos(max(1.0 - 2.0 * FINE / max(math.sin(2.0 * lean), FINE), 0.0))
 
 
 def _about_normal(s: Array, values: Array, lean: float) -> Array:
-    """Positions (m,) mm to add where the torch goes so far round the normal between two positions s (n,) that in between it would
-    lean by more than FINE less.
+    """Return positions (m,), mm, to add where the torch rotates too far about the normal between positions s (n,).
+
+    Without them, the lean in between would be reduced by more than FINE.
     """
     max_turn = _straight_turn(lean)
     turn, step = np.abs(np.diff(values[:, 0])), np.diff(s)
@@ -555,7 +557,7 @@ def _about_normal(s: Array, values: Array, lean: float) -> Array:
 
 
 class _Sampled(NamedTuple):
-    """Places (n, 2) on the plane, points, normals and tools (n, 3), phi (n,) rad, turns (n - 1,) rad/mm."""
+    """Positions (n, 2) on the plane, points, normals and tool axes (n, 3), phi (n,) rad, turn rates (n - 1,) rad/mm."""
 
     flat: Array
     points: Array
@@ -566,7 +568,7 @@ class _Sampled(NamedTuple):
 
 
 def _sampled(course: Course, arc: Array, s: Array, values: Array, lean: Lean) -> _Sampled:
-    """The bead at places s (n,) with its torch by headings and angles to the right, values (n, 2)."""
+    """Sample the bead at positions s (n,) with tool axes from headings and sideways angles, values (n, 2)."""
     flat, points, normal, phi = course.wrap_at(s, arc)
     tool = directed(course.surface, normal, values[:, 0] - phi, lean.lead, values[:, 1])
     if course.closed:
@@ -575,7 +577,7 @@ def _sampled(course: Course, arc: Array, s: Array, values: Array, lean: Lean) ->
 
 
 def _needed(s: Array, values: Array, lead: float) -> Mask:
-    """Mask of the positions (n,) that keep the flattened lean within FINE under linear interpolation."""
+    """Return the mask of positions (n,) that keep the flattened lean within FINE under linear interpolation."""
     heading, side = columns(values)
     ahead, right = np.cos(side) * math.sin(lead), np.sin(side)
     cos, sin = np.cos(heading), np.sin(heading)
@@ -591,7 +593,7 @@ def directed(
 ) -> Array:
     """Return tool axes that lean from the normals.
 
-    The normal is turned by `lead` towards the heading, then to its right by `side`.
+    The normal is rotated by `lead` towards the heading, then by `side` to the right.
 
     Parameters
     ----------
@@ -602,14 +604,14 @@ def directed(
     heading : (n,) array
         Heading of the bead from the first axis of the surface, rad.
     lead : float
-        Angle, rad.
+        Forward angle, rad.
     side : (n,) array
-        Angles, rad.
+        Sideways angles, rad.
 
     Returns
     -------
     (n, 3) array
-        Unit vectors.
+        Unit tool axes.
     """
     around, up = surface.axes(normal)
     cos, sin = np.cos(heading)[:, None], np.sin(heading)[:, None]

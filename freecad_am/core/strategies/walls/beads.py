@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Beads of curves on a wall: points, tangents and directions; and the issues of their layers."""
+"""Beads from curves on a wall: points, tangents and directions; and the issues of layers."""
 
 from __future__ import annotations
 
@@ -32,21 +32,25 @@ TOLERANCE_RAD = 1e-9  # rad
 
 
 class Along(NamedTuple):
-    """Unit vectors (n, 3) at the points of a bead: the way the bead runs, up the wall at right angles to it, and the normal
-    out of the wall."""
+    """Unit vectors (n, 3) at the points of a bead.
+
+    forward: along the bead. up: up the wall, perpendicular to the bead. normal: out of the wall.
+    """
 
     forward: Array
     up: Array
     normal: Array
 
     def reversed(self) -> Along:
-        """The directions of the bead run the other way."""
+        """Return the directions for the bead in the opposite direction."""
         return Along(-self.forward[::-1], self.up[::-1], self.normal[::-1])
 
 
 class Directions(NamedTuple):
-    """Build directions and tool axes (n, 3) of a bead; the largest angles (rad) by which max_tilt has turned them back, and max_turn
-    has spread them.
+    """Build directions and tool axes (n, 3) of a bead.
+
+    back: maximum angle by which max_tilt limited the tilt, rad. spread: maximum angle by which max_turn spread the
+    directions, rad.
     """
 
     build: Array
@@ -56,24 +60,24 @@ class Directions(NamedTuple):
 
 
 def symmetry_plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameters) -> Array | None:
-    """Return the plane that tool axes stay in.
+    """Return the plane that contains the tool axes.
 
     Parameters
     ----------
     wall : SurfaceWall or PatchWall
-        The wall, perhaps with a known plane of symmetry.
+        The wall, with a known plane of symmetry if any.
     build : BuildDirectionParameters
         Build direction with its mode and plane.
 
     Returns
     -------
     (3,) array or None
-        Unit normal; None if tool axes may lean any way.
+        Unit normal; None if tool axes may lean in any direction.
 
     Raises
     ------
     InputError
-        NO_SYMMETRY_PLANE if a plane of symmetry is requested and the wall has no known one.
+        NO_SYMMETRY_PLANE if a plane of symmetry is requested and none is known for the wall.
     """
     if build.mode != "symmetry-plane":
         return None
@@ -120,13 +124,13 @@ def directions(
     Returns
     -------
     Directions
-        The directions and how far they depart from the requested ones.
+        The directions and their deviation from the requested directions.
 
     Raises
     ------
     InputError
-        NO_DIRECTION where one is normal to that plane, TURN_LIMIT where they cannot be made
-        to turn slower.
+        NO_DIRECTION if a direction is normal to the plane, TURN_LIMIT if the turn rate cannot be
+        reduced enough.
     """
     up = along.up
     if build.mode == "fixed":
@@ -141,7 +145,7 @@ def directions(
         axes_pair = [project_onto_plane(axes, plane, label) for axes in axes_pair]
     turned = [cap_lean(axes, build.max_tilt) for axes in axes_pair]
     axes_pair, back, spread = [axes for axes, _ in turned], turned[-1][1], 0.0
-    if build.turn() < np.inf:  # last, for turned back beyond the level they turn faster
+    if build.turn() < np.inf:  # last, because the tilt limit increases the turn rate
         slower = [
             limit_turns(points, axes, closed, build.turn(), max_lean=build.max_tilt)
             for axes in axes_pair
@@ -152,7 +156,7 @@ def directions(
 
 
 def notes(keyed_directions: list[tuple[int, Directions]]) -> list[Issue]:
-    """Notes on how far directions depart from the requested ones, by layer of each bead."""
+    """Return notes on the maximum deviations from the requested directions; input by layer of each bead."""
     issues = []
     for code, values, text in (
         (
@@ -176,27 +180,29 @@ def notes(keyed_directions: list[tuple[int, Directions]]) -> list[Issue]:
 
 
 MIN_DISTANCE_MM = (
-    1e-3  # mm; nearer points of a bead are merged: no controller resolves the time between them
+    1e-3  # mm; nearer points of a bead are merged, because no controller resolves such a move
 )
 
 
 class Traced(NamedTuple):
-    """Points (n, 3) of a bead and its unit tangents (n, 2, 3), arriving at and leaving each. A closed one ends where it
-    starts."""
+    """Points (n, 3) of a bead, with unit tangents (n, 2, 3) on arrival and departure.
+
+    A closed bead ends at its start point.
+    """
 
     points: Array
     tangents: Array
     closed: bool
 
     def reversed(self) -> Traced:
-        """Run the other way."""
+        """Return the bead in the opposite direction."""
         return Traced(self.points[::-1], -self.tangents[::-1, ::-1], self.closed)
 
 
 def traced(curve: SpaceCurve, w: Array, closed: bool) -> Traced:
     """Return the bead through parameters of a curve.
 
-    Points that nearly coincide are merged; a closed bead ends exactly where it starts.
+    Points that nearly coincide are merged. A closed bead ends exactly at its start point.
 
     Parameters
     ----------
@@ -233,8 +239,10 @@ def traced(curve: SpaceCurve, w: Array, closed: bool) -> Traced:
 
 
 def _merge_points(points: Array, into: Array, out: Array) -> tuple[Array, Array, Array]:
-    """The columns (n, 3) with points nearer than MIN_DISTANCE_MM to the one before left out; the first and the last stay. Of merged
-    points, such as an end next to a corner, the outgoing tangent of the last and the incoming one of the first remain.
+    """Merge points nearer than MIN_DISTANCE_MM to the previous point; the first and the last point stay.
+
+    Of merged points, such as an end next to a corner, the incoming tangent of the first and the outgoing tangent of the
+    last remain.
     """
     if np.linalg.norm(np.diff(points, axis=0), axis=1).min() >= MIN_DISTANCE_MM:
         return points, into, out
@@ -251,7 +259,7 @@ def _merge_points(points: Array, into: Array, out: Array) -> tuple[Array, Array,
 
 
 def directions_along(trace: Traced, normal: Array, up: Array) -> Along:
-    """Return the directions at the points of a bead, at a corner halfway between its two sides.
+    """Return the directions at the points of a bead; at a corner, the mean of both sides.
 
     Parameters
     ----------
@@ -260,7 +268,7 @@ def directions_along(trace: Traced, normal: Array, up: Array) -> Along:
     normal : (n, 3) array
         Normals out of the wall.
     up : (n, 3) array
-        Vectors away from the layer below that are not along the bead.
+        Vectors away from the layer below, not along the bead.
 
     Returns
     -------
@@ -272,7 +280,10 @@ def directions_along(trace: Traced, normal: Array, up: Array) -> Along:
 
 
 class BeadSettings(NamedTuple):
-    """Settings of a wall's beads. plane: unit normal (3,) of the plane that tool axes stay in, if any. label: the wall's, for messages."""
+    """Settings of a wall's beads.
+
+    plane: unit normal (3,) of the plane that contains the tool axes, if any. label: name of the wall, for messages.
+    """
 
     build: BuildDirectionParameters
     process: ProcessParameters
@@ -284,7 +295,7 @@ class BeadSettings(NamedTuple):
     ) -> tuple[Bead, Directions]:
         """Return a bead and its directions.
 
-        The variable of its polynomial is the arc length, scaled to one turn (2 pi).
+        The variable of the bead's polynomial is the arc length, scaled to one turn (2 pi).
 
         Parameters
         ----------
@@ -293,7 +304,7 @@ class BeadSettings(NamedTuple):
         vectors : Along
             Directions along the bead, up the wall and out of it.
         layer : int
-            Number of the layer, for the bead's class.
+            Index of the layer, for the bead's class.
         closing : bool, optional
             Whether the bead closes a gap between fronts.
 
@@ -302,7 +313,7 @@ class BeadSettings(NamedTuple):
         bead : Bead
             The bead.
         directions : Directions
-            Its directions.
+            Directions of the bead.
         """
         bead_class = classes.wall_bead_class(layer, closing)
         build = classes.leaning(self.build, self.process, bead_class)
@@ -334,7 +345,8 @@ def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[
     Returns
     -------
     list of Issue
-        A note SPACING, a warning if the range is not as requested; empty for one layer.
+        An issue SPACING: a note, or a warning if the range is not as requested. Empty for one
+        layer.
     """
     if not distances:
         return []
@@ -342,7 +354,7 @@ def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[
     largest = max(layer.max() for layer in distances)
     height = strategy.layer_height
     exact = strategy.spacing == "constant-distance"
-    # between the points, where arcs approximate the front, ten times the tolerance is allowed
+    # ten times the tolerance is allowed between points, where arcs approximate the front
     allowed = 10.0 * strategy.tolerance if exact else strategy.band * height
     text = Text("the local distance between layers is {:.6g} to {:.6g} mm", smallest, largest)
     if max(height - smallest, largest - height) <= allowed:
@@ -364,17 +376,17 @@ def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[
 
 
 def corner_notes(turns: list[Array]) -> list[Issue]:
-    """Report corners that the fronts of layers have formed, for a robot slows down there.
+    """Report corners of the layers' fronts, where a robot slows down.
 
     Parameters
     ----------
     turns : list of (n,) array
-        Turns at the corners of each layer, rad.
+        Turn angles at the corners of each layer, rad.
 
     Returns
     -------
     list of Issue
-        A note CORNERS at the sharpest; empty without corners.
+        A note CORNERS at the sharpest corner; empty without corners.
     """
     cornered = [index for index, layer in enumerate(turns) if len(layer)]
     if not cornered:
@@ -402,7 +414,7 @@ def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
 
     rates: rad/mm of each layer within the wall, infinite where it has corners.
     """
-    # the first layer is the substrate's
+    # the substrate determines the first layer
     over = [index for index, rate in enumerate(rates) if index and rate > strategy.bead_turn]
     corners = sum(np.isinf(rates[index]) for index in over)
     finite = np.where(np.isinf(rates), 0.0, rates)
@@ -436,7 +448,7 @@ def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
 
 
 def short_note(dropped: int) -> list[Issue]:
-    """Says that beads too short to be worth a start are left out."""
+    """Return a note about beads omitted because they are too short."""
     if not dropped:
         return []
     return [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What each way of cutting a wall into layers costs in spacing: the figures 6 and 8 to 10 of Chalvin 2019 as numbers."""
+"""Comparison of slicing methods for a wall by layer spacing, as in figures 6 and 8 to 10 of Chalvin 2019."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ from .plan import sliced
 NORMAL = "centreline-normal"
 METHODS = ("iso-parameter", NORMAL, "constant-distance", "smooth")
 FINER = 4  # samples per arc at which the distance is measured
-END_TOLERANCE = 1e-9  # of u; a point less than this past an edge is on the edge
+END_TOLERANCE = 1e-9  # in u; maximum distance past an edge of a point on the edge
 
 
 @dataclass(frozen=True, eq=False)
 class Compared:
     """A wall sliced by one method. Lengths in mm, angles in rad.
 
-    layers: number of layers up to the first one that is entirely past the end. smallest, mean,
-    largest: distance of each point to the nearest point of the layer below. turn: sharpest turn per
-    mm within the wall, away from corners. corners: number of layers with corners. corner: the
-    sharpest corner. length: total length of the layers below the end. For each layer after the
-    first: around (n,), v as a share of its period from -0.5 to 0.5; distance (n,); and step (n,),
-    the height above the layer below along the line v = const (Delta_ij). curves: points (n, 3) of
-    the layers. These arrays are NaN where there is no deposit.
+    layers: number of layers up to the first layer entirely past the end. smallest, mean, largest:
+    distance of points to the nearest point of the layer below. turn: maximum turn rate within the
+    wall, per mm, away from corners. corners: number of layers with corners. corner: sharpest corner.
+    length: total length of the layers below the end. For each layer after the first: around (n,), v
+    as a fraction of its period from -0.5 to 0.5; distance (n,); and step (n,), the height above the
+    layer below along the line v = const (Delta_ij). curves: points (n, 3) of the layers. These
+    arrays are NaN where there is no deposit.
     """
 
     method: str
@@ -53,7 +53,7 @@ class Compared:
 
 @dataclass(frozen=True)
 class Refused:
-    """A method that does not apply to the wall, and why."""
+    """A method that does not apply to the wall, with the reason."""
 
     method: str
     reason: str
@@ -67,12 +67,12 @@ def compare(wall: SurfaceWall, strategy: SurfaceParameters) -> tuple[Compared | 
     wall : SurfaceWall
         The wall.
     strategy : SurfaceParameters
-        Layer height, band and largest turn.
+        Layer height, band and maximum turn rate.
 
     Returns
     -------
     tuple[Compared or Refused, ...]
-        The figures of each method, or the reason why it does not apply.
+        The results of each method, or the reason why the method does not apply.
 
     References
     ----------
@@ -112,13 +112,13 @@ def _measured(
         around.append(np.r_[share[order[:-1]], share[order[0]] + 1.0])
         distance.append(np.where(is_deposited, distance_, np.nan)[order])
         step.append(np.where(is_deposited, rise, np.nan)[order])
-    # nodes gather at corners: each node counts by its stretch
+    # nodes are denser at corners, so each node is weighted by its stretch
     weight = np.concatenate([np.gradient(shares) for shares in around])
     values = np.concatenate(distance)
     weight, values = weight[np.isfinite(values)], values[np.isfinite(values)]
     turn = corner = 0.0
     cornered = 0
-    for front in fronts[1:]:  # the first is the substrate's
+    for front in fronts[1:]:  # the substrate determines the first layer
         inside = (front.u <= end) & (front.u >= first_layer.heights(surface, front.v)[0])
         corners = front.curve.corners
         sharpest = float(front.curve.turns[corners[inside[corners]]].max(initial=0.0))
@@ -148,7 +148,7 @@ def _measured(
 
 
 def _deposited(surface: Placed, front: WallLayer, first_layer: WallLayer, end: float) -> Array:
-    """Points (n, 3) along a layer, NaN below the first one and past the end."""
+    """Return points (n, 3) along a layer, NaN below the first layer and past the end."""
     v = front.curve.refined(2)
     u = front.heights(surface, v)[0]
     is_deposited = (u <= end + END_TOLERANCE) & (

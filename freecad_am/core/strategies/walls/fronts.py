@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Walls on an existing part without a closed parameter: several faces, open shells, openings, branches.
 
-Layers are fronts of constant local distance (slicing.fronts), which split, merge, close and end at rims. Every bead of a
-layer is on beads of the layer below, so layers follow each other; within a layer the bead that begins nearest to the last end
-comes next.
+Layers are fronts of constant local distance (slicing.fronts), which split, merge, close and end at rims. Every bead is on
+beads of the layer below, so layers are printed in order. Within a layer, the bead that begins nearest to the last end
+point comes next.
 """
 
 from __future__ import annotations
@@ -43,14 +43,17 @@ from .beads import (
     turn_notes,
 )
 
-ANGLES_PER_ARC = 4  # places per arc of a front at which its angle is taken
+ANGLES_PER_ARC = 4  # samples per arc of a front at which the angle is evaluated
 HALVINGS = 40
-ACROSS = 0.1  # of unit length; an axis whose X is shorter is seen from Y
+ACROSS = 0.1  # minimum length of X projected normal to a unit axis; otherwise Y is the reference
 
 
 class Middle(NamedTuple):
-    """The middle of a closed front: its centre (3,), unit axis (3,) about which it turns counter-clockwise, the direction
-    (3,) from which angles are taken, and where the front begins (3,)."""
+    """Centre of a closed front, with the reference for angles.
+
+    centre: (3,). axis: (3,) unit axis about which the front runs counter-clockwise. reference: (3,) direction of angle
+    0. start: (3,) first point of the front.
+    """
 
     centre: Array
     axis: Array
@@ -61,18 +64,18 @@ class Middle(NamedTuple):
 def seam(piece: Piece, angle: float, middles: dict[int, Middle]) -> float:
     """Return the parameter at which a closed front begins.
 
-    The angle's zero is X of the part, or Y where X is along the axis, at the first front; from
-    there on it is carried with the smallest rotation that takes one axis to the next. Among
-    several positions at that angle the one nearest to the seam below is taken.
+    At the first front, angle 0 is the part's X, or Y if X is along the axis. From front to front,
+    the smallest rotation between the axes carries this direction. If several positions have the
+    seam angle, the position nearest to the seam below is used.
 
     Parameters
     ----------
     piece : Piece
         The front.
     angle : float
-        Angle of the seam about the front's middle, rad.
+        Angle of the seam about the front's centre, rad.
     middles : dict[int, Middle]
-        Middles of the fronts below by id; the new one is added.
+        Centres of the fronts below by id; this front's centre is added.
 
     Returns
     -------
@@ -89,7 +92,7 @@ def seam(piece: Piece, angle: float, middles: dict[int, Middle]) -> float:
     axis /= np.linalg.norm(axis)
     below = next((middles[id(parent)] for parent in piece.parents if id(parent) in middles), None)
     reference = _carry_reference(below, axis) if below is not None else _reference(axis)
-    # the front relative to a frame that is turned by the angle: the seam crosses its X from below
+    # in a frame rotated by the seam angle, the front crosses X from below at the seam
     x = np.cos(angle) * reference + np.sin(angle) * np.cross(axis, reference)
     y = np.cross(axis, x)
     sideways = (points - centre) @ y
@@ -125,7 +128,7 @@ def _reference(axis: Array) -> Array:
 
 
 def _carry_reference(below: Middle, axis: Array) -> Array:
-    """The reference of the front below, turned with the axis."""
+    """Return the reference of the front below, rotated with the axis."""
     cosine = float(below.axis @ axis)
     if cosine < -1.0 + ACROSS:
         return _reference(axis)
@@ -139,16 +142,18 @@ def _carry_reference(below: Middle, axis: Array) -> Array:
     return np.asarray(flat / np.sqrt(dot(flat, flat)))
 
 
-# ---- The tree of a wall's fronts: splits, merges, and cuts by an end of the wall
+# ---- Tree of a wall's fronts: splits, merges, and cuts by an end of the wall
 
-SAMPLES = 100  # sample points along a front for its parents
-LEAST_COMMON = 2  # number of samples; fewer mean that fronts only touch at an end
+SAMPLES = 100  # number of sample points along a front that determine its parents
+LEAST_COMMON = 2  # minimum number of samples on a parent; with fewer, fronts only touch at an end
 
 
 @dataclass(eq=False)
 class Piece:
-    """A front. parents: the fronts of the layer below that support it, the largest share first. cut: ends at an upper edge of the
-    wall. closing: not a front but a bead that closes a gap between fronts.
+    """A front, or a bead that closes a gap between fronts (closing).
+
+    parents: supporting fronts of the layer below, largest contact first. cut: whether the front ends at an upper edge of
+    the wall.
     """
 
     curve: SpaceCurve
@@ -159,7 +164,7 @@ class Piece:
 
 
 def tree(fronts: list[list[SpaceCurve]], rims: Rims) -> list[list[Piece]]:
-    """The pieces of each layer."""
+    """Return the pieces of each layer."""
     layers: list[list[Piece]] = []
     for layer in fronts:
         below = layers[-1] if layers else []
@@ -185,7 +190,7 @@ def _parents(front: SpaceCurve, below: list[Piece]) -> list[Piece]:
 
 
 def events(layers: list[list[Piece]]) -> list[Issue]:
-    """Where fronts split and merge, a note for each layer in which they do."""
+    """Return a note for each layer in which fronts split or merge."""
     issues = []
     for index, layer in enumerate(layers[1:], 1):
         splits = Counter(
@@ -216,7 +221,7 @@ def events(layers: list[list[Piece]]) -> list[Issue]:
 
 
 def uncut_pieces(layers: list[list[Piece]]) -> list[list[Piece]]:
-    """The pieces that no end cuts off, on others of their kind."""
+    """Return the uncut pieces that are entirely supported by uncut pieces."""
     kept_layers: list[list[Piece]] = []
     for layer in layers:
         below = set(kept_layers[-1]) if kept_layers else set()
@@ -235,12 +240,12 @@ def drop_short_pieces(layers: list[list[Piece]], shortest: float) -> tuple[list[
     layers : list[list[Piece]]
         The pieces of each layer.
     shortest : float
-        Smallest length kept, mm.
+        Minimum length of a kept piece, mm.
 
     Returns
     -------
     layers : list of list of Piece
-        The remaining pieces; layers without any are left out.
+        The remaining pieces, without empty layers.
     count : int
         Number of removed pieces.
     """
@@ -256,17 +261,17 @@ def drop_short_pieces(layers: list[list[Piece]], shortest: float) -> tuple[list[
 
 
 def _pruned(layers: list[list[Piece]]) -> list[list[Piece]]:
-    """The same pieces, with links only among themselves."""
+    """Remove links to pieces that are not in the layers."""
     remaining = {piece for layer in layers for piece in layer}
     for piece in remaining:
         piece.children = [child for child in piece.children if child in remaining]
     return layers
 
 
-FINER = 4  # places per arc of a front at which its distance from the layer below is measured
-FINDING = 0.7  # of the time goes into finding the layers
+FINER = 4  # samples per arc of a front at which the distance from the layer below is measured
+FINDING = 0.7  # fraction of the planning time spent on slicing
 
-# of walls their layers as last asked for, which take most of the time, and which directions do not change
+# cache of the last slicing of each wall: slicing takes most of the time and does not depend on directions
 _SLICED: WeakKeyDictionary[PatchWall, tuple[tuple[float, Smoothing | None], slicing.Sliced]] = (
     WeakKeyDictionary()
 )
@@ -279,12 +284,12 @@ def plan(
     process: ProcessParameters,
     progress: Progress = silent,
 ) -> Toolpath:
-    """Return the toolpath of a wall with any connected smooth pieces.
+    """Plan the toolpath of a wall with any connected smooth pieces.
 
-    Closed beads start at the seam's angle about the middle line of the wall, which runs through
-    the centres of the closed beads, from the X of the part carried along it without twist.
-    Counter-clockwise is meant as seen against the build direction of a tube; on any wall it
-    keeps the layer below on the right, seen from outside.
+    Closed beads start at the seam angle about the wall's centreline, which runs through the
+    centres of the closed beads. Angle 0 is the part's X, carried along the centreline without
+    twist. Counter-clockwise is seen against the build direction of a tube. On any wall it keeps
+    the layer below on the right, seen from outside.
 
     Parameters
     ----------
@@ -297,7 +302,7 @@ def plan(
     process : ProcessParameters
         Speeds, seam and direction.
     progress : callable, optional
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
@@ -345,7 +350,7 @@ def plan(
 def _sliced(
     wall: PatchWall, height: float, smoothing: Smoothing | None, progress: Progress
 ) -> slicing.Sliced:
-    """The layers of a wall, as they were found before where they were."""
+    """Return the layers of a wall, from the cache if possible."""
     if wall not in _SLICED or _SLICED[wall][0] != (height, smoothing):
         layers = slicing.slice_layers(
             wall, height, smoothing, lambda share, text: progress(FINDING * share, text)
@@ -367,7 +372,7 @@ def _refuse(strategy: SurfaceParameters) -> None:
 def _turns(
     wall: PatchWall, fronts: list[list[SpaceCurve]], strategy: SurfaceParameters
 ) -> list[Issue]:
-    """Corners that the fronts have formed, and how sharply smooth ones turn."""
+    """Report corners of the fronts, and how sharply smooth fronts turn."""
     issues = corner_notes(
         [np.concatenate([front.turns[front.corners] for front in layer]) for layer in fronts]
     )
@@ -383,7 +388,7 @@ def _turns(
 def _deposited_pieces(
     pieces: list[list[Piece]], rims: Rims, strategy: SurfaceParameters, label: str
 ) -> tuple[list[list[Piece]], list[Issue]]:
-    """The pieces that are deposited: all, or those below the first that an end of the wall cuts off."""
+    """Return the deposited pieces: all, or only whole pieces below the first piece cut by the wall's end."""
     if strategy.end != "whole":
         kept_layers, dropped = drop_short_pieces(pieces, 0.5 * strategy.layer_height)
         return kept_layers, short_note(dropped)
@@ -404,7 +409,7 @@ def _deposited_pieces(
 def _close(
     pieces: list[list[Piece]], closing: list[list[SpaceCurve]], full: list[int]
 ) -> list[Issue]:
-    """Append the closing beads to the pieces of their layers if the layer below is complete, with a note."""
+    """Append closing beads to layers whose layer below is complete; return a note."""
     count, first_layer = 0, 0
     for index, curves in enumerate(closing):
         if not curves or index > len(pieces) or len(pieces[index - 1]) < full[index - 1]:
@@ -435,7 +440,7 @@ def _close(
 
 @dataclass(frozen=True, eq=False)
 class _Way:
-    """One way to run a piece: from which parameter on, whether against its curve, and its first point (3,)."""
+    """One way to run a piece: start parameter, whether against the curve, and first point (3,)."""
 
     piece: Piece
     start: float
@@ -463,7 +468,7 @@ def _layers(
             )
             points, normal = wall.project(
                 trace.points
-            )  # arcs are off it between their nodes, if by next to nothing
+            )  # between nodes, arcs deviate minimally from the surface
             if curve.closed:
                 points[-1] = points[0]
             trace = trace._replace(points=points)
@@ -483,7 +488,7 @@ def _layers(
 def _ways(
     piece: Piece, angle: float, middles: dict[int, Middle], process: ProcessParameters, layer: int
 ) -> list[_Way]:
-    """The ways in which a piece may be run. Fronts are counter-clockwise, see `slicing.fronts.layers.start`."""
+    """Return the ways to run a piece; fronts are counter-clockwise, see `slicing.fronts.layers.start`."""
     curve = piece.curve
     if curve.closed:
         start = seam(piece, angle, middles)
@@ -498,7 +503,10 @@ def _ways(
 
 
 def _nearest(open_runs: list[list[_Way]], last_point: Array | None) -> _Way:
-    """The run that begins nearest to the last point (3,), initially the first; gaps are closed once the fronts about them are there."""
+    """Return the run that begins nearest to the last point (3,), or the first run without a last point.
+
+    Closing beads come after the fronts beside the gap.
+    """
     candidates = [runs_ for runs_ in open_runs if not runs_[0].piece.closing] or open_runs
     if last_point is None:
         return candidates[0][0]

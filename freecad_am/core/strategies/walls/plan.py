@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls on an existing part: a wall in, layers of beads with build directions out (Chalvin 2019)."""
+"""Walls on an existing part: layers of beads with build directions (Chalvin 2019)."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from .beads import (
     turn_notes,
 )
 
-FINER = 4  # places per arc of a layer at which its distance from the one below is measured
+FINER = 4  # samples per arc of a layer at which the distance from the layer below is measured
 
 
 def plan(
@@ -47,10 +47,10 @@ def plan(
     process: ProcessParameters,
     progress: Progress = silent,
 ) -> Toolpath:
-    """Return the toolpath of a wall around a closed direction.
+    """Plan the toolpath of a wall around a closed direction.
 
-    The first layer is where the wall leaves the substrate; closed beads start at the seam's
-    angle around the wall. The polynomial's variable is the arc length of the bead, scaled to
+    The first layer is where the wall meets the substrate. Closed beads start at the seam angle
+    around the wall. The variable of the polynomial is the arc length of the bead, scaled to
     one turn (2 pi).
 
     Parameters
@@ -64,7 +64,7 @@ def plan(
     process : ProcessParameters
         Speeds, seam and direction.
     progress : callable, optional
-        Called with the completed share and a text; may raise to cancel.
+        Called with the completed fraction and a text; may raise to cancel.
 
     Returns
     -------
@@ -87,7 +87,7 @@ def plan(
     progress(0.0, "finding layers")
     curves = sliced(wall, surface, strategy)
     stretches, omitted = _stretches(wall, surface, curves, strategy)
-    curves = curves[: len(stretches)]  # what is not deposited is nobody's concern
+    curves = curves[: len(stretches)]  # only deposited layers are reported
     progress(0.5, Text("measuring {} layers", len(curves)))
     distances = [
         local_distances(above, below, FINER)[1]
@@ -111,21 +111,21 @@ def plan(
 
 
 def sliced(wall: SurfaceWall, surface: Placed, strategy: SurfaceParameters) -> list[WallLayer]:
-    """Return the fronts of a wall from the substrate up.
+    """Slice a wall into fronts, from the substrate up.
 
     Parameters
     ----------
     wall : SurfaceWall
         The wall.
     surface : Placed
-        Its surface.
+        Surface of the wall.
     strategy : SurfaceParameters
-        Layer height, spacing, band and largest turn.
+        Layer height, spacing, band and maximum turn rate.
 
     Returns
     -------
     list of WallLayer
-        The fronts; the last one is at or past the end of the wall at some point.
+        The fronts; the last front reaches or passes the end of the wall at some point.
     """
     first_layer = interpolate_polyline(surface, wall.first, label=wall.label)
     if strategy.spacing == "smooth":
@@ -150,7 +150,7 @@ def sliced(wall: SurfaceWall, surface: Placed, strategy: SurfaceParameters) -> l
 def _stretches(
     wall: SurfaceWall, surface: Placed, fronts: list[WallLayer], strategy: SurfaceParameters
 ) -> tuple[list[list[Stretch]], list[Issue]]:
-    """The deposited stretches of each front: the whole front, or its stretches below the end of the wall."""
+    """Return the deposited stretches of each front: the whole front, or the stretches below the wall's end."""
     stretches = [trimmed(surface, front, wall.end) for front in fronts]
     is_whole = [
         len(layer_stretches) == 1 and layer_stretches[0].closed for layer_stretches in stretches
@@ -230,7 +230,7 @@ def _parameters(stretch: Stretch, start: float, chord_error: float) -> Array:
 
 @dataclass(frozen=True)
 class _Side:
-    """Which way the normal of derivatives points out of the wall: 1 or -1."""
+    """Sign, 1 or -1, that makes the normal from derivatives point out of the wall."""
 
     sign: float
 
@@ -251,7 +251,7 @@ def _wall_directions(surface: Placed, trace: Traced, side: _Side) -> Along:
 def _backwards(
     trace: Traced, vectors: Along, process: ProcessParameters, layer: int, number: int
 ) -> bool:
-    """Whether a bead runs against rising v. Counter-clockwise is meant against the build direction."""
+    """Whether a bead runs against rising v; counter-clockwise is seen against the build direction."""
     if not trace.closed:
         return process.direction == "alternate" and number % 2 == 1
     turning = np.cross(trace.points[:-1], trace.points[1:]).sum(axis=0) @ vectors.up.mean(axis=0)
@@ -267,9 +267,7 @@ def _corner_notes(
     stretches: list[list[Stretch]],
     strategy: SurfaceParameters,
 ) -> list[Issue]:
-    """The note about corners that fronts have formed where they are deposited, for a robot slows down there; without corners, the
-    sharpest turn.
-    """
+    """Report corners of deposited fronts, where a robot slows down; without corners, the sharpest turn."""
     turns = [_corners(front.curve, layer) for front, layer in zip(fronts, stretches, strict=True)]
     if not any(map(len, turns)):
         return turn_notes(
@@ -280,7 +278,7 @@ def _corner_notes(
 
 
 def _corners(curve: SpaceCurve, stretches: list[Stretch]) -> Array:
-    """Turns (k,) rad at the corners of a front on its stretches."""
+    """Return the turn angles (k,) at the corners of a front on its stretches, rad."""
     w = curve.w[curve.corners]
     on = [
         np.mod(w - stretch.low, curve.period) <= stretch.high - stretch.low for stretch in stretches
@@ -289,16 +287,16 @@ def _corners(curve: SpaceCurve, stretches: list[Stretch]) -> Array:
     return turns
 
 
-# ---- The front below the end of a wall: entire, or open stretches that end flush with it
+# ---- Fronts below the end of a wall: whole, or open stretches that end flush with the wall
 
-SAME_END = 1e-6  # mm; a point above the end by no more than this is on it
-SAMPLES_PER_ARC = 8  # samples per arc that distinguish above and below
+SAME_END = 1e-6  # mm; maximum height above the end of a point on the end
+SAMPLES_PER_ARC = 8  # samples per arc that are classified as above or below the end
 HALVINGS = 48
 
 
 @dataclass(frozen=True)
 class Stretch:
-    """A part of a front between two of its parameters; the closed one is the whole front."""
+    """A part of a front between two parameters; a closed stretch is the whole front."""
 
     front: WallLayer
     low: float
@@ -306,7 +304,7 @@ class Stretch:
     closed: bool
 
     def length(self, curve: SpaceCurve) -> float:
-        """Its length, mm."""
+        """Return the length of the stretch, mm."""
         points = curve.at(np.linspace(self.low, self.high, 200))[0]
         return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
 
@@ -326,7 +324,7 @@ def trimmed(surface: Placed, front: WallLayer, end: float) -> list[Stretch]:
     Returns
     -------
     list of Stretch
-        The stretches in the order of their parameter; empty if the front is above.
+        The stretches in parameter order; empty if the whole front is above the end.
     """
     curve = front.curve
     w = curve.refined(SAMPLES_PER_ARC)
@@ -348,8 +346,9 @@ def trimmed(surface: Placed, front: WallLayer, end: float) -> list[Stretch]:
 
 
 def _below(surface: Placed, front: WallLayer, w: Array, end: float) -> Mask:
-    """Mask of the positions (n,) of a front below the end. Where u is an angle, as along a bend, the front decides the turn of a
-    position: a surface knows its own points only up to whole turns.
+    """Return which positions (n,) of a front are below the end.
+
+    If u is an angle, as along a bend, the surface determines u only up to whole turns. The front then gives the turn.
     """
     u, v = surface.inverse(front.curve.at(w)[0])
     rate = np.linalg.norm(surface.derivatives(u, v)[1], axis=1)
@@ -363,7 +362,7 @@ def _below(surface: Placed, front: WallLayer, w: Array, end: float) -> Mask:
 def _crossing(
     surface: Placed, front: WallLayer, low: Array, high: Array, end: float, entering: bool
 ) -> Array:
-    """Where the front passes the end between two parameters, on the side below it."""
+    """Return where the front crosses the end between two parameters, on the side below the end."""
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
         below = _below(surface, front, middle, end) == entering
