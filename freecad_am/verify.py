@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads a written program back and drives it through kinematics that planning did not use.
+"""Read a written program back and drive it through kinematics that planning did not use.
 
-The check only uses the text: the moves as the controller would run them, straight in the joints or
-in space, with or without a stop. It computes their joint values through the joint-frame chain (not
-the closed form of the planner) and through PyKDL, and compares them with the planned path at the
-points and between them. It also checks the events between the moves. Assumptions shared by text and
-plan, such as the pendant's zero of J3 or the position of the frames, cannot show here.
+The check uses only the program text: the moves as the controller would run them, linear in joint or
+Cartesian space, with or without a stop. It computes joint values with the joint-frame chain (not
+the planner's closed form) and with PyKDL. It compares the result with the planned path at the
+points and between them, and checks the events between moves. It cannot reveal assumptions that text
+and plan share, such as the pendant's J3 zero or the frame positions.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ WANDERS = "the path between two beads deviates from the checked path by up to {}
 
 @dataclass(frozen=True)
 class Verification:
-    """The result of the read-back. Without an error among the issues, the program may be delivered.
+    """Read-back result. The program may be delivered if no issue is an error.
 
-    at_points_mm, between_mm: largest distance from the plan at the points, and between the points
-    of a bead. bound_mm: largest distance that the digits of the text explain. solvers: the solvers
-    that computed the kinematics.
+    at_points_mm, between_mm: maximum deviation from the plan at the points, and between the points
+    of a bead. bound_mm: maximum deviation that the rounding of the text explains. solvers: names of
+    the kinematics solvers used.
     """
 
     issues: tuple[Issue, ...]
@@ -55,10 +55,11 @@ def verify(
     post: Post,
     chord_error: float,
 ) -> Verification:
-    """Compare the files with the motion they were written for.
+    """Compare program files with the motion that they were written for.
 
-    motion: the rows that `program` was built of. chord_error: mm, how far the path may leave the straight line
-    between two points of a bead. Raises InputError UNREADABLE_PROGRAM when the reader does not understand the files.
+    motion: contains the rows that `program` was built from. chord_error: mm; maximum deviation of
+    the path from the straight line between two points of a bead. Raises InputError
+    UNREADABLE_PROGRAM if the reader does not understand the files.
     """
     read_moves, rows = post.read(files), np.flatnonzero(motion.moves)
     if len(read_moves.deposit) != len(rows):
@@ -93,7 +94,7 @@ def _verify_joints(
     half = text_path.digits(cell, read_moves)
     path, flange = text_path.joint_path(cell, values, half)
     second = points.second_opinion(cell, planned, values, flange)
-    del flange  # the largest over all checks
+    del flange  # frees the largest array of all checks
     issues += points.joint_issues(cell, planned, read_moves, continuous) + points.point_issues(
         planned, path
     )
@@ -111,11 +112,11 @@ def _verify_poses(
     chord_error: float,
     issues: list[Issue],
 ) -> Verification:
-    """Check positions of the text against the planned points, and their flange poses against the
+    """Compare the positions in the text with the planned points, and their flange poses with the
     planned joints.
 
-    A linear move takes the selected tool straight to its target. With the part on the robot, this
-    tool is different at every point, so the path between points is checked too.
+    A linear move takes the selected tool straight to the target. If the robot holds the part, the
+    tool frame differs at every point, so the path between points is checked too.
     """
     joints = np.concatenate([moves.joints for moves in program.moves])
     path, flange = text_path.joint_path(cell, joints, np.zeros(joints.shape[1]))
@@ -132,7 +133,7 @@ def _verify_poses(
         "VERIFY_ROTATION", twisted, "the program turns the tool differently than planned"
     )
     strayed = 0.0
-    # a constant tool moves straight from point to point; so does a fixed tool in the frame of a
+    # a constant tool moves straight from point to point, and so does a fixed tool relative to a
     # held part
     if read_moves.tool is not None and not read_moves.held and len(planned.ends):
         strayed, off = points.tools_between(cell, planned, required, tools, poses, chord_error)
@@ -147,8 +148,10 @@ def _verify_poses(
 def _verify_tips(
     cell: Cell, planned: Planned, program: Program, read_moves: ReadMoves, issues: list[Issue]
 ) -> Verification:
-    """Tips and directions of a text for a machine with rotary axes, which finds its linear axes itself, and the planned
-    axis values against the same points. Such a controller takes the tip straight from point to point."""
+    """Check tips and directions in a text for a five-axis machine, and the planned axis values.
+
+    The controller computes the linear axes and moves the tip straight from point to point.
+    """
     joints = np.concatenate([moves.joints for moves in program.moves])
     path, flange = text_path.joint_path(cell, joints, np.zeros(joints.shape[1]))
     tips = text_path.text_tips(cell, program, read_moves)
@@ -168,7 +171,7 @@ def _verify_tips(
 def _in_turns(
     cell: Cell, planned: Planned, program: Program, read_moves: ReadMoves
 ) -> Array | None:
-    """Axis values of the text, those it sends the shorter way in the turns of the planned ones."""
+    """Return the axis values of the text, with shorter-way axes unwrapped to the planned turns."""
     if read_moves.joints is None:
         return None
     values, shorter = read_moves.joints.copy(), text_path.shorter_way(cell, program, read_moves)
@@ -187,9 +190,7 @@ def _concluded(
     second: tuple[list[Issue], tuple[str, ...]],
     issues: list[Issue],
 ) -> Verification:
-    """Add the checks of rapids and limits, which every text needs, and the result of the second
-    solver.
-    """
+    """Add the checks that every text needs (rapids, limits) and the second solver's result."""
     wandered, turned, off = points.rapids_between(cell, planned, text, path, read_moves.linear)
     issues += planned.issue(
         "VERIFY_BETWEEN", off, Text(WANDERS, format_deviation(wandered), turned)

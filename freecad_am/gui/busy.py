@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs long work while the window stays responsive, with its progress and a cancel button.
+"""Run long work while the window stays responsive, with progress and a cancel button.
 
-The work runs in another thread, and this one keeps handling events, so that the window is redrawn
-and FreeCAD's timers run. User input in the meantime is queued for a moment; if the work takes
-longer, a modal dialog receives it.
+The work runs in another thread while this thread handles events, so that the window is redrawn and
+FreeCAD's timers run. User input is queued for a moment; if the work takes longer, a modal dialog
+receives it.
 """
 
 from __future__ import annotations
@@ -34,8 +34,10 @@ _dialog: ContextVar[_Dialog | None] = ContextVar("dialog", default=None)
 
 
 def carry_out(work: Callable[[], Any], title: str, doing: str = "") -> Any:
-    """What `work` returns or raises, done in another thread; it must touch no document. doing: message until the
-    work reports progress. Raises Cancelled."""
+    """Run `work` in another thread and return its result; `work` must touch no document.
+
+    doing: message until the work reports progress. Raises Cancelled, and the errors of `work`.
+    """
     worker = Worker(work)
     if not worker.ended.wait(AT_ONCE):
         with busy() as dialog:
@@ -45,7 +47,7 @@ def carry_out(work: Callable[[], Any], title: str, doing: str = "") -> Any:
 
 @contextlib.contextmanager
 def busy() -> Iterator[_Dialog]:
-    """Show one dialog for several works, if together they take long."""
+    """Show one dialog for several jobs if together they take long."""
     outer = _dialog.get()
     if outer is not None:
         yield outer
@@ -60,7 +62,7 @@ def busy() -> Iterator[_Dialog]:
 
 
 def _attend(worker: Worker, title: str, doing: str, dialog: _Dialog) -> None:
-    """Handle events until the work has ended, or was cancelled."""
+    """Handle events until the work has ended or was cancelled."""
     loop, timer = QtCore.QEventLoop(), QtCore.QTimer()
     failure: list[BaseException] = []
 
@@ -68,7 +70,7 @@ def _attend(worker: Worker, title: str, doing: str, dialog: _Dialog) -> None:
         try:
             if worker.fraction is not None:
                 progress.report(worker.fraction, worker.text)  # a macro may listen, and cancel
-        except BaseException as error:  # else it would be lost here
+        except BaseException as error:  # Qt would swallow the error here
             failure.append(error)
         if (
             worker.ended.is_set()
@@ -101,11 +103,11 @@ def _run(loop: Any, flags: Any) -> None:
 
 
 class _Dialog:
-    """Dialog with text, bar and Cancel, shown after a delay; Esc and closing it cancel too.
+    """Dialog with text, bar and Cancel, shown after a delay. Esc and closing it cancel too.
 
     While FreeCAD recomputes, it blocks mouse and keys except in modal messages and progress
-    dialogs. In a progress dialog Esc is a shortcut, which Qt handles before keys, so the
-    application needs no event filter, which would call Python for every event.
+    dialogs. In a progress dialog, Esc is a shortcut, which Qt handles before keys. The application
+    therefore needs no event filter, which would call Python for every event.
     """
 
     def __init__(self) -> None:
@@ -147,17 +149,17 @@ class _Dialog:
         self.box.setCancelButton(self.button)
         for escape in self.box.findChildren(
             QtGui.QShortcut
-        ):  # also where the main window keeps the focus
+        ):  # also if the main window keeps the focus
             escape.setContext(QtCore.Qt.ApplicationShortcut)
             connect(
                 escape, "activatedAmbiguously()", self.cancel
-            )  # Qt makes one for each Cancel it was given
+            )  # Qt adds a shortcut for each Cancel button
         self.box.setMinimumWidth(_WIDTH)
         self.box.canceled.connect(self.cancel)
         self.show_progress(title, None, doing)
         QtGui.QApplication.setOverrideCursor(
             QtGui.QCursor(QtCore.Qt.ArrowCursor)
-        )  # over FreeCAD's waiting one
+        )  # overrides FreeCAD's wait cursor
         self.box.show()
         self.button.setFocus()
 
@@ -177,11 +179,11 @@ class _Dialog:
             self.bar.setValue(round(STEPS * min(1.0, max(0.0, fraction))))
 
     def cancel(self, *_: Any) -> None:
-        """The user does not want it."""
+        """Record that the user cancelled."""
         self.cancelled = True
 
     def close(self) -> None:
-        """Take it away."""
+        """Close the dialog."""
         if self.box is None:
             return
         QtGui.QApplication.restoreOverrideCursor()

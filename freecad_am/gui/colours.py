@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The colours of the window: of texts on the theme's ground, light or dark, and a perceptual ramp.
+"""The colours of the window: text colours for light and dark themes, and a perceptual ramp.
 
-The lightness of the ramp rises evenly and its hue runs from blue to yellow, so that order can be seen.
+The lightness of the ramp rises evenly and its hue runs from blue to yellow, so that order is
+visible.
 """
 
 from __future__ import annotations
@@ -19,16 +20,16 @@ from ..objects.fields import preferences
 from .widgets.upright import present
 
 STEPS = 256
-# roles of texts; PLAIN is whatever the theme gives a text
+# roles of texts; PLAIN is the theme's own text colour
 PLAIN, INVALID, GOOD, FAINT = "plain", "wrong", "good", "faint"
-# at least 4.5:1 on the grounds of FreeCAD's themes
+# contrast of at least 4.5:1 on the backgrounds of FreeCAD's themes
 _ON_LIGHT = {INVALID: "#b3121f", GOOD: "#14693d", FAINT: "#5c6370"}
 _ON_DARK = {INVALID: "#ff8a80", GOOD: "#5fd39b", FAINT: "#aab3c0"}
 _ROLE = "RoboticAM_colour"  # property of widgets whose text has a role
 _PROBE = "RoboticAM_ThemeProbe"
-_MIDDLE = 128  # lightness of 255
+_MIDDLE = 128  # of 255; lightness that separates light and dark
 
-# first hue and how far it turns, deg, and how strong the colours are
+# first hue, hue range, deg, and saturation
 _HUES = dict(
     zip(
         preferences.RAMPS, ((275.0, -170.0, 1.0), (305.0, 125.0, 0.9), (0.0, 0.0, 0.0)), strict=True
@@ -53,7 +54,10 @@ _LAB = np.array(
 
 
 def ramp(share: Any) -> Array:
-    """(n, 3) colours 0..1 of shares (n,) 0..1: dark blue, teal, green, yellow, or as the preferences say."""
+    """Return colours (n, 3) in 0..1 of fractions (n,) in 0..1, from the preferred ramp.
+
+    The default runs through dark blue, teal, green and yellow.
+    """
     positions = np.clip(np.asarray(share, dtype=np.float64), 0.0, 1.0) * (STEPS - 1)
     return _table(preferences.ramp())[np.rint(positions).astype(int)]
 
@@ -75,7 +79,7 @@ def _table(name: str) -> Array:
 
 
 class _Probe(QtGui.QLabel):
-    """A hidden label: the theme gives it the colour of its texts, by palette or by stylesheet."""
+    """A hidden label that receives the theme's text colour, by palette or by stylesheet."""
 
     def __init__(self) -> None:
         super().__init__(Gui.getMainWindow())
@@ -85,7 +89,7 @@ class _Probe(QtGui.QLabel):
         self.dark: bool | None = None
 
     def changeEvent(self, event: Any) -> None:
-        """Called by Qt, among others when the window gets another theme."""
+        """Called by Qt, among others when the theme changes."""
         super().changeEvent(event)
         if event.type() in (QtCore.QEvent.PaletteChange, QtCore.QEvent.StyleChange):
             QtCore.QTimer.singleShot(0, _renew)
@@ -96,7 +100,7 @@ _listeners: list[Callable[[], None]] = []
 
 
 def ink() -> Any:
-    """The colour of plain texts, as the theme of the window has it."""
+    """Return the theme's plain text colour."""
     if not _probe:
         _probe.append(_Probe())
         _probe[0].dark = is_dark()
@@ -104,18 +108,18 @@ def ink() -> Any:
 
 
 def is_dark() -> bool:
-    """Whether the theme has light texts on a dark ground."""
+    """Whether the theme has light texts on a dark background."""
     return bool(ink().lightness() > _MIDDLE)
 
 
 def of(role: str) -> Any:
-    """The colour of texts of a role, on the ground of the present theme."""
+    """Return the text colour of a role in the current theme."""
     table = _ON_DARK if is_dark() else _ON_LIGHT
     return QtGui.QColor(table[role]) if role in table else ink()
 
 
 def set_role(widget: Any, role: str) -> None:
-    """Give the text of a widget the colour of a role; it follows the theme of the window."""
+    """Give the text of a widget the colour of a role; the colour follows the theme."""
     widget.setProperty(_ROLE, role)
     kind = "QLabel" if isinstance(widget, QtGui.QLabel) else widget.metaObject().className()
     sheet = "" if role == PLAIN else f"{kind} {{ color: {of(role).name()}; }}"
@@ -124,18 +128,18 @@ def set_role(widget: Any, role: str) -> None:
 
 
 def listen(listener: Callable[[], None]) -> None:
-    """Call this whenever the window has become light or dark."""
+    """Call `listener` whenever the window changes between light and dark."""
     _listeners.append(listener)
 
 
 def forget(listener: Callable[[], None]) -> None:
-    """Call it no more."""
+    """Stop calling `listener`."""
     if listener in _listeners:
         _listeners.remove(listener)
 
 
 def _renew() -> None:
-    """Give all texts with a role the colour they have in the present theme."""
+    """Recolour all texts with a role for the current theme."""
     if not _probe or _probe[0].dark == is_dark():
         return
     _probe[0].dark = is_dark()

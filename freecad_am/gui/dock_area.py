@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The space that our docks take from the window and give back: height below the 3D view, width next to it."""
+"""Manage the space that our docks take from the window: height below the 3D view, width next to it."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from .widgets.upright import present
 
 
 class Follower:
-    """An observer of documents; `fill` shows the target, or what there is where that is gone."""
+    """An observer of documents; `fill` shows the target, or a substitute if the target is deleted."""
 
     target: tuple[str, str] | None = None  # names of document and object
 
     def fill(self) -> None:
-        """Show what there is now."""
+        """Show the current state."""
         raise NotImplementedError
 
     def slotDeletedObject(self, obj: Any) -> None:
-        """Called before an object is deleted; afterwards another one is shown."""
+        """Show another object after this one is deleted; called before."""
         QtCore.QTimer.singleShot(0, self.fill)
 
     def slotDeletedDocument(self, document: Any) -> None:
-        """A document is closed."""
+        """Update after a document is closed."""
         QtCore.QTimer.singleShot(0, self.fill)
 
     def slotActivateDocument(self, document: Any) -> None:
-        """Called when another document becomes active."""
+        """Update after another document becomes active."""
         if self.target is not None and self.target[0] != document.Name:
             self.target = None
         QtCore.QTimer.singleShot(0, self.fill)
@@ -50,22 +50,25 @@ class OnlyDock(Generic[D]):
         self.dock: D | None = None
 
     def provide(self) -> D:
-        """Return the dock, made at the first call."""
+        """Return the dock; the first call creates it."""
         if self.dock is None:
             self.dock = self._make()
         return self.dock
 
 
 class Shown(Protocol):
-    """What a dock shows: the names of a document and of objects in it."""
+    """The content of a dock: the names of a document and of objects in it."""
 
     document: str
     objects: Collection[str]
 
 
 class Lookout:
-    """Calls `changed` with an object and the name of its property, and `ended` with why there is nothing to show any more
-    and whether the document goes, until it is stopped. `goes` is called at once when an object goes, `ended` after it."""
+    """Observes the objects of a dock until stopped.
+
+    Calls `changed` with an object and a property name. Calls `goes` before an object is deleted.
+    Calls `ended` after that, with the reason and whether the document is closed.
+    """
 
     def __init__(
         self,
@@ -78,7 +81,7 @@ class Lookout:
         App.addDocumentObserver(self)
 
     def stop(self) -> None:
-        """Look out no more."""
+        """Stop observing."""
         App.removeDocumentObserver(self)
 
     def _shows(self, obj: Any) -> bool:
@@ -87,32 +90,32 @@ class Lookout:
     # ---- called by FreeCAD
 
     def slotDeletedDocument(self, document: Any) -> None:
-        """A document is closed."""
+        """End after a document is closed."""
         if document.Name == self.shown().document:
             self.ended(tr("the document was closed"), True)
 
     def slotDeletedObject(self, obj: Any) -> None:
-        """An object is deleted."""
+        """End after an object is deleted."""
         if self._shows(obj):
             self.goes()
             text = tr("{label} was deleted").format(label=obj.Label)
             QtCore.QTimer.singleShot(0, lambda: self.ended(text, False))
 
     def slotChangedObject(self, obj: Any, name: str) -> None:
-        """A property of an object has changed."""
+        """Report a changed property."""
         if self._shows(obj):
             self.changed(obj, name)
 
 
-MOST_SHARE = 0.38  # of the window that a dock asks for, so that the 3D view keeps its room
-_TOLERANCE_PX = 3  # pixels that layouts round away
-_STABLE_MS = 300  # ms without change after which docks are at rest
+MOST_SHARE = 0.38  # maximum fraction of the window for a dock, so that the 3D view keeps its space
+_TOLERANCE_PX = 3  # pixels; tolerance for rounding in layouts
+_STABLE_MS = 300  # ms without change after which docks are considered stable
 _SIDE_AREAS = (QtCore.Qt.LeftDockWidgetArea, QtCore.Qt.RightDockWidgetArea)
 
 
 @dataclass
 class _Part:
-    """One of our docks, and its size in pixels: a minimum, unless the user has set it by hand."""
+    """One of our docks and its size in pixels: a minimum, or the size set by the user (`by_hand`)."""
 
     dock: Any
     extent: int
@@ -120,17 +123,15 @@ class _Part:
 
 
 class DockArea:
-    """One dock area of the window. It is as large as its largest open dock requests."""
+    """A dock area of the window, as large as its largest open dock requests."""
 
     def __init__(self, area: Any) -> None:
         self.area = area
         self.across = QtCore.Qt.Horizontal if area in _SIDE_AREAS else QtCore.Qt.Vertical
-        self.parts: list[_Part] = []  # in the order in which they were opened
-        self.before: dict[
-            str, int
-        ] = {}  # names of other docks, and the pixels they had before ours came
-        self.wishes: dict[str, int] = {}  # what docks had by the user's hand when they were closed
-        self.made: int | None = None  # resulting pixels once the docks are at rest
+        self.parts: list[_Part] = []  # in order of opening
+        self.before: dict[str, int] = {}  # pixels of other docks before ours opened, by name
+        self.wishes: dict[str, int] = {}  # sizes set by the user when docks were closed
+        self.made: int | None = None  # resulting pixels once the docks are stable
         self.last: int | None = None
         self.timer = QtCore.QTimer()
         self.timer.setSingleShot(True)
@@ -138,7 +139,7 @@ class DockArea:
         self.timer.timeout.connect(self._measure)
 
     def enter(self, dock: Any, min_pixels: int) -> None:
-        """Prepare to open a dock of at least `min_pixels`; 0: the size its fields need."""
+        """Prepare to open a dock of at least `min_pixels`; 0: the size that its fields need."""
         self._look()
         if not self.parts:
             self.before = {
@@ -162,7 +163,7 @@ class DockArea:
             self.timer.start()
 
     def leave(self, dock: Any) -> None:
-        """Prepare to close a dock; the others soon resize."""
+        """Prepare to close a dock; the other docks resize shortly after."""
         if not any(member.dock is dock for member in self.parts):
             return
         self._look()
@@ -187,7 +188,7 @@ class DockArea:
         self._resize(docks, [self.before[dock.objectName()] for dock in docks])
 
     def _target_extent(self) -> int:
-        """Return the pixels requested by the open docks, in order of opening."""
+        """Return the pixels that the open docks request, in order of opening."""
         pixels = max(self.before.values(), default=0)
         for member in self.parts:
             pixels = member.extent if member.by_hand else max(pixels, member.extent)
@@ -204,7 +205,7 @@ class DockArea:
 
     def _measure(self) -> None:
         extent = self._current_extent()
-        if extent is not None and extent != self.last:  # Qt moves docks little by little
+        if extent is not None and extent != self.last:  # Qt moves docks in small steps
             self.last = extent
             self.timer.start()
         else:
@@ -226,7 +227,7 @@ class DockArea:
         )
 
     def _visible_docks(self) -> list[Any]:
-        """Return the visible docks, without those behind others, which Qt keeps outside the window."""
+        """Return the visible docks, without docks behind others, which Qt keeps outside the window."""
         window = Gui.getMainWindow()
         docks = present(window, QtGui.QDockWidget)
         return [
@@ -236,7 +237,9 @@ class DockArea:
         ]
 
     def _extent(self, dock: Any) -> int:
-        """Pixels of a dock, with the tabs above or below it: so Qt counts when docks are resized."""
+        """Return the pixels of a dock including its tabs above or below, as Qt counts when it
+        resizes docks.
+        """
         if self.across == QtCore.Qt.Horizontal:
             return int(dock.width())
         window, rect = Gui.getMainWindow(), dock.geometry()
@@ -263,10 +266,11 @@ _NOWHERE = QtCore.Qt.NoDockWidgetArea
 
 
 class Dock(QtGui.QDockWidget):
-    """A dock. `wide` is the share of the window's width that it requests unless another of our docks is next to it,
-    `high` its height in pixels; 0: the size its fields need.
+    """A dock that reserves space in the window.
 
-    `closed` is called when the dock is closed; `seen` when it becomes visible, such as by a click on its tab.
+    wide: requested fraction of the window's width, unless another of our docks is in the area.
+    high: requested height, pixels; 0: the size that its fields need. `closed` is called when the
+    dock is closed, `seen` when it becomes visible, such as by a click on its tab.
     """
 
     def __init__(self, name: str, area: Any, wide: float = 0.0, high: int = 0) -> None:
@@ -278,11 +282,11 @@ class Dock(QtGui.QDockWidget):
         self.visibilityChanged.connect(self._visible)
 
     def setWindowTitle(self, title: str) -> None:
-        """Show a title as it is: an `&` in it marks no key."""
+        """Show a title literally: an `&` does not mark a key."""
         super().setWindowTitle(escape_mnemonic(title))
 
     def hold(self, title: str, content: Any) -> None:
-        """Show a widget under a title; delete the previous one."""
+        """Show a widget under a title; delete the previous widget."""
         self.setWindowTitle(title)
         old_content = self.widget()
         self.setWidget(content)
@@ -303,7 +307,7 @@ class Dock(QtGui.QDockWidget):
         self.show()
         self.raise_()
         if opened:
-            QtCore.QTimer.singleShot(0, self._fit_size)  # once it has its place among other docks
+            QtCore.QTimer.singleShot(0, self._fit_size)  # after the layout of the other docks
 
     def _join(self, window: Any) -> None:
         """Become a tab of one of our docks in the area, open or closed."""
@@ -318,7 +322,7 @@ class Dock(QtGui.QDockWidget):
             window.tabifyDockWidget(max(docks, key=lambda dock: dock.isVisible()), self)
 
     def _fit_size(self) -> None:
-        """The room it asks for."""
+        """Resize the dock to its requested size."""
         area = _area(self)
         if not self.isVisible() or area is None:
             return
@@ -329,7 +333,7 @@ class Dock(QtGui.QDockWidget):
         area.fit_size()
 
     def empty(self) -> None:
-        """Close it, and hold nothing: it is not to be opened but by its tool."""
+        """Close and empty the dock; afterwards only its tool opens it."""
         self.closed = None
         self.close()
         self.toggleViewAction().setVisible(False)
@@ -351,7 +355,7 @@ class Dock(QtGui.QDockWidget):
             self.seen()
 
 
-_docks: dict[str, Dock] = {}  # Python must keep them
+_docks: dict[str, Dock] = {}  # keeps the docks alive
 _areas: list[DockArea] = []
 
 
@@ -374,16 +378,18 @@ def _area(dock: Dock) -> DockArea | None:
     return _areas[-1]
 
 
-# ---- A picture that changes together with fields of the window: both in one turn of the window
+# ---- Redraw a 3D view together with fields of the window in one cycle of the event loop
 #
-# Coin has a changed view drawn a turn after Qt has painted changed fields, and in each of the two
-# Qt puts the whole window together, fields and picture. That costs as much as a small picture
-# does, so a moving one asks for its turn with the fields.
+# By default, Coin redraws a changed view one cycle after Qt has painted changed fields, and in both
+# cycles Qt composes the whole window. This costs as much as a small image, so an animation requests its
+# redraw together with the fields.
 
 
 def schedule_redraw(view: Any) -> None:
-    """Redraw a 3D view together with the fields that change now. Raises RuntimeError if it is closed."""
-    # not view.redraw(): in FreeCAD 0.20 that may draw at once, and it leaves out what Coin still has to do before
+    """Redraw a 3D view together with fields that change now. Raises RuntimeError if the view is
+    closed.
+    """
+    # not view.redraw(): in FreeCAD 0.20 it may draw at once, without the pending updates of Coin
     view.graphicsView().viewport().update()
 
 

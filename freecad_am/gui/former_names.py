@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Documents store view providers by module and class. This finds classes of documents saved before the modules
-moved; FreeCAD saves them under their present names."""
+"""Find view provider classes of documents that were saved before modules moved.
+
+Documents store view providers by module and class. FreeCAD saves them under their current names.
+"""
 
 from __future__ import annotations
 
@@ -29,7 +31,7 @@ MOVED = {
 
 
 class _FormerNames(MetaPathFinder, Loader):
-    """Finds modules under the names they had, with the classes they have now."""
+    """Finds modules under their former names, with their current classes."""
 
     def find_spec(
         self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
@@ -44,5 +46,5 @@ class _FormerNames(MetaPathFinder, Loader):
 
 
 def install() -> None:
-    """Find them from now on; InitGui calls this before the first document can open."""
+    """Install the finder; InitGui calls this before the first document can open."""
     sys.meta_path.append(_FormerNames())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Paths of icons, and icons with a badge for the status of an object."""
+"""Return paths of icons, and icons with a badge for the status of an object."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FOLDER = os.path.join(
 )
 BADGES = {"stale": "#f5a623", "failed": "#e5243b", "infeasible": "#e5243b"}
 
-# of players: polygons in a square of 16, and bars by left edge and width
+# player icons: polygons in a square of 16, and bars by left edge and width
 _TRIANGLE_ON, _TRIANGLE_BACK = ((0, 2), (6, 8), (0, 14)), ((6, 2), (0, 8), (6, 14))
 _MARKS = {
     "play": (((3, 2), (14, 8), (3, 14)),),
@@ -62,7 +62,9 @@ def player_icon(name: str, colour: Any) -> Any:
 
 
 def badge_path(name: str, status: str) -> str:
-    """The path of the icon with a dot in the colour of the status; the plain icon when all is well."""
+    """Return the path of the icon with a dot in the colour of the status; the plain icon without
+    problems.
+    """
     colour = BADGES.get(status)
     if colour is None:
         return path(name)

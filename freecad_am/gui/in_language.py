@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Texts of the core in another language: their templates are translated, and their values put in."""
+"""Translate texts of the core: translate their templates and insert their values."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ _SECTIONS = (
     ("program", ProgramParameters),
     ("inspection", InspectionParameters),
 )
-# the panel that has the fields of a section, as its stage or tool is called
+# panel with the fields of a section, named after its stage or tool
 _PANELS = {
     "cell": "Cell",
     "strategy": "Feature",
@@ -43,7 +43,7 @@ _PANELS = {
     "program": "Program",
     "inspection": "Inspection",
 }
-_LINE = r"((?:[a-z_]+\.)*[a-z_]+): ([A-Za-z0-9+_-]+)"  # of a job file
+_LINE = r"((?:[a-z_]+\.)*[a-z_]+): ([A-Za-z0-9+_-]+)"  # line of a job file
 _QUOTED, _BARE = re.compile(f"`{_LINE}`"), re.compile(rf"(?<![\w./\\`-]){_LINE}(?!`)")
 _KEY = re.compile(
     rf"(?<![\w./\\-])(?:{'|'.join(sorted({section for section, _ in _SECTIONS}))})(?:\.[a-z_]+)+(?![\w/\\-])"
@@ -52,8 +52,10 @@ _KEY = re.compile(
 
 @lru_cache(maxsize=1)
 def _known() -> dict[str, tuple[str, str]]:
-    """Return group within the panel ('' for none) and label of each parameter by its job file name; also of each
-    group and of each range, which has two fields."""
+    """Return group within the panel ('' for none) and label of each parameter by its job file name.
+
+    Also covers groups, and ranges, which have two fields.
+    """
     labels: dict[str, tuple[str, str]] = {}
     for section, cls in _SECTIONS:
         for row in rows(cls):
@@ -72,7 +74,7 @@ def _known() -> dict[str, tuple[str, str]]:
 
 @lru_cache(maxsize=1)
 def _choices() -> dict[str, set[str]]:
-    """What each parameter that has choices may be, in any family, by its name in job files."""
+    """Return the choices of each parameter, in any family, by its name in job files."""
     choices: dict[str, set[str]] = {}
     for section, cls in _SECTIONS:
         for row in rows(cls):
@@ -83,7 +85,9 @@ def _choices() -> dict[str, set[str]]:
 
 @lru_cache(maxsize=1)
 def _short_names() -> dict[str, str]:
-    """The whole name of each parameter whose last part no other section has, by that part."""
+    """Map the last part of a parameter name to the full name, if no other section has this last
+    part.
+    """
     full_names: dict[str, list[str]] = {}
     for name in _known():
         full_names.setdefault(name.rpartition(".")[2], []).append(name)
@@ -97,8 +101,11 @@ def _short_names() -> dict[str, str]:
 def as_in_panels(
     text: str, translate: Callable[[str], str], quoted: str = "“{}”", with_panel: bool = False
 ) -> str:
-    """A message with the names that parameters have in panels, translated: “Bead width” for process.bead_width, “Motion:
-    joint” for motion: joint, with or without backticks. with_panel: append the panel, “Bead width” (Toolpath)."""
+    """Replace parameter names in a message by their translated names in panels.
+
+    “Bead width” replaces process.bead_width, and “Motion: joint” replaces motion: joint, with or
+    without backticks. with_panel: append the panel, “Bead width” (Toolpath).
+    """
 
     def quote_field(name: str, value: str = "") -> str:
         group, label = _known()[name]
@@ -127,20 +134,22 @@ KINDS = ("cell", "feature", "toolpath", "program", "inspection")  # stages, as m
 def in_language(
     text: str, translate: Callable[[str], str], in_units: Callable[[str], str] | None = None
 ) -> str:
-    """A text in another language and other units.
+    """Translate a text and convert its units.
 
     Parameters
     ----------
     text : str
+        The text.
     translate : callable
         Returns the translation of a template, or the template without one.
     in_units : callable, optional
-        Returns a text of numbers with the quantities in it in other units. None: quantities stay as they are.
+        Converts the quantities in a text of numbers to other units; None keeps them.
 
     Returns
     -------
     str
-        Values are inserted as written, our own texts also translated. Names stay unchanged.
+        The translation. Values are inserted as written; our own texts among them are also translated.
+        Names stay unchanged.
     """
     template = (
         text.template if isinstance(text, Text) else text.replace("{", "{{").replace("}", "}}")
@@ -169,7 +178,7 @@ def _value(
 
 
 def names_first(text: str) -> bool:
-    """Whether a text begins with a name, of a part or a file, which is written as it is."""
+    """Whether a text begins with the name of a part or a file, which is written as it is."""
     if not isinstance(text, Text) or not text.template.startswith("{0}"):
         return False
     first_value = text.values[0]
@@ -181,7 +190,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "resources" / "translations"
 
 
 def install() -> None:
-    """Register our translations in FreeCAD and load the one of its language."""
+    """Register our translations in FreeCAD and load the translation of its language."""
     Gui.addLanguagePath(str(FOLDER))
     Gui.updateLocale()
 
@@ -189,28 +198,32 @@ def install() -> None:
 def tr(text: str) -> str:
     """Return the text in the language of FreeCAD's window, or unchanged without a translation.
 
-    Call it with literals or `marked` texts, so that a script can collect them; insert figures afterwards with
-    `format`.
+    Call it with literals or `marked` texts, so that a script can collect them; insert values
+    afterwards with `format`.
     """
     return str(App.Qt.translate(CONTEXT, text))
 
 
 def marked(text: str) -> str:
-    """The text as it is, for a script to collect: it is translated when it is shown, by `tr` or by FreeCAD."""
+    """Return the text unchanged. Marks it for the translation script; `tr` or FreeCAD translates it
+    on display.
+    """
     return text
 
 
 def translated(text: str, user_units: bool = True) -> str:
-    """Translate a text of the core (help, word or message with figures) to the window's language, with panel names
-    of parameters; unchanged without a translation. user_units: False
-    keeps quantities in mm, for files."""
+    """Translate a text of the core to the window's language, with panel names of parameters.
+
+    The text is a help, word or message with values; it is unchanged without a translation.
+    user_units: False keeps quantities in mm, for files.
+    """
     return as_in_panels(
         in_language(text, tr, in_user_units if user_units else None), translated, tr("“{}”"), True
     )
 
 
 def translated_error(error: BaseException) -> str:
-    """An error with the place it belongs to, in the language of the window."""
+    """Format an error with its location, in the window's language."""
     if not isinstance(error, AmError):
         return str(error)
     where = as_in_panels(in_language(error.where, tr), translated, "{}")
@@ -218,19 +231,24 @@ def translated_error(error: BaseException) -> str:
 
 
 def error_line(error: AmError) -> str:
-    """An error as a line of the report view, with the code that it has in the headless commands."""
+    """Format an error as a line of the report view, with its code from the headless commands."""
     return f"error[{error.code}] {translated_error(error)}\n"
 
 
 def sentence(text: str) -> str:
-    """Return a text in the window's language, capitalised as a sentence. A leading name of a part or file stays as
-    it is."""
+    """Translate a text to the window's language and capitalise it as a sentence.
+
+    A leading name of a part or file stays unchanged.
+    """
     translation = translated(text)
     return translation if names_first(text) else translation[:1].upper() + translation[1:]
 
 
 def link_touches(link: str, what: str) -> str:
-    """link: as `ArmContact.links` has it; what: as `ArmContact.names` has it, a body by its own name."""
+    """Return the message that a robot link touches an object.
+
+    link: as in `ArmContact.links`. what: as in `ArmContact.names`; an obstacle has its own name.
+    """
     names = {
         NOZZLE: tr("the nozzle"),
         PLATFORM: tr("the platform"),
@@ -240,7 +258,7 @@ def link_touches(link: str, what: str) -> str:
     names[BASE] = tr("the base")
     if what.startswith(OWN_PREFIX):
         names[what] = tr("the link of {axis}").format(axis=what[len(OWN_PREFIX) :])
-    if " " in link:  # of positioner or track, by its own name
+    if " " in link:  # a link of positioner or track, with its own name
         return tr("{link} touches {what}").format(link=link, what=names.get(what, what))
     if link == BASE:
         return tr("the base touches {what}").format(what=names.get(what, what))
@@ -257,5 +275,5 @@ def link_touches(link: str, what: str) -> str:
 
 
 def escape_mnemonic(label: str) -> str:
-    """Escape `&` in a label for a menu, title, tab or button, where Qt marks a key with it."""
+    """Escape `&` in a label for a menu, title, tab or button, where Qt uses it to mark a key."""
     return label.replace("&", "&&")

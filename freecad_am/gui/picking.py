@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the selection in the tree or the 3D view means: objects with their faces or edges, wall and substrate."""
+"""Interpret the selection in the tree or the 3D view: objects with faces or edges, wall and
+substrate.
+"""
 
 from __future__ import annotations
 
@@ -22,14 +24,16 @@ FACE, EDGE = nested.FACE, nested.EDGE
 
 @dataclass(frozen=True)
 class Pick:
-    """An object and the names of its picked faces or edges; none for the whole object."""
+    """An object and the names of its picked faces or edges; no names for the whole object."""
 
     obj: Any
     names: tuple[str, ...] = ()
 
 
 def selected(document: Any) -> list[Pick]:
-    """Return the selection of a document in order, without objects that can be neither wall nor substrate."""
+    """Return the selection of a document in order, without objects that can be neither wall nor
+    substrate.
+    """
     picks: dict[str, Pick] = {}
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
         for path in entry.SubElementNames or ("",):
@@ -42,8 +46,11 @@ def selected(document: Any) -> list[Pick]:
 
 
 def selected_line(document: Any) -> Pick | None:
-    """Return the first selected edge, datum line or sketch axis, else a whole object, as axis of revolution. None
-    without a selection."""
+    """Return the axis of revolution from the selection: an edge, datum line or sketch axis, or a
+    whole object.
+
+    Return None without a selection.
+    """
     whole_pick: Pick | None = None
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
         for path in entry.SubElementNames or ("",):
@@ -56,7 +63,7 @@ def selected_line(document: Any) -> Pick | None:
 
 
 def _single_member(obj: Any) -> Any:
-    """What a group holds, where that is one thing with a shape; else the object itself."""
+    """Return the only member of a group that has a shape; otherwise the object itself."""
     if not any(obj.isDerivedFrom(kind) for kind in nested.GROUPS):
         return obj
     members = [member for member in obj.Group if usable(member)]
@@ -82,16 +89,22 @@ def pick_of_faces(pick: Pick) -> Pick:
 
 
 def expand_pick(pick: Pick) -> Pick:
-    """Interpret a click on an object to deposit: one face selects the whole object, as a click in the 3D view
-    selects a face; several faces select themselves."""
+    """Interpret a click on an object to deposit.
+
+    A single face selects the whole object, because a click in the 3D view picks a face. Several
+    faces select themselves.
+    """
     faces = pick_of_faces(pick)
     lone = len(faces.names) == 1 and len(global_shape(pick.obj).Faces) > 1
     return Pick(pick.obj) if lone else faces
 
 
 def stands(wall: Pick) -> bool:
-    """Whether a wall starts on the platform if nothing else is picked: a mesh may, and faces with an edge there may where
-    the document holds no other part that they could grow on."""
+    """Whether a wall starts on the platform if nothing else is picked.
+
+    A mesh may. Faces with an edge on the platform may if the document contains no other part that
+    they could grow on.
+    """
     if is_mesh(wall.obj):
         return True
     if not is_alone(wall.obj):
@@ -122,7 +135,8 @@ def _has_solids(obj: Any) -> bool:
 def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
     """Return wall and substrate of a selection, None if undetermined, and a text on ambiguities.
 
-    The wall is the pick with faces, else the first. A mesh is the substrate; a single mesh is a wall.
+    The wall is the pick with faces, or else the first pick. A mesh is the substrate; a single mesh
+    is a wall.
     """
     if len(picks) == 1 and is_mesh(picks[0].obj):
         return picks[0], None, ""
@@ -143,7 +157,7 @@ def proposal(picks: Sequence[Pick]) -> tuple[Pick | None, Pick | None, str]:
 
 
 def refused(document: Any) -> str:
-    """Why nothing that is selected in a document can be deposited; '' where nothing is selected."""
+    """Return why the selection in a document cannot be deposited; '' without a selection."""
     for entry in Gui.Selection.getSelectionEx(document.Name, 0):
         obj, _ = nested.clicked(entry.Object, (entry.SubElementNames or ("",))[0])
         if usable(obj):

@@ -21,7 +21,7 @@ from .widgets import choices, fields
 
 
 class PreferencesPage:
-    """One per opening of the dialog."""
+    """The page, created once per opening of the dialog."""
 
     def __init__(self, *_: Any) -> None:
         self.form = QtGui.QWidget()
@@ -145,7 +145,7 @@ class PreferencesPage:
         self.colour.setProperty("color", QtGui.QColor.fromRgbF(*preferences.machine_colour()))
 
     def saveSettings(self) -> None:
-        """Store the entries. Report a rejected one in the report view and keep its stored value."""
+        """Store the entries. Report a rejected entry in the report view and keep its stored value."""
         preferences.keep("Post", self.post.currentData())
         for name, edit in (("MachineFolder", self.machines), ("ProgramsFolder", self.programs)):
             folder = edit.text().strip()
@@ -153,7 +153,7 @@ class PreferencesPage:
                 _warn(tr("the folder {} does not exist").format(folder))
             else:
                 preferences.keep(name, folder)
-        self._keep_machine()  # it may be in the folder
+        self._keep_machine()  # the machine may be in the folder
         preferences.keep_process(self._figures())
         preferences.keep("SpeedUnit", self.unit.currentData())
         preferences.keep("Ramp", "" if self.ramp.currentIndex() == 0 else self.ramp.currentData())
@@ -171,7 +171,7 @@ class PreferencesPage:
             preferences.keep("Machine", "" if name == preferences.builtin_machine() else name)
 
     def _figures(self) -> dict[str, Any]:
-        """Return the valid figures in outer units by row key; texts for fields that accept words."""
+        """Return the valid values in outer units by row key; texts for fields that accept words."""
         figures: dict[str, Any] = {}
         for key, field in self.process.items():
             try:

@@ -15,7 +15,7 @@ from PySide import QtCore, QtGui
 from ..objects.fields.preferences import GROUP, SCHEME, SHOWN, UNIT_SETTINGS
 
 _listeners: list[Callable[[], None]] = []
-_readers: list[Callable[[], None]] = []  # who shows texts
+_readers: list[Callable[[], None]] = []  # listeners that show texts
 
 
 class _Watch:
@@ -28,7 +28,7 @@ class _Watch:
             group.Attach(self)
 
     def onChange(self, group: Any, name: str) -> None:
-        """Called by FreeCAD when an entry has changed or was removed."""
+        """Called by FreeCAD when an entry was changed or removed."""
         if name in (*SHOWN, SCHEME) and not self.is_scheduled:
             self.is_scheduled = True
             QtCore.QTimer.singleShot(0, self._notify)
@@ -51,7 +51,7 @@ class _Ear(QtGui.QWidget):
         super().changeEvent(event)
         if event.type() == QtCore.QEvent.LanguageChange and not self.is_scheduled:
             self.is_scheduled = True
-            QtCore.QTimer.singleShot(0, self._notify)  # once all files are read
+            QtCore.QTimer.singleShot(0, self._notify)  # after all files are read
 
     def _notify(self) -> None:
         self.is_scheduled = False
@@ -60,19 +60,19 @@ class _Ear(QtGui.QWidget):
 
 def _notify(listeners: list[Callable[[], None]]) -> None:
     for listener in tuple(listeners):  # a listener may remove itself and others
-        with contextlib.suppress(ReferenceError, RuntimeError):  # its widget is deleted
+        with contextlib.suppress(ReferenceError, RuntimeError):  # the listener's widget is deleted
             listener()
 
 
 @functools.cache
 def _watch() -> _Watch:
-    """Return the observer of the preferences, made once."""
+    """Return the observer of the preferences, created once."""
     return _Watch()
 
 
 @functools.cache
 def _ear() -> _Ear:
-    """Return the widget that hears of the language, made once."""
+    """Return the widget that receives language changes, created once."""
     return _Ear()
 
 

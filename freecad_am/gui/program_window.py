@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The text of a program in a window of its own, to be read and exported."""
+"""A window with the text of a program, for reading and export."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from .path import path_view
 from .simulation import wording
 from .simulation.player import run_of
 
-# ---- The text of a program in a window: to be read, line by line
+# ---- The text of a program
 
-MARK_ALPHA = 70  # of 255, the ground of a marked line
+MARK_ALPHA = 70  # of 255; opacity of a marked line's background
 
 
 def listing(name: str) -> Any:
-    """Return a read-only field of that name for unwrapped lines in a monospaced font."""
+    """Return a named read-only field for unwrapped lines in a monospaced font."""
     text = QtGui.QPlainTextEdit()
     text.setObjectName(name)
     text.setReadOnly(True)
@@ -48,7 +48,7 @@ def listing(name: str) -> Any:
 
 
 def mark(text: Any, line: int, focus: bool = False) -> None:
-    """Mark a line, from 0; `focus`: also move the cursor into it and scroll to it."""
+    """Mark a line, from 0. focus: also move the cursor into the line and scroll to it."""
     cursor = QtGui.QTextCursor(text.document().findBlockByNumber(line))
     if focus:
         text.setTextCursor(cursor)
@@ -64,7 +64,7 @@ def mark(text: Any, line: int, focus: bool = False) -> None:
 
 @dataclass(frozen=True)
 class Located:
-    """The moves of a program's text, in the order of its rows. rows: (n,) of the motion, to which they lead."""
+    """The moves of a program's text. rows: (n,) motion row that each move leads to."""
 
     motion: Motion
     rows: Any
@@ -77,13 +77,15 @@ class Located:
         return cls(motion, rows, lines) if len(lines) == len(rows) else None
 
     def row_at(self, name: str, line: int) -> int | None:
-        """The row of the motion that a line of a file, from 0, leads to; None in a file without moves."""
+        """Return the motion row of a line of a file, from 0; None in a file without moves."""
         move = self.lines.move_at(name, line)
         return None if move is None else int(self.rows[move])
 
     def line_at(self, layer: int, bead: int, position: Array) -> tuple[str, int] | None:
-        """Return file and line, from 0, of the point of a bead nearest to a position (3,), mm; None
-        if the program does not have the bead."""
+        """Return file and line, from 0, of the point of a bead nearest to a position (3,), mm.
+
+        Return None if the program does not have the bead.
+        """
         motion, rows = self.motion, self.rows
         indices = np.flatnonzero(
             motion.deposit[rows] & (motion.layer[rows] == layer) & (motion.bead[rows] == bead)
@@ -94,7 +96,7 @@ class Located:
         return self.lines.of(int(indices[int(distance.argmin())]))
 
     def text_at(self, row: int) -> str:
-        """A row of the motion in words."""
+        """Describe a motion row in words."""
         motion = self.motion
         text = tr("layer {} bead {}").format(int(motion.layer[row]), int(motion.bead[row]))
         if not motion.deposit[row]:
@@ -114,7 +116,7 @@ class Located:
 
 
 class ProgramWindow:
-    """The files of a program, one at a time, read-only, with a button to export them all."""
+    """The files of a program, one at a time, read-only, with a button to export all of them."""
 
     def __init__(self, obj: Any) -> None:
         self.obj = obj
@@ -141,7 +143,7 @@ class ProgramWindow:
         self.place = QtGui.QLabel()
         self.place.setObjectName("place")
         self.located: Located | None = None
-        self.filling = False  # while the program moves the cursor, not the user
+        self.filling = False  # while the program, not the user, moves the cursor
         self.export_button = _button(
             tr("Export…"),
             "export",
@@ -155,10 +157,10 @@ class ProgramWindow:
         _shown.append(self)
 
     def load(self) -> None:
-        """Show what the object holds now."""
+        """Show the current content of the object."""
         try:
             self.files = api.result(self.obj).files if self.obj.Key else {}
-        except AmError:  # within undo the parts of a result come back one by one
+        except AmError:  # during undo, the parts of a result are restored one by one
             return
         names, current = sorted(self.files), self.choice.currentText()
         self.choice.blockSignals(True)
@@ -192,7 +194,7 @@ class ProgramWindow:
         except (
             AmError,
             AttributeError,
-        ):  # its joint path is deleted, or undo has not yet restored it completely
+        ):  # the joint path is deleted, or undo has not yet restored it completely
             self.sums.setText("")
         set_role(self.state, PLAIN if fits else INVALID)
         set_role(self.text, PLAIN if fits else FAINT)
@@ -221,7 +223,7 @@ class ProgramWindow:
             self.filling = False
 
     def _at_line(self) -> None:
-        """The cursor was put into a line: the path is shown up to its point."""
+        """Show the path up to the point of the line with the cursor."""
         cursor = self.text.textCursor()
         if self.located is None or self.filling or cursor.hasSelection():
             return
@@ -233,7 +235,7 @@ class ProgramWindow:
                 self.located.show(self.obj.JointPath, row)
 
     def show_point(self, layer: int, bead: int, position: Any) -> None:
-        """Mark the line that lays a point of a bead (3,), mm."""
+        """Mark the line that deposits a point of a bead (3,), mm."""
         location = None if self.located is None else self.located.line_at(layer, bead, position)
         if self.located is None or location is None:
             return
@@ -251,7 +253,7 @@ class ProgramWindow:
             self.place.setText(tr("Line {}: {}").format(line + 1, self.located.text_at(row)))
 
     def _refused(self) -> str:
-        """Return the reason for a missing export, '' if possible."""
+        """Return the reason why export is impossible, '' if it is possible."""
         refused = refusal(self.obj)
         return "" if refused is None else translated_error(refused)
 
@@ -272,8 +274,7 @@ def _button(text: str, name: str, help: str, act: Any) -> Any:
 
 
 def _clicked(view: Any, row: int) -> None:
-    """A point of a path was clicked in the 3D view: open programs of the path mark the line of the
-    point."""
+    """Mark the line of a path point clicked in the 3D view, in all open programs of the path."""
     rows = view.rows
     if rows is None or row >= len(rows):
         return
@@ -281,7 +282,7 @@ def _clicked(view: Any, row: int) -> None:
     layer = int(rows.layers[number])
     bead = int(number - np.searchsorted(rows.layers, layer))
     for program in _shown:
-        with contextlib.suppress(ReferenceError):  # of another document, which is closed
+        with contextlib.suppress(ReferenceError):  # the document of the program is closed
             if program.obj.JointPath is view.obj:
                 program.show_point(layer, bead, rows.points[row])
 
@@ -289,11 +290,11 @@ def _clicked(view: Any, row: int) -> None:
 path_view.listen_to_clicks(lambda: bool(_shown), _clicked)
 
 
-_shown: list[ProgramWindow] = []  # Python must keep them as long as they are open
+_shown: list[ProgramWindow] = []  # keeps open windows alive
 
 
 def show(obj: Any) -> None:
-    """Open the text of a program in a window that does not block the others; the one that is open, if it is."""
+    """Show the text of a program in a non-modal window; reuse its open window."""
     program = _of(obj) or ProgramWindow(obj)
     program.window.show()
     program.window.raise_()
@@ -320,8 +321,9 @@ def refusal(obj: Any) -> AmError | None:
 
 
 def export(obj: Any, window: Any = None) -> str:
-    """Ask for a folder (default: the last one or the document's) and write the files; return the
-    result as text. Without anything to write, return the reason before asking."""
+    """Ask for a folder (default: the last one or the document's), write the files and return the
+    result as text. If there is nothing to write, return the reason without asking.
+    """
     if (refused := refusal(obj)) is not None:
         App.Console.PrintError(error_line(refused))
         Gui.getMainWindow().statusBar().showMessage(translated_error(refused), 5000)

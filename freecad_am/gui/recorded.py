@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Calls of the macro interface that the Python console and macros record."""
+"""Call the macro interface so that the Python console and macros record the calls."""
 
 from __future__ import annotations
 
@@ -46,10 +46,11 @@ def act(obj: Any, function: str, arguments: dict[str, str]) -> None:
 
 
 def reference(obj: Any) -> str:
-    """The object as Python text. ReferenceError when it is no longer there."""
+    """Return the object as Python text. Raises ReferenceError if it is deleted."""
     if isinstance(obj, ArrayElement):
         return f"am.array_element({reference(obj.array)}, {obj.index})"
-    # removed, but kept to be brought back by undo: FreeCAD 0.20 raises, later ones have no name for it
+    # the object is removed but kept for undo: FreeCAD 0.20 raises, later versions have no name for
+    # it
     name = None
     with contextlib.suppress(RuntimeError):
         name = obj.Name
@@ -59,7 +60,7 @@ def reference(obj: Any) -> str:
 
 
 def _document(document: Any) -> str:
-    # another one may have become the active one since a panel was opened
+    # another document may have become active since the panel opened
     return (
         "App.ActiveDocument"
         if document is App.ActiveDocument
@@ -72,21 +73,21 @@ def _run(document: Any, function: str, target: str, arguments: dict[str, str]) -
     old_findings = _wrong(document)
     Gui.doCommand(IMPORT)
     call = f"am.{function}({', '.join(texts)})"
-    # an element of a link array is made an object in the same step of undo
+    # creating an object for a link array element belongs to the same undo step
     step = (
         _one_step(document, function) if "am.array_element(" in call else contextlib.nullcontext()
     )
     with busy(), step:
         Gui.doCommand(call)
     new = [finding for finding in _wrong(document) if finding not in old_findings]
-    for name, status, message in new[:1]:  # later stages repeat it
+    for name, status, message in new[:1]:  # later stages repeat the finding
         text = tr("{} failed: {}") if status == FAILED else tr("{} is infeasible: {}")
         App.Console.PrintError(text.format(name, translated(message)) + "\n")
 
 
 @contextlib.contextmanager
 def _one_step(document: Any, name: str) -> Iterator[None]:
-    """One step of undo for all that is made within it."""
+    """Run everything within it in one undo step."""
     if App.getActiveTransaction():
         yield
         return
@@ -100,6 +101,6 @@ def _one_step(document: Any, name: str) -> Iterator[None]:
 
 
 def _wrong(document: Any) -> list[tuple[str, str, str]]:
-    """Label, status and message of the stages that something is wrong with, inputs first."""
+    """Return label, status and message of the failed and infeasible stages, inputs first."""
     findings = [(obj.Label, obj.Status, reason_of(obj)) for obj in api.stages_of(document)]
     return [finding for finding in findings if finding[1] in (FAILED, INFEASIBLE)]

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Panel and context menu of a stage, for modules that panels and menus import.
+"""Look up panel and context menu of a stage without importing panels and menus.
 
-View providers open panels, and panels show what view providers draw: views call them by name through this module
-and import neither. `views.attach` registers the functions and imports them at first use.
+View providers open panels, and panels show the drawings of view providers. Views therefore call
+panels and menus by name through this module. `views.attach` registers the functions and imports
+them at first use.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ _acts: dict[str, Callable[..., None]] = {}
 
 
 def register(**acts: Callable[..., None]) -> None:
-    """Say who does `edit`, `fill_menu_of_stage` and `fill_menu_of_job`."""
+    """Register the functions `edit`, `fill_menu_of_stage` and `fill_menu_of_job`."""
     _acts.update(acts)
 
 

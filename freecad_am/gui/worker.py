@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Work in a thread of its own, which touches no document and no window, and can be cancelled at any moment.
+"""Run work in its own thread, which touches no document or window and can be cancelled at any time.
 
-A cancelled work ends at its next progress report or between two Python steps, whichever comes first. A single call
-into compiled code is not interrupted: the work then continues and its result is dropped.
+Cancelled work ends at its next progress report or between two Python steps, whichever comes first.
+A single call into compiled code is not interrupted; its work continues and the result is dropped.
 
-Widgets must be deleted in the window's thread: Qt still calls a timer deleted in another thread, and FreeCAD
-crashes. Python deletes an object in the thread that drops its last reference, and collects cycles (such as a widget
-and the method its signal calls) in the thread that has just made many objects, which is the worker. So workers and
-the objects they refer to are kept until their threads have ended, and while a thread runs only a timer of the
-window collects cycles.
+Widgets must be deleted in the window's thread: otherwise Qt still calls a deleted timer and FreeCAD
+crashes. Python deletes an object in the thread that drops its last reference. It collects cycles
+(such as a widget and the method that its signal calls) in the thread that has just created many
+objects, which is the worker. Workers and the objects that they refer to are therefore kept until
+their threads have ended, and meanwhile only a timer of the window collects cycles.
 """
 
 from __future__ import annotations
@@ -28,14 +28,15 @@ from ..core.issues import AmError
 from ..objects.work.progress import Cancelled, told_to
 from .in_language import tr, translated, translated_error
 
-AGAIN = 200  # ms between two checks of running threads
-YOUNG = (
-    1  # generation up to which cycles are collected at each check: objects made since the last one
-)
+AGAIN = 200  # ms; interval of checks of running threads
+YOUNG = 1  # oldest generation collected at each check: objects created since the last check
 
 
 class Worker:
-    """Runs `work` in a thread, from now on. Its progress is in `fraction` (None at first) and `text`."""
+    """Runs `work` in a thread, from construction on.
+
+    `fraction` (None at first) and `text` hold the progress.
+    """
 
     def __init__(self, work: Callable[[], Any]) -> None:
         self.fraction: float | None = None
@@ -51,7 +52,7 @@ class Worker:
         self._thread.start()
 
     def result(self) -> Any:
-        """Return the result of the ended work; re-raise its error once, or Cancelled."""
+        """Return the result of the ended work, re-raise its error once, or raise Cancelled."""
         if self._cancelled:
             raise Cancelled
         error, self._error = self._error, None
@@ -59,14 +60,14 @@ class Worker:
             try:
                 raise error
             finally:
-                del error  # its traceback refers to here, and to the panel that asked
+                del error  # its traceback refers to this frame and to the calling panel
         return self._value
 
     def cancel(self) -> None:
         """Cancel the work as soon as possible and discard its result.
 
-        Compiled code may swallow the exception that cancels it, so it is raised until it takes
-        effect.
+        Compiled code may swallow the exception that cancels the work, so the exception is raised
+        until it takes effect.
         """
         self._cancelled = True
         self._stop()
@@ -79,11 +80,11 @@ class Worker:
             try:
                 with told_to(self._report):
                     self._value = self._work()
-            except BaseException as error:  # raised by `result`
+            except BaseException as error:  # re-raised by `result`
                 self._error = error
             with self._ending:
                 self.ended.set()
-        except BaseException:  # the order to end came when it was over
+        except BaseException:  # the cancellation arrived after the end
             with self._ending:
                 self.ended.set()
 
@@ -102,20 +103,18 @@ class Worker:
                 )
 
     def goes_on(self) -> bool:
-        """Whether the thread still runs; a cancelled one is asked again to end."""
+        """Whether the thread still runs; a cancelled thread is asked again to end."""
         alive = self._thread.is_alive()
         if self._cancelled:
             self._stop()
-            if self.ended.is_set():  # as it is where it was not alive before
-                self._value = self._error = (
-                    None  # of no use, and its traceback refers to this worker
-                )
+            if self.ended.is_set():  # always set if the thread was not alive above
+                self._value = self._error = None  # unused, and its traceback refers to this worker
         return alive
 
 
 class _RunningWorkers:
     """The workers whose threads run. collecting: whether Python's cycle collector was on before the
-    first one.
+    first worker.
     """
 
     def __init__(self) -> None:
@@ -132,7 +131,7 @@ class _RunningWorkers:
         self.workers.append(worker)
 
     def _look(self) -> None:
-        """Drop workers that have ended, and collect the cycles of a moment, in the window's thread."""
+        """Drop ended workers and collect young cycles in the window's thread."""
         self.workers[:] = [worker for worker in self.workers if worker.goes_on()]
         if self.collecting:
             gc.collect(YOUNG)
@@ -151,13 +150,14 @@ LOOK_EVERY = 30  # ms
 DELETED = (
     "already deleted",
     "of deleted object",
-)  # in what PySide and FreeCAD say of a widget or a view that is gone
+)  # parts of PySide and FreeCAD errors about a deleted widget or view
 
 
 @contextlib.contextmanager
 def while_there() -> Iterator[None]:
-    """Ignore errors of deleted fields and objects, after a panel or document closes, but no other RuntimeError of
-    FreeCAD or Python."""
+    """Ignore errors about deleted fields and objects after a panel or document closes, but no other
+    RuntimeError of FreeCAD or Python.
+    """
     try:
         yield
     except ReferenceError:
@@ -168,7 +168,7 @@ def while_there() -> Iterator[None]:
 
 
 class Later:
-    """Calls a method some time after it was last asked to, unless the panel is gone by then."""
+    """Calls a method some time after the last request, unless the panel is closed by then."""
 
     def __init__(self, form: Any, act: Callable[[], None]) -> None:
         self.act = WeakMethod(act)
@@ -178,24 +178,24 @@ class Later:
         self.timer.timeout.connect(self._act)
 
     def ask(self, *_: Any) -> None:
-        """Something was typed."""
+        """Request a call; the delay restarts."""
         self.timer.start()
 
     def at_once(self) -> None:
-        """Do it now where it is still to be done."""
+        """Call the method now if a call is pending."""
         if self.timer.isActive():
             self.timer.stop()
             self._act()
 
     def _act(self) -> None:
         act = self.act()
-        with while_there():  # FreeCAD has taken fields of a closed panel away before the timer
+        with while_there():  # FreeCAD may delete the fields of a closed panel before the timer
             if act is not None:
                 act()
 
 
 class Background:
-    """Runs work for a panel in the background; new work cancels the running one."""
+    """Runs work for a panel in the background; new work cancels running work."""
 
     def __init__(self, form: Any) -> None:
         self.worker: Worker | None = None
@@ -205,7 +205,9 @@ class Background:
         self.timer.timeout.connect(self._look)
 
     def start(self, work: Callable[[], Any], show: Callable[[Worker], None]) -> None:
-        """Begin work that touches no document; `show` gets the worker once it has ended, unless it was cancelled."""
+        """Start work that touches no document; unless cancelled, `show` receives the worker at its
+        end.
+        """
         self.cancel()
         self.worker, self.show = Worker(work), show
         self.timer.start()
@@ -215,7 +217,7 @@ class Background:
         if self.worker is not None:
             self.worker.cancel()
             self.worker = self.show = None
-        with contextlib.suppress(RuntimeError):  # the panel is gone, and with it the timer
+        with contextlib.suppress(RuntimeError):  # the panel and its timer are deleted
             self.timer.stop()
 
     def at_once(self) -> None:
@@ -236,10 +238,10 @@ TELL_EVERY = 100  # ms
 
 
 class Work:
-    """One kind of work at a time, with its progress told as text.
+    """Runs one job of a kind at a time and reports its progress as text.
 
-    `on_done` receives its result, None after a cancel or an error; `tell` the text, and whether it
-    is an error. doing: what the text says before the share, such as "Computing".
+    `on_done` receives the result, None after a cancel or an error. `tell` receives the text, and
+    whether it is an error. doing: text before the fraction, such as "Computing".
     """
 
     def __init__(

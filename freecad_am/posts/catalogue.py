@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The available posts, by the names in jobs."""
+"""Load posts by their names in jobs, and find the moves in the files that they write."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from .refusals import Asked
 
 
 def controller_checks(*promises: str) -> tuple[str, ...]:
-    """Requirements on the controller, one sentence each; docs/posts describes the settings."""
+    """Collect requirements on the controller, one sentence each; docs/posts describes the settings."""
     return promises
 
 
-# names that files cannot have on the computers that handle programs
+# file names that Windows reserves for devices
 DEVICES = frozenset(
     ("CON", "PRN", "AUX", "NUL", *(f"{port}{n}" for port in ("COM", "LPT") for n in range(1, 10)))
 )
@@ -35,13 +35,12 @@ DEVICES = frozenset(
 
 @dataclass(frozen=True)
 class Naming:
-    """The rules of a controller.
+    """Naming rules of a controller.
 
-    written: converts a name to its form on the controller. start, starts: pattern of its beginning,
-    and the same in words. longest: maximum characters; proposals leave `spare` of them for the
-    digits of parts.
-    reserved: upper-case words that cannot be names; DEVICES never can. prefix: begins proposals if
-    the name itself is not valid.
+    written: converts a name to its form on the controller. start: pattern of the beginning of a
+    name. starts: description of that pattern. longest: maximum number of characters. spare:
+    characters that proposals leave free for part numbers. prefix: begins a proposal if the name
+    itself is not valid. reserved: upper-case words that cannot be names, in addition to DEVICES.
     """
 
     written: Callable[[str], str]
@@ -54,8 +53,9 @@ class Naming:
     what: str = "a program's name"
 
     def checked(self, name: str, where: str) -> str:
-        """The name as the controller has it. Raises InputError PROGRAM_NAME with the reason and a
-        valid proposal.
+        """Return the name in its form on the controller.
+
+        Raises InputError PROGRAM_NAME with the reason and a valid proposal.
         """
         as_written = self.written(name) if name.isascii() else name
         if not name:
@@ -73,7 +73,7 @@ class Naming:
         return as_written
 
     def fits(self, name: str) -> bool:
-        """Whether a name is valid with the digits of parts appended."""
+        """Whether a name is valid with room for part numbers."""
         try:
             return len(self.checked(name, "name")) <= self.longest - self.spare
         except InputError:
@@ -89,7 +89,7 @@ class Naming:
         where : str
             Key of the name, for messages.
         why : str
-            Why it is invalid.
+            Why the name is invalid.
 
         Returns
         -------
@@ -107,14 +107,16 @@ class Naming:
         )
 
     def proposed(self, name: str) -> str:
-        """A similar name that is valid with the digits of parts appended."""
+        """Return a similar name that is valid with room for part numbers."""
         proposal = self.written(re.sub(r"[^A-Za-z0-9]+", "_", plain(name)).strip("_"))
         if not re.match(self.start, proposal) or self._is_reserved(proposal):
             proposal = f"{self.prefix}{proposal}".rstrip("_")
         return proposal[: self.longest - self.spare].rstrip("_")
 
     def parts(self, name: str, count: int) -> list[str]:
-        """Names of `count` parts. Raises InputError PROGRAM_NAME if their digits do not fit."""
+        """Return names for `count` parts. Raises InputError PROGRAM_NAME if their numbers do not
+        fit.
+        """
         digits = max(2, len(str(count)))
         names = [f"{name}{number:0{digits}d}" for number in range(1, count + 1)]
         if len(names[0]) > self.longest:
@@ -134,7 +136,7 @@ class Naming:
 
 
 def plain(text: str) -> str:
-    """The text in printable ASCII characters."""
+    """Convert text to printable ASCII characters."""
     ascii_text = (
         unicodedata.normalize("NFKD", text.replace("ß", "ss"))
         .encode("ascii", "ignore")
@@ -180,13 +182,14 @@ NC_PARAMETERS: Mapping[str, tuple[str, ...]] = {
 
 
 class Post(Protocol):
-    """The interface of a post module. CONTROLLER: properties of the controller for planning.
-    PENDANT: how its pendant shows frames, None if it shows only axes. NO_WIRE: why programs cannot
-    set the speed of the wire along a bead, '' if they can. NO_SCHEDULE: why schedules are not
-    supported, by the unsupported ways ('output', 'arc'). NO_WEAVE: why beads cannot be woven,
-    NO_TRIGGER: why the deposit cannot be switched ahead of a position; '' if they can. MOVE_LINE:
-    pattern of the beginning of a line with a move, or, in a loop, several. NAMING: of programs.
-    ON_CONTROLLER: checks that only the controller can do.
+    """Interface of a post module.
+
+    CONTROLLER: properties of the controller for planning. PENDANT: how its pendant shows frames;
+    None if it shows only axes. NO_WIRE, NO_WEAVE, NO_TRIGGER: why programs cannot set the wire feed
+    along a bead, weave beads, or switch the deposit ahead of a position; '' if they can.
+    NO_SCHEDULE: why schedules are not supported, by method ('output', 'arc'). MOVE_LINE: pattern of
+    the beginning of a line with a move, or with several moves in a loop. NAMING: rules for program
+    names. ON_CONTROLLER: checks that are possible only on the controller.
     """
 
     CONTROLLER: Controller
@@ -200,13 +203,15 @@ class Post(Protocol):
     ON_CONTROLLER: tuple[str, ...]
 
     def program_name(self, name: str, where: str) -> str:
-        """The program's name on the controller. Raises InputError PROGRAM_NAME, at `where`, for an
-        invalid one.
+        """Return the program's name on the controller.
+
+        Raises InputError PROGRAM_NAME, at `where`, for an invalid name.
         """
 
     def write(self, program: Program) -> dict[str, bytes]:
-        """The controller's files, name -> content. Raises InputError for what the controller would
-        reject.
+        """Return the controller's files, name -> content.
+
+        Raises InputError for everything that the controller would reject.
         """
 
     def refuse_setup(
@@ -227,7 +232,7 @@ class Post(Protocol):
         external : tuple of str, optional
             Kinds of the external axes, as in programs.
         carried : tuple[float, ...] or None, optional
-            The flange's load as X Y Z RX RY RZ, mm and rad; None if not known yet.
+            Frame that the flange carries, X Y Z RX RY RZ in mm and rad; None if not known yet.
 
         Raises
         ------
@@ -236,16 +241,18 @@ class Post(Protocol):
         """
 
     def refuse_process(self, request: Asked) -> None:
-        """Raises InputError, with the reason, if process settings exclude each other, or the motion
-        or set-up.
+        """Raise InputError, with the reason, if process settings conflict with each other, the
+        motion or the set-up.
         """
 
     def read(self, files: dict[str, bytes]) -> ReadMoves:
-        """The moves found in the files, in the order of execution; raises InputError UNREADABLE_PROGRAM."""
+        """Read the moves of the files in the order of execution. Raises InputError
+        UNREADABLE_PROGRAM.
+        """
 
 
 def load(name: str) -> Post:
-    """The post with a name, imported on first use. Raises InputError UNKNOWN_POST."""
+    """Return the post with a name, imported on first use. Raises InputError UNKNOWN_POST."""
     if name not in NAMES:
         names = ", ".join(NAMES)
         raise InputError(
@@ -257,8 +264,9 @@ def load(name: str) -> Post:
 
 
 def controller(name: str) -> Controller:
-    """Properties of a post's controller for planning; none required for the post `none`. InputError
-    UNKNOWN_POST.
+    """Return a controller's properties for planning; the post `none` has no requirements.
+
+    Raises InputError UNKNOWN_POST.
     """
     return Controller() if name == "none" else load(name).CONTROLLER
 
@@ -285,7 +293,7 @@ def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:
     Returns
     -------
     tuple of str
-        The names that fit.
+        Names of the supporting posts.
     """
     names = []
     for name in posts:
@@ -296,28 +304,29 @@ def fitting(posts: Iterable[str], motion: str, setup: str) -> tuple[str, ...]:
 
 
 def motion_written(post: str, setup: str) -> str:
-    """The default motion of a program: joint if the post supports it in the set-up, or supports
-    neither, else cartesian. Raises InputError UNKNOWN_POST.
+    """Return the default motion of a program: joint if the post supports it in the set-up or
+    supports neither motion, otherwise cartesian. Raises InputError UNKNOWN_POST.
     """
     load(post)
     return next((motion for motion in _MOTIONS if fitting((post,), motion, setup)), _MOTIONS[0])
 
 
 def main_file(files: Iterable[str]) -> str:
-    """The main file of a program by the names of its files: the start of a VAL 3 application, else
-    the shortest name, which has no part number.
+    """Return the main file of a program: the start of a VAL 3 application, otherwise the shortest
+    name, which has no part number.
     """
     return min(files, key=lambda name: (not name.endswith("/start.pgx"), len(name), name))
 
 
 _NUMBER = re.compile(r"\d+")
-_LOOP = re.compile(rb"for \w+=(\d+) to (\d+)")  # of VAL 3, about a single move
+_LOOP = re.compile(rb"for \w+=(\d+) to (\d+)")  # VAL 3 loop around a single move
 
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """The lines of n moves, in the order of execution. files: names; file: (n,) index into them;
-    line: (n,) from 0.
+    """The lines of n moves in the order of execution.
+
+    files: file names. file: (n,) index into `files`. line: (n,) line number, from 0.
     """
 
     files: tuple[str, ...]
@@ -328,25 +337,27 @@ class Lines:
         return len(self.line)
 
     def of(self, row: int) -> tuple[str, int]:
-        """Return where a move is in the files.
+        """Return file and line of a move.
 
         Parameters
         ----------
         row : int
-            Number of the move.
+            Index of the move.
 
         Returns
         -------
         file : str
             Name of the file.
         line : int
-            Number of the line, from 0.
+            Line number, from 0.
         """
         return self.files[self.file[row]], int(self.line[row])
 
     def move_at(self, name: str, line: int) -> int | None:
-        """The move in a line of a file: the first one of a loop, the next one between two moves,
-        the last one after all moves. None for a file without moves.
+        """Return the move at a line of a file.
+
+        In a loop this is the first move, between two moves the next one, and after all moves the
+        last one. Return None for a file without moves.
         """
         moves_of_file = (
             np.flatnonzero(self.file == self.files.index(name))
@@ -363,8 +374,8 @@ class Lines:
 
 
 def lines_of(post: str, files: dict[str, bytes]) -> Lines:
-    """Return the lines of the moves of one of our programs. The parts of a program run in the order
-    of their numbers.
+    """Return the lines of all moves in one of our programs. Parts run in the order of their
+    numbers.
     """
     pattern = load(post).MOVE_LINE
     names = tuple(
@@ -378,7 +389,7 @@ def lines_of(post: str, files: dict[str, bytes]) -> Lines:
 
 
 def _moves(pattern: re.Pattern[bytes], content: bytes) -> list[int]:
-    """The line of each move of a file, repeated as often as it runs."""
+    """Return the line of each move of a file, repeated as often as the move runs."""
     move_lines: list[int] = []
     times = 1
     for number, line in enumerate(content.split(b"\n")):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Numbers in programs of five-axis machines for all controllers: axis words, direction vectors,
-feeds.
+"""Format numbers in programs of five-axis machines for all controllers: axis words, direction
+vectors, feeds.
 """
 
 from __future__ import annotations
@@ -21,13 +21,14 @@ from .refusals import refuse_incomplete
 
 
 def wrapped(text: str) -> list[str]:
-    """A remark in plain characters, on as many lines as it needs."""
+    """Wrap a remark in ASCII characters to lines of at most 80 characters."""
     return textwrap.wrap(plain(text), 80)
 
 
 def refuse_table(program: Program, post: str) -> None:
-    """Raises InputError UNSUPPORTED_AXES, NOTHING_TO_WRITE, UNREACHABLE or NO_POSITIONS for
-    programs that no five-axis post supports.
+    """Reject programs that no five-axis post supports.
+
+    Raises InputError UNSUPPORTED_AXES, NOTHING_TO_WRITE, UNREACHABLE or NO_POSITIONS.
     """
     refuse_incomplete(program, post, len(program.axis_names))
     linear = [
@@ -64,8 +65,10 @@ def refuse_table(program: Program, post: str) -> None:
 
 
 def refuse_words(program: Program, reserved: frozenset[str]) -> None:
-    """Raises InputError DEPOSIT_WORD for words that cannot switch the deposit: words other than M
-    or H, the same word twice, or words with another meaning (`reserved`; H for all H words).
+    """Reject words that cannot switch the deposit.
+
+    Raises InputError DEPOSIT_WORD for words other than M or H words, for equal words, and for words
+    with another meaning (`reserved`; 'H' stands for all H words).
     """
     words = {
         "program.nc.deposit_on": program.nc.deposit_on,
@@ -97,9 +100,7 @@ def refuse_words(program: Program, reserved: frozenset[str]) -> None:
 
 
 def refuse_wire_output(program: Program, highest: int) -> None:
-    """Raises InputError WIRE_OUTPUT if the program sets the wire feed by an analogue output above
-    `highest`.
-    """
+    """Raise InputError WIRE_OUTPUT if the analogue output for the wire feed exceeds `highest`."""
     if any(run.wire is not None for run in program.moves) and program.nc.wire_output > highest:
         raise InputError(
             "WIRE_OUTPUT",
@@ -144,21 +145,20 @@ def dwell(address: str, seconds: float) -> list[str]:
     return [f"G4 {address}{max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
 
 
-# decimals of mm and deg; Siemens' manual on 5-axis machining requires 5 for positions and 6 for
-# direction vectors
+# decimals of mm and deg, and of vector components; Siemens' manual on 5-axis machining requires 5
+# for positions and 6 for direction vectors
 DECIMALS, VECTOR_DECIMALS = 5, 6
-# significant digits of a feed, within the range of every controller; digits of the wire speed
-# output
+# significant digits of a feed, within the range of every controller, and of the wire feed output
 FEED_DIGITS, WIRE_DIGITS = 7, 5
 SLOWEST, FASTEST = 0.001, 999_999.0
 # mm; if the linear axes move less, their speed does not determine the duration of a move
 SHORTEST_WAY = 0.01
-# feed as one over the time of the move, and as a speed
+# feed as inverse time, and as a speed
 TIME, PATH = "G93", "G94"
 
 
 def controller_values(joints: Array, kinds: Sequence[str]) -> Array:
-    """Return joint values as the text has them.
+    """Convert joint values to the units and decimals of the program text.
 
     Parameters
     ----------
@@ -178,30 +178,30 @@ def controller_values(joints: Array, kinds: Sequence[str]) -> Array:
 
 
 def rows(template: str, values: Array) -> list[str]:
-    """Return one text per row of values.
+    """Format each row of values.
 
     Parameters
     ----------
     template : str
-        A format with a place for each column.
+        Format string with one field per column.
     values : (n, columns) array
-        Values in the units of the text.
+        Values in the units of the program text.
 
     Returns
     -------
     list of str
-        n texts.
+        n strings.
     """
     return [template % row for row in zip(*values.T.tolist(), strict=True)]
 
 
 def template(names: Sequence[str]) -> str:
-    """A template of words with these addresses: X%.5f Y%.5f."""
+    """Return the format string of words with these addresses, such as 'X%.5f Y%.5f'."""
     return " ".join(f"{name}%.{DECIMALS}f" for name in names)
 
 
 def feed(value: float) -> str:
-    """A feed with its significant digits, without exponent."""
+    """Format a feed word with FEED_DIGITS significant digits, without exponent."""
     return f"F{_significant(value, FEED_DIGITS)}"
 
 
@@ -210,13 +210,13 @@ def _significant(value: float, digits: int) -> str:
 
 
 def level(value: float) -> str:
-    """A value of an analogue input, without exponent."""
+    """Format the value of an analogue input without exponent."""
     text = f"{value:.6f}".rstrip("0")
     return f"{text}0" if text.endswith(".") else text
 
 
 def wire(program: Program, speeds: Sequence[float]) -> list[str]:
-    """Values of the analogue output for wire feeds, mm/s."""
+    """Return the analogue output values for wire feeds in mm/s."""
     values = [program.nc.wire_gain * 0.06 * speed for speed in speeds]
     return [_significant(value, WIRE_DIGITS) if value > 1e-9 else "0" for value in values]
 
@@ -224,9 +224,9 @@ def wire(program: Program, speeds: Sequence[float]) -> list[str]:
 def insert_wire_statements(
     program: Program, moves: Moves, lines: Sequence[str], statement: str
 ) -> list[str]:
-    """Insert statements for the wire before the moves at which its value changes.
+    """Insert wire statements before the moves at which the wire feed changes.
 
-    The first value was set before the run.
+    The first value is set before the run.
 
     Parameters
     ----------
@@ -235,9 +235,9 @@ def insert_wire_statements(
     moves : Moves
         The moves of the run.
     lines : sequence of str
-        Its lines, the last ones one per move.
+        Lines of the run; the last lines are one per move.
     statement : str
-        Template of the statement that sets the analogue output.
+        Format string of the statement that sets the analogue output.
 
     Returns
     -------
@@ -264,13 +264,13 @@ def insert_wire_statements(
 
 
 class Feeds:
-    """Feed words of the moves of a program, built run by run in the order of motion.
+    """Build the feed words of a program's moves, run by run in the order of motion.
 
-    Moves in axis values take the planned time: F is one over that time in minutes (G93), or with
-    `program.nc.path_feed` the speed of the linear axes in mm/min (G94) wherever these move. Beads
-    in positions run at the tip speed. slowest: mm/min or deg/min, the controller's lower limit for
-    any programmed time; slower moves get this speed for the linear axes, or for the rotary axes if
-    only these move.
+    Moves in axis values take the planned time: F is the inverse of the time in minutes (G93). With
+    `program.nc.path_feed`, F is the speed of the linear axes in mm/min (G94) wherever they move.
+    Beads in positions run at the tip speed. slowest: mm/min or deg/min, the controller's lower
+    limit for moves with a programmed time. Slower moves state the speed of the linear axes, or of
+    the rotary axes if no linear axis moves.
     """
 
     def __init__(self, program: Program, slowest: float = 0.0) -> None:
@@ -281,7 +281,7 @@ class Feeds:
         self.after_tip = False
 
     def __call__(self, moves: Moves) -> list[str]:
-        """One text per move: kind of feed and value, such as 'G93 F120.0000' or 'G94 F300.0000'.
+        """Return feed mode and feed of each move, such as 'G93 F120.0000' or 'G94 F300.0000'.
 
         Raises InputError MOVE_SPEED or MOVE_TIME, naming the bead.
         """
@@ -300,7 +300,7 @@ class Feeds:
         by_speed = (speeds > 0.0) & (speeds < self.slowest)
         if self.path_feed and moves.kind != RAPID:
             by_speed |= (slide_lengths >= SHORTEST_WAY) & (speeds >= SLOWEST) & (speeds <= FASTEST)
-        by_speed[0] &= not self.after_tip  # after a position the path length is unknown
+        by_speed[0] &= not self.after_tip  # after a position, path length is unknown
         self.after_tip = False
         return [
             f"{PATH} {feed(speed)}" if is_slow else f"{TIME} {feed(by_time)}"
@@ -311,8 +311,8 @@ class Feeds:
 
 
 def blocks(words: Sequence[str], feeds: Sequence[str]) -> list[str]:
-    """G1 blocks with words and feeds; the first block, and blocks that change it, begin with the
-    kind of feed.
+    """Return G1 blocks with words and feeds. The feed mode is written before the first block and
+    wherever it changes.
     """
     lines, sort = [], ""
     for word, (sort_of_feed, value) in zip(words, (feed.split() for feed in feeds), strict=True):
@@ -328,10 +328,10 @@ def blocks(words: Sequence[str], feeds: Sequence[str]) -> list[str]:
 
 
 def _inverse_times(moves: Moves) -> Array:
-    """(n,) 1/min of the moves."""
+    """Return the inverse times (n,) of the moves, 1/min."""
     with np.errstate(divide="ignore", invalid="ignore"):
         inverse: Array = 60.0 / moves.duration
-    if moves.kind == RAPID:  # a move of almost no length may take no time
+    if moves.kind == RAPID:  # a rapid of almost zero length may take no time
         inverse = np.clip(np.nan_to_num(inverse, nan=FASTEST, posinf=FASTEST), SLOWEST, FASTEST)
     wrong = ~((inverse >= SLOWEST) & (inverse <= FASTEST))
     if wrong.any():
@@ -348,7 +348,7 @@ def _inverse_times(moves: Moves) -> Array:
 
 
 def _tip_feeds(moves: Moves) -> Array:
-    """(n,) mm/min at the tip."""
+    """Return the feeds (n,) at the tip, mm/min."""
     feeds: Array = 60.0 * moves.speed
     wrong = ~((feeds >= SLOWEST) & (feeds <= FASTEST))
     if wrong.any():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Common code of the readers for five-axis machines: converts words to moves. Shares no code with a
-writer.
+"""Convert the words of five-axis programs to moves; common code of the readers. Shares no code with
+a writer.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from ..core.types import Array, Mask, NDArray
 from .read_lines import Lines
 
 # feed as the time of the move; as the speed of the linear axes; as the speed of the linear axes, or
-# of the rotary ones if only these move; and as the speed of the tip in part coordinates
+# of the rotary axes if no linear axis moves; as the speed of the tip in part coordinates
 TIME, SLIDES, AXES, TIP = "time", "slides", "axes", "tip"
 _NUMBER = r"-?\d+(?:\.\d*)?|-?\.\d+"
 _SHAPED = re.compile(rf"([XYZABCF]|[ABC]3(?==))(=?(?:DC\()?)({_NUMBER})(\)?)$")
@@ -26,11 +26,11 @@ _LINEAR, _VECTOR = "XYZ", ("A3", "B3", "C3")
 
 
 class Shape:
-    """The shape of a block with a move, without its numbers: blocks of equal shape, most of a
-    program, are read together.
+    """The shape of a block with a move, without its numbers.
 
-    block: its words, already read one by one: G1, with `ahead` or nothing before it, and words with
-    numbers.
+    Most blocks of a program have the same shape, so one pattern reads them.
+
+    block: words that were already read one by one: an optional `ahead`, G1, and words with numbers.
     """
 
     def __init__(self, block: Sequence[str], ahead: str = "") -> None:
@@ -46,7 +46,7 @@ class Shape:
 
     @staticmethod
     def of(text: str, ahead: str = "") -> Shape | None:
-        """The shape of a block, or None if it is not a single move."""
+        """Return the shape of a block, or None if the block is not a single move."""
         block = text.split()
         words = block[1:] if block[0] == ahead else block
         is_move = (
@@ -55,19 +55,19 @@ class Shape:
         return Shape(block, ahead) if is_move else None
 
     def words(self, text: str) -> dict[str, str] | None:
-        """The words of a block by their names, or None for a block of another shape."""
+        """Return the words of a block by name, or None if the block has another shape."""
         match = self._pattern.fullmatch(text)
         return dict(zip(self.names, match.groups())) if match else None
 
 
 @dataclass
 class Track:
-    """The moves found so far, the events between them, and the settings.
+    """The moves read so far, the events between them, and the current settings.
 
-    axes: names of the words of a move in axis values, in order; shorter: axes that took the shorter
-    way. on: whether the deposit is on. output, wire: the analogue output, from 1, and its current
-    value. exact: whether moves stop at their ends; rounding: corner tolerance otherwise, mm. frame,
-    tool: numbers of the work offset and of the tool, NaN if not set.
+    axes: names of the words of a move in axis values, in order. shorter: axes that took the shorter
+    way. on: whether the deposit is on. output, wire: number (from 1) and current value of the
+    analogue output. exact: whether moves stop at their ends. rounding: corner tolerance otherwise,
+    mm. frame, tool: numbers of the work offset and of the tool, NaN if not set.
     """
 
     rows: list[tuple[str, dict[str, str]]] = field(default_factory=list)
@@ -98,7 +98,7 @@ class Track:
         self.happens("wait", float(seconds), digits=float(_half_digits([seconds])[0]))
 
     def rests(self) -> None:
-        """Let the next line wait for the end of the last move."""
+        """Make the last move stop, because the next line waits for its end."""
         self.stops[-1:] = [True] * len(self.stops[-1:])
 
     def set_wire(self, output: int, value: str, where: str) -> None:
@@ -109,7 +109,7 @@ class Track:
         output : int
             Number of the output.
         value : str
-            Its value as in the text.
+            Value as in the text.
         where : str
             File and line, for messages.
 
@@ -128,13 +128,13 @@ class Track:
         Parameters
         ----------
         sort : str
-            Kind of the move.
+            Kind of the feed.
         words : dict[str, str]
-            Its words by name, F among them.
+            Words of the move by name, including F.
         where : str
             File and line, for messages.
         stops : bool, optional
-            Whether it ends with a stop.
+            Whether the move ends with a stop.
 
         Raises
         ------
@@ -170,7 +170,7 @@ class Track:
             raise unreadable(where, "the move names other axes than the first move")
 
     def moves(self) -> ReadMoves:
-        """All moves. Raises InputError UNREADABLE_PROGRAM without moves."""
+        """Return all moves. Raises InputError UNREADABLE_PROGRAM without moves."""
         if not self.rows:
             raise unreadable("program", "it has no moves")
         sorts = np.array([sort for sort, _ in self.rows])
@@ -251,8 +251,8 @@ class Track:
     def _values(
         self, names: Sequence[str], is_given: Mask, per_value: bool = False
     ) -> tuple[Array, Array]:
-        """Values (n, names) of the given rows, else NaN, and half of the last digit of each name,
-        or of each value.
+        """Return the values (n, names) of the given rows, NaN elsewhere, and half of the last digit
+        of each name, or of each value.
         """
         values = np.full(is_given.shape, np.nan)
         halves = np.zeros(is_given.shape)
@@ -265,7 +265,7 @@ class Track:
 
 
 def _half_digits(texts: Sequence[str]) -> Array:
-    """(n,) half of the last digit of each number."""
+    """Return half of the last digit (n,) of each number."""
     decimals = np.array([len(text.partition(".")[2]) for text in texts], dtype=np.intp)
     half: Array = np.array(
         [0.5 * 10.0**-count for count in range(int(decimals.max(initial=0)) + 1)]
@@ -280,8 +280,9 @@ def _first(mask: Mask) -> int:
 def _durations(
     sorts: NDArray[np.str_], axes: Array, linear: Mask, feeds: Array, digits: Array
 ) -> tuple[Array, Array]:
-    """Durations (n,), s, of moves of the axes (n, axes), mm and deg, NaN if the feed is the tip
-    speed; and their errors due to rounding.
+    """Return the durations (n,) of moves, s, and their errors due to rounding.
+
+    axes: (n, axes), mm and deg. The duration is NaN if the feed is the tip speed.
     """
     steps = np.diff(axes, axis=0, prepend=axes[:1])
     path_length, turn = (np.linalg.norm(steps[:, side], axis=1) for side in (linear, ~linear))
@@ -293,5 +294,5 @@ def _durations(
 
 
 def unreadable(where: str, why: str) -> InputError:
-    """The error for text that is not understood."""
+    """Return the error for text that is not understood."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)

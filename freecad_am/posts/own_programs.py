@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Finds our programs in a folder by their content, so that no other file is taken for one.
+"""Find our programs in a folder by their content, so that no other file is mistaken for one.
 
-A main program begins with remarks common to our programs, has the name of its file, and names its
-parts. Links are not followed.
+A main program begins with the remarks of our programs, contains its file name, and names its parts.
+Links are not followed.
 """
 
 from __future__ import annotations
@@ -13,9 +13,9 @@ import re
 import tempfile
 from collections.abc import Mapping
 
-# of every main program: remarks that it begins with
+# remarks that every main program begins with
 OUR_REMARKS = ("Limits: ", "Travel speed ")
-# endings of main programs, and of their parts
+# file extension of main programs -> extension of their parts
 PART_ENDINGS = {
     ".ls": ".ls",
     ".mpf": ".spf",
@@ -30,19 +30,21 @@ APPLICATION = (
     "{}.dtx",
     "start.pgx",
     "stop.pgx",
-)  # files in the folder of an application, or of a part of one
-# pattern of the name inside a program, by kind: a renamed copy is not ours
+)  # files in the folder of a VAL 3 application or of one of its parts
+# pattern of the name inside a program, by file extension; a renamed copy is not ours
 _TITLES = {
     ".ls": r"/PROG\s+{}\s",
     ".mod": r"MODULE\s+{}\s",
     ".src": r"&ACCESS RVP\s+&REL 1\s+DEF {}\(\)",
 }
 _HEAD_LENGTH = 4096  # characters at the start of a program that contain its first remarks
-_MAX_LENGTH = 1 << 20  # characters of a main program that are searched for its parts
+_MAX_LENGTH = 1 << 20  # characters of a main program that are searched for part names
 
 
 def programs(folder: str) -> dict[str, set[str]]:
-    """Main program -> its files and its parts' files, as names relative to the folder with slashes."""
+    """Map each main program to its files and its parts' files, with names relative to the folder
+    and forward slashes.
+    """
     files_by_program: dict[str, set[str]] = {}
     files, folders = _entries(folder)
     for main in files:
@@ -80,7 +82,7 @@ def programs(folder: str) -> dict[str, set[str]]:
 def _is_ours(text: str, stem: str, ending: str) -> bool:
     start = (
         text.find("//INST") if ending.lower() == ".jbi" else 0
-    )  # remarks of a job follow its positions
+    )  # in a Yaskawa job, remarks follow the positions
     head = text[start : start + _HEAD_LENGTH] if start >= 0 else ""
     title = _TITLES.get(ending.lower())
     if title and not re.match(title.format(re.escape(stem)), text, re.IGNORECASE):
@@ -89,12 +91,12 @@ def _is_ours(text: str, stem: str, ending: str) -> bool:
 
 
 def _application(name: str, files: list[str]) -> set[str]:
-    """The files that belong to an application or a part of one."""
+    """Return the files that belong to an application or to one of its parts."""
     return {form.format(name) for form in APPLICATION} & set(files)
 
 
 def _parts(text: str, stem: str, ending: str, files: list[str]) -> set[str]:
-    """The files of the parts that a main program names."""
+    """Return the files of the parts that a main program names."""
     called = {
         name.lower() for name in re.findall(rf"\b{re.escape(stem)}\d+\b", text, re.IGNORECASE)
     }
@@ -103,7 +105,7 @@ def _parts(text: str, stem: str, ending: str, files: list[str]) -> set[str]:
 
 
 def _entries(folder: str) -> tuple[list[str], list[str]]:
-    """Names of the files and of the folders in a folder, without links."""
+    """Return the names of files and subfolders in a folder, without links."""
     files, folders = [], []
     try:
         with os.scandir(folder) as entries:
@@ -126,10 +128,11 @@ def _text(path: str) -> str:
 
 
 def write(folder: str, files: Mapping[str, bytes]) -> list[str]:
-    """Write files (name with slashes -> content) into a folder, creating it, and return their
-    paths. Parts of an earlier program with the same name are removed.
+    """Write files (name with slashes -> content) into a folder and return their paths.
 
-    Each file appears whole or not at all, and none is written or removed through a link below the folder. OSError.
+    Create the folder if needed, and remove parts of an earlier program with the same name. Each
+    file is written completely or not at all. No file is written or removed through a link below the
+    folder. Raises OSError.
     """
     os.makedirs(folder, exist_ok=True)
     earlier_programs = programs(folder)
@@ -170,7 +173,7 @@ def _refuse_links(path: str, folder: str) -> None:
 
 
 def _remove(path: str, folder: str) -> None:
-    """Remove a file, and the folder of a part if it is then empty."""
+    """Remove a file, and the part's folder if it becomes empty."""
     os.remove(path)
     parent = os.path.dirname(path)
     if len(parent) > len(folder) and not os.listdir(parent):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cuts a program into files of bounded size: common code of all posts."""
+"""Split a program into files of limited size; common code of all posts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ..core.program import (
 
 @dataclass(frozen=True)
 class Run:
-    """The moves start .. stop of a block, with one word for the speed of each; words are written
+    """The moves start .. stop of a block, with the speed word of each move; words are written
     unchanged.
     """
 
@@ -45,18 +45,18 @@ def grouped(
     words: Callable[[Moves], Sequence[str]],
     instructions: Callable[[Block], list[str]],
 ) -> Iterator[list[Piece]]:
-    """Yield the blocks of a program in groups that belong to one bead each.
+    """Yield the blocks of a program in groups that each belong to one bead.
 
-    Files are cut between groups, with the deposit off.
+    Files are split between groups, with the deposit off.
 
     Parameters
     ----------
     program : Program
         The program.
     words : callable
-        Returns the words of the moves of a block; called in the order of motion.
+        Returns the words of a block of moves; called in the order of motion.
     instructions : callable
-        Returns the lines of every other block.
+        Returns the lines of any other block.
 
     Yields
     ------
@@ -98,18 +98,18 @@ def packed(
     most_lines: int,
     cut: Callable[[list[Piece], int, int], Iterator[list[Piece]]],
 ) -> list[list[Piece]]:
-    """Put groups into files with limits of points and lines, in order.
+    """Distribute groups over files with limits on points and lines, in order.
 
     Parameters
     ----------
     groups : Sequence[list[Piece]]
         The groups.
     most_points : int
-        Largest number of points in a file.
+        Maximum number of points in a file.
     most_lines : int
-        Largest number of lines in a file.
+        Maximum number of lines in a file.
     cut : callable
-        Divides a group that is too large.
+        Splits a group that exceeds a limit.
 
     Returns
     -------
@@ -123,7 +123,7 @@ def packed(
     files: list[list[Piece]] = []
     remaining = (0, 0)
     cuts = {}
-    # the largest first: the error names the largest bead, so one correction is enough
+    # start with the largest bead: the error names it, so one correction is enough
     for number in sorted(range(len(groups)), key=lambda number: size(groups[number]), reverse=True):
         points, lines = size(groups[number])
         if points > most_points or lines > most_lines:
@@ -141,8 +141,8 @@ def packed(
 
 
 def move_retracts(files: list[list[Piece]]) -> list[list[Piece]]:
-    """The parts, with the first move of a retract in the part of its bead, so that the next part is
-    loaded away from the deposit.
+    """Move the first retract move of a file into the previous file, which contains its bead. The
+    next file is then loaded away from the deposit.
     """
     for previous, file_pieces in zip(files, files[1:]):
         first_run = file_pieces[0]
@@ -157,7 +157,7 @@ def move_retracts(files: list[list[Piece]]) -> list[list[Piece]]:
 
 
 def size(entries: Sequence[Piece]) -> tuple[int, int]:
-    """Return the size of pieces in a file.
+    """Return the numbers of points and lines of pieces.
 
     Parameters
     ----------
@@ -167,9 +167,9 @@ def size(entries: Sequence[Piece]) -> tuple[int, int]:
     Returns
     -------
     points : int
-        Their points.
+        Number of points.
     lines : int
-        Their lines, with one line per move.
+        Number of lines, with one line per move.
     """
     return sum(len(entry) for entry in entries if isinstance(entry, Run)), sum(
         len(entry) for entry in entries
@@ -179,8 +179,8 @@ def size(entries: Sequence[Piece]) -> tuple[int, int]:
 def continued(
     remark: Callable[[str], list[str]], woven: Collection[tuple[int, int]] = ()
 ) -> Callable[[list[Piece], int, int], Iterator[list[Piece]]]:
-    """Cut a bead that is too long for a file between its moves, with remarks on both sides of the
-    cut. Raises InputError BEAD_TOO_LONG for a bead in `woven` (layer, bead).
+    """Return a function that splits an oversized bead between moves, with remarks on both sides of
+    the split. It raises InputError BEAD_TOO_LONG for a bead in `woven` (layer, bead).
     """
     going_on, resumed = remark("bead goes on in the next part"), remark("bead goes on here")
 
@@ -219,10 +219,10 @@ def continued(
 
 
 def keep_whole(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-    """Put a bead that is longer than a file into its own file.
+    """Keep an oversized bead in one file.
 
-    For files of any length: changing files within a bead would stop the machine while it
-    deposits.
+    For controllers that accept files of any length: changing files within a bead would stop the
+    machine while it deposits.
 
     Parameters
     ----------
@@ -234,13 +234,13 @@ def keep_whole(group: list[Piece], most_points: int, most_lines: int) -> Iterato
     Yields
     ------
     list of Piece
-        The group itself.
+        The unchanged group.
     """
     yield group
 
 
 def unbroken(group: list[Piece], most_points: int, most_lines: int) -> Iterator[list[Piece]]:
-    """Reject a bead that is longer than a file, where files have to be loaded one after the other.
+    """Reject an oversized bead if the controller loads files one after another.
 
     Parameters
     ----------
@@ -270,7 +270,7 @@ def unbroken(group: list[Piece], most_points: int, most_lines: int) -> Iterator[
 
 
 def switching(program: Program) -> Iterator[tuple[Moves, DepositOn | DepositOff]]:
-    """Yield the switching blocks of the deposit, in order.
+    """Yield the blocks that switch the deposit, in order.
 
     Parameters
     ----------
@@ -293,12 +293,12 @@ def switching(program: Program) -> Iterator[tuple[Moves, DepositOn | DepositOff]
 
 
 def lines_of(entries: Sequence[Piece], motion: Callable[[Run], list[str]]) -> list[str]:
-    """The lines of a part; `motion` writes the lines of a run."""
+    """Return the lines of a file; `motion` writes the lines of a run."""
     return [
         line for entry in entries for line in (motion(entry) if isinstance(entry, Run) else entry)
     ]
 
 
 def place(moves: Moves) -> str:
-    """The place of a run of moves, for messages."""
+    """Return layer and bead of a run of moves, for messages."""
     return Text("layer {} bead {}", moves.layer, moves.bead)

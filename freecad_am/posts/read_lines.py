@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The lines of a program's text from which a reader took its moves."""
+"""Record the lines of a program text from which a reader took its moves."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from ..core.types import Index
 
 
 def floats() -> array[float]:
-    """An empty column of numbers."""
+    """Return an empty column of numbers."""
     return array("d")
 
 
 class Lines:
-    """The lines of the moves that were read."""
+    """The lines of the moves read so far."""
 
     def __init__(self) -> None:
         self._files: dict[str, int] = {}
@@ -35,7 +35,7 @@ class Lines:
         Parameters
         ----------
         file : str
-            Name of the file they are in.
+            Name of the file with the moves.
         lines : (n,) array of int
             Lines of the moves.
         """
@@ -43,7 +43,7 @@ class Lines:
         self._line.extend(lines.tolist())
 
     def read(self) -> TextLines:
-        """The lines of all moves."""
+        """Return the lines of all moves."""
         return TextLines(
             tuple(self._files),
             np.array(self._file, dtype=np.intp),

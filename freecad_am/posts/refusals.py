@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rejections that all posts share."""
+"""Reject programs and settings that a controller does not support; common code of all posts."""
 
 from __future__ import annotations
 
@@ -29,9 +29,11 @@ CALL = "process.between_layers.call"
 
 @dataclass(frozen=True)
 class Asked:
-    """Process features requested of a program, with their context: motion, whether the robot holds
-    the part or external axes turn it, how schedules are selected; whether the wire follows the
-    travel speed and beads are woven.
+    """Process features that a program requests, with their context.
+
+    motion: 'joint' or 'cartesian'. part_held, turned: whether the robot holds the part, and whether
+    a positioner rotates it. by: how schedules are selected. wire: whether the wire feed follows the
+    travel speed. weave: whether beads are woven.
     """
 
     motion: str
@@ -44,19 +46,19 @@ class Asked:
 
 
 def refuse_no_process(request: Asked) -> None:
-    """Reject nothing: for controllers that combine all process features that they support."""
+    """Reject nothing; for controllers that can combine all process features that they support."""
 
 
 def refuse_wire(program: Program, no_wire: str) -> None:
-    """Raises InputError NO_WIRE_OUTPUT, for the reason `no_wire`, where the program sets the speed
-    of the wire.
+    """Raise InputError NO_WIRE_OUTPUT, with the reason `no_wire`, if the program sets the wire
+    feed.
     """
     if any(run.wire is not None for run in program.moves):
         raise wire_refused(no_wire)
 
 
 def wire_refused(no_wire: str) -> InputError:
-    """The error for a controller that cannot set the speed of the wire along a bead."""
+    """Return the error for a controller that cannot set the wire feed along a bead."""
     return InputError(
         "NO_WIRE_OUTPUT",
         "process.wire.feed_mode",
@@ -73,9 +75,9 @@ def refuse_cooling(program: Program, last_input: int, why: str = "") -> None:
     program : Program
         The program.
     last_input : int
-        Largest number of an analogue input.
+        Highest number of an analogue input.
     why : str, optional
-        Why the controller has none; empty if it has.
+        Why the controller has no analogue input; empty if it has one.
 
     Raises
     ------
@@ -116,11 +118,11 @@ def refuse_schedules(
     program : Program
         The program.
     last_output : int
-        Largest number of an output.
+        Highest number of an output.
     max_schedule : int
-        Largest number of a schedule.
+        Highest number of a schedule.
     max_arc_schedule : int, optional
-        Largest number in arc instructions; 0 for `max_schedule`.
+        Highest number in arc instructions; 0 for `max_schedule`.
     inside : bool, optional
         Whether the schedule can change within a bead.
 
@@ -166,7 +168,7 @@ def refuse_schedules(
 
 
 def refuse_weave(program: Program, max_weave: int) -> None:
-    """Raises InputError WEAVE for a weave of a number beyond `max_weave`, or of moves that do not run straight."""
+    """Raise InputError WEAVE for a weave number above `max_weave`, or for a weave on joint moves."""
     numbers = [block.number for block in program.blocks if isinstance(block, Weave)]
     if numbers and program.motion != "cartesian":
         raise weave_refused(JOINT_WEAVE, "program.motion")
@@ -180,7 +182,7 @@ JOINT_WEAVE = "controllers weave on linear moves only, and this program has join
 
 
 def weave_refused(why: str, where: str = "process.weave") -> InputError:
-    """The error for a weave that is not supported."""
+    """Return the error for an unsupported weave."""
     return InputError(
         "WEAVE",
         where,
@@ -191,7 +193,7 @@ def weave_refused(why: str, where: str = "process.weave") -> InputError:
 
 
 def schedule_refused(by: str, why: str) -> InputError:
-    """The error for a controller that does not support schedules by `by`."""
+    """Return the error for a controller that cannot select schedules by `by`."""
     return InputError(
         "SCHEDULE",
         "program.schedule.by",
@@ -202,7 +204,7 @@ def schedule_refused(by: str, why: str) -> InputError:
 
 
 def trigger_refused(why: str) -> InputError:
-    """Return the error if a controller or program cannot switch the deposit ahead of a point."""
+    """Return the error for a controller or program that cannot switch the deposit ahead of a point."""
     return InputError(
         "TRIGGER", "program.trigger.lead", "{}; remove it, or use another controller", why
     )
@@ -210,10 +212,11 @@ def trigger_refused(why: str) -> InputError:
 
 @dataclass(frozen=True)
 class Ahead:
-    """A deposit that is switched `lead` s before the end of the last of `moves`, which takes
-    `seconds`, or has that time left after the rounded corner before it. A lead may exceed this by
-    `slack` s, the controller's resolution. steps: steps per second; the largest lead in messages is
-    a whole number of steps.
+    """A switch of the deposit `lead` s before the end of the last of `moves`.
+
+    seconds: duration of that move, or its remaining time after the rounded corner before it. slack:
+    s; resolution of the controller, by which a lead may exceed `seconds`. steps: steps per second;
+    messages give the maximum lead as a whole number of steps.
     """
 
     moves: Moves
@@ -225,8 +228,10 @@ class Ahead:
 
 
 def refuse_triggers(program: Program, no_trigger: str) -> None:
-    """Raises InputError TRIGGER, for the reason `no_trigger`, if any, where the deposit is switched
-    ahead of a position; TRIGGER_LEAD where that is before the start of the move to the position.
+    """Reject unsupported switches of the deposit ahead of a position.
+
+    Raises InputError TRIGGER, with the reason `no_trigger` if not empty, for any such switch, and
+    TRIGGER_LEAD for a switch before the start of its move.
     """
     switches = [block for block in program.blocks if isinstance(block, (DepositOn, DepositOff))]
     if no_trigger and not program.dry_run and any(block.ahead is not None for block in switches):
@@ -235,7 +240,7 @@ def refuse_triggers(program: Program, no_trigger: str) -> None:
 
 
 def switched_ahead(program: Program) -> list[Ahead]:
-    """All switches of the deposit ahead of the end of a move."""
+    """Return all switches of the deposit ahead of the end of a move."""
     pairs = [] if program.dry_run else switching(program)
     return [
         Ahead(moves, block.ahead, float(moves.duration[-1]))
@@ -245,7 +250,7 @@ def switched_ahead(program: Program) -> list[Ahead]:
 
 
 def refuse_leads(ahead: Sequence[Ahead]) -> None:
-    """Raises InputError TRIGGER_LEAD if a lead is too long, for the shortest such move, so that one
+    """Raise InputError TRIGGER_LEAD if a lead is too long, naming the shortest move so that one
     correction is enough.
     """
     shortest = min(
@@ -327,7 +332,7 @@ def refuse_external(program: Program, last_axis: int, unit: str, form: str) -> N
     program : Program
         The program.
     last_axis : int
-        Largest number of an external axis.
+        Highest number of an external axis.
     unit : str
         Pattern of a positioner's name.
     form : str
@@ -360,8 +365,10 @@ def refuse_external(program: Program, last_axis: int, unit: str, form: str) -> N
 
 
 def refuse_named_track(program: Program, what: str) -> None:
-    """Raises InputError UNSUPPORTED_AXES if the job names a track on a controller without names for
-    tracks; `what` describes the track there.
+    """Raise InputError UNSUPPORTED_AXES if the job names a track but the controller has no track
+    names.
+
+    what: describes the track on this controller.
     """
     if program.unit and program.on_track and not program.on_positioner:
         raise InputError(
@@ -373,7 +380,7 @@ def refuse_named_track(program: Program, what: str) -> None:
 
 
 def refuse_continuous(program: Program) -> None:
-    """Raises InputError ENDLESS_AXIS if an axis has no limits, for controllers that count the turns
+    """Raise InputError ENDLESS_AXIS if an axis is continuous; for controllers that count the turns
     of every axis.
     """
     if any(program.continuous):
@@ -388,8 +395,8 @@ def refuse_continuous(program: Program) -> None:
 
 
 def refuse_without_speeds(program: Program, axes: int) -> None:
-    """Raises InputError NO_JOINT_SPEED if the machine file of the robot or of external axes lacks
-    the joint speeds to which percents refer.
+    """Raise InputError NO_JOINT_SPEED if a machine file lacks maximum joint speeds, which
+    percentages refer to.
     """
     is_known = np.isfinite(program.max_speed)
     if len(is_known) == axes and is_known.all():
@@ -406,8 +413,9 @@ def refuse_without_speeds(program: Program, axes: int) -> None:
 
 
 def refuse_without_positions(program: Program, straight: bool = False) -> None:
-    """Raises InputError NO_POSITIONS if Cartesian motion has moves, or linear moves, without a
-    pose.
+    """Raise InputError NO_POSITIONS if moves of a Cartesian program lack a pose.
+
+    straight: check linear moves only.
     """
     if program.motion != "cartesian":
         return
@@ -421,14 +429,14 @@ def refuse_without_positions(program: Program, straight: bool = False) -> None:
 def refuse_calls_of_own(
     program: Program, names: set[str], program_name: Callable[[str, str], str]
 ) -> None:
-    """Reject calls of programs that have the name of a part of the job.
+    """Reject calls of programs whose name is also a program of the job.
 
     Parameters
     ----------
     program : Program
         The program.
     names : set[str]
-        Names of its parts.
+        Names of the job's programs.
     program_name : callable
         Returns the controller's name of a program.
 
@@ -439,7 +447,7 @@ def refuse_calls_of_own(
     """
     own_names = {
         name.upper() for name in names
-    }  # case-insensitive controllers and disks would confuse them
+    }  # case-insensitive controllers and disks would confuse the names
     for block in program.blocks:
         if (
             isinstance(block, Call)
@@ -454,14 +462,14 @@ def refuse_calls_of_own(
 
 
 def refuse_names_of_data(program: Program, names: Collection[str], data: Collection[str]) -> None:
-    """Reject names of files or called programs that data on the controller already have.
+    """Reject files or called programs with the name of data on the controller.
 
     Parameters
     ----------
     program : Program
         The program.
     names : iterable of str
-        Names of its files.
+        Names of the program's files.
     data : iterable of str
         Names of data that the program uses.
 
@@ -483,7 +491,7 @@ def refuse_names_of_data(program: Program, names: Collection[str], data: Collect
 
 
 def speeds_within(moves: Moves, min_speed: float, max_speed: float) -> Array:
-    """Return the speeds of moves, if the controller supports them.
+    """Return the speeds of moves after checking that the controller supports them.
 
     Parameters
     ----------

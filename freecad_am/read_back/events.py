@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Compares the events between the moves of a text (deposit, waits, inputs, calls, layers) with the
+"""Compare the events between moves of a text (deposit, waits, inputs, calls, layers) with the
 planned events.
 """
 
@@ -29,14 +29,13 @@ from ..core.read_moves import ARC, Event, ReadMoves
 from ..core.types import Array
 from .text_path import COMPUTED_AXIS, Planned
 
-# s; maximum rounding error of a path length as a time: a text with fewer digits, or with a tip that
-# hardly moves, does not match the plan
+# s; maximum rounding error when a path length becomes a time. If the text has too few digits or the
+# tip hardly moves, the event does not match the plan
 MOST_DIGITS = 0.0005
 
 
 def timed(events: Sequence[Event], speed: Array) -> tuple[Event, ...]:
-    """Return the events with times instead of path lengths, from the tip speed (n,), mm/s, on each
-    move.
+    """Convert path lengths before events to times, given the tip speed (n,), mm/s, of each move.
 
     The time is NaN on a move without a speed.
     """
@@ -46,8 +45,10 @@ def timed(events: Sequence[Event], speed: Array) -> tuple[Event, ...]:
 
 
 def speeds_of(planned: Planned, text: ReadMoves) -> Array:
-    """(n,) mm/s of the tip on each move: as the text says it, else by the planned points and times, against which its own
-    are held."""
+    """Return the tip speed (n,) of each move, mm/s.
+
+    It is the speed in the text, or without one the speed from the planned points and times.
+    """
     step_lengths = np.linalg.norm(
         np.diff(planned.position, axis=0, prepend=planned.position[:1]), axis=1
     )
@@ -76,7 +77,7 @@ def _timed(event: Event, distance_before: float, speed: Array) -> Event:
     )
 
 
-# error code and message, and the kinds of events that they cover
+# error code and message, and the event kinds that they cover
 _FAMILIES = (
     ("VERIFY_DEPOSIT", "the program switches the deposit differently than planned", ("on", "off")),
     ("VERIFY_SCHEDULE", "the program sends another schedule than planned", ("schedule",)),
@@ -89,7 +90,7 @@ _FAMILIES = (
 
 
 def event_issues(planned: Planned, program: Program, text: ReadMoves) -> list[Issue]:
-    """The deposit in each move, the speed of its wire, and all events."""
+    """Check the deposit state and the wire feed of each move, and all events."""
     expected = planned.deposit & (not program.dry_run)
     wire = np.where(
         expected, planned.motion.wire[planned.rows] * (0.06 * program.nc.wire_gain), np.nan
@@ -139,7 +140,7 @@ def _compared(
     events: Sequence[Event],
     due: Sequence[Event],
 ) -> list[Issue]:
-    """Return an error if the events of a text differ from the expected ones."""
+    """Return an error if the events of a text differ from the planned events."""
     alike = [_alike(program, event, due_event) for event, due_event in zip(events, due)]
     off = alike.count(False) + abs(len(events) - len(due))
     if not off:
@@ -160,7 +161,7 @@ def _compared(
 
 
 def _alike(program: Program, event: Event, due: Event) -> bool:
-    """Whether an event of a text is the one that is due."""
+    """Whether an event of a text matches the planned event."""
     if (event.row, event.kind) != (due.row, due.kind) or not _as_early(event, due):
         return False
     if ARC in (*event.value, *due.value):
@@ -176,13 +177,13 @@ def _alike(program: Program, event: Event, due: Event) -> bool:
         return event.value == due.value
     *names, value = (float(word) for word in event.value)
     *due_names, due_value = (float(word) for word in due.value)
-    # a wait shorter than the last digit is written as one unit of the last digit
+    # a wait below the resolution of the text is written as one unit of its last digit
     due_value = max(due_value, 2.0 * event.digits) if due.kind == "wait" else due_value
     return names == due_names and abs(value - due_value) <= event.digits + 1e-9
 
 
 def _as_early(event: Event, due: Event) -> bool:
-    """Return whether an event is equally far ahead of its place, or both are at standstill."""
+    """Whether two events have the same lead, or both happen at standstill."""
     if event.ahead is None or due.ahead is None:
         return event.ahead is due.ahead
     return abs(event.ahead - due.ahead) <= event.digits + 1e-9
@@ -193,7 +194,7 @@ def _of(events: Sequence[Event], kinds: Sequence[str]) -> list[Event]:
 
 
 def _merge_waits(events: Sequence[Event] | Iterator[Event]) -> list[Event]:
-    """The events with waits one after the other as one, and none of no time."""
+    """Merge consecutive waits and drop waits of 0 s."""
     joined: list[Event] = []
     for event in events:
         previous = joined[-1] if joined else None
@@ -209,7 +210,7 @@ def _merge_waits(events: Sequence[Event] | Iterator[Event]) -> list[Event]:
 
 
 def _due(program: Program) -> Iterator[Event]:
-    """Return the planned events between the moves."""
+    """Yield the planned events between moves."""
     row = 0
     for block in program.blocks:
         if isinstance(block, Moves):
@@ -255,5 +256,5 @@ def _happening(program: Program, block: Block) -> list[tuple[float | str, ...]]:
 
 
 def _switched(program: Program, schedule: int | None) -> tuple[float | str, ...]:
-    """Return the switch of the deposit: an output, or an arc instruction with a schedule."""
+    """Return the switching command: an output, or an arc instruction with its schedule."""
     return (float(program.deposit_output),) if schedule is None else (float(schedule), ARC)

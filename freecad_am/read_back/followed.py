@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The joints with which a machine follows the positions of a text.
+"""Solve for the joints with which a machine follows the positions of a text.
 
-A solution has the configuration named in the text; without one, it is the solution nearest to the
+A solution has the configuration named in the text. Without one, it is the solution nearest to the
 previous joints.
 """
 
@@ -26,12 +26,11 @@ from .text_path import Path, pieces
 
 
 def by_robot(cell: Cell, text: ReadMoves, flanges: Array) -> Array:
-    """Return serial joints (n, axes) of a robot cell with its flange at `flanges` (n, 4, 4); NaN
-    out of reach.
+    """Return serial joints (n, axes) of a robot cell for `flanges` (n, 4, 4); NaN out of reach.
 
     Rows with joint values in the text keep them. Raises InputError NO_CONFIGURATION if the text
-    begins with a position without a configuration or a nearby joint position, and the cell leaves
-    it open too.
+    starts with a position without a configuration or nearby joint values, and the cell does not set
+    a configuration either.
     """
     machine, robot_axes = cell.machine, cell.robot.chain.axes
     controller_values = (
@@ -61,10 +60,9 @@ def by_robot(cell: Cell, text: ReadMoves, flanges: Array) -> Array:
 
 
 def by_table(cell: Cell, text: ReadMoves, path: Path) -> Array:
-    """(n, 5) serial joints of a machine with rotary axes for a path of the tip; NaN for unreachable
-    directions.
+    """Return serial joints (n, 5) of a five-axis machine for a tip path; NaN if unreachable.
 
-        A rotary axis that a direction leaves free stays where it is.
+    A rotary axis that the direction does not determine stays where it is.
     """
     assert text.joints is not None
     serial = cell.machine.from_controller(text.joints)
@@ -83,13 +81,15 @@ def by_table(cell: Cell, text: ReadMoves, path: Path) -> Array:
 
 
 def _runs(mask: Mask) -> list[tuple[int, int]]:
-    """First and behind the last row of each run of rows in a mask."""
+    """Return the first row and the end (exclusive) of each run of rows in a mask."""
     edges = np.flatnonzero(np.diff(mask, prepend=False, append=False)).tolist()
     return list(zip(edges[::2], edges[1::2], strict=True))
 
 
 def _arm(cell: Cell, text: ReadMoves, flanges: Array, rows: slice, previous: Array) -> Array:
-    """(k, 6) joints of the arm at some rows of the text that follow each other after joints `previous` (6,)."""
+    """Return arm joints (k, 6) at consecutive rows of the text that follow the joints `previous`
+    (6,).
+    """
     arm = cell.robot.arm
     assert arm is not None
     solutions = [
@@ -117,7 +117,9 @@ def _arm(cell: Cell, text: ReadMoves, flanges: Array, rows: slice, previous: Arr
 
 
 def _nearest_turns(cell: Cell, flanges: Array, reference: Array) -> Array:
-    """(k, 6) the joints of flange poses (k, 4, 4) next to joints `reference` (k, 6), in their turns."""
+    """Return the joints (k, 6) of flange poses (k, 4, 4) nearest to `reference` (k, 6), unwrapped
+    to it.
+    """
     arm = cell.robot.arm
     assert arm is not None
     solutions = np.moveaxis(arm.inverse(flanges), 0, 1)
@@ -129,15 +131,15 @@ def _nearest_turns(cell: Cell, flanges: Array, reference: Array) -> Array:
 
 
 def _as_named(cell: Cell, text: ReadMoves, solutions: Array, words: Index, rows: slice) -> Array:
-    """Select the solutions (k, configurations, 6) of the configuration named in the text, with its
-    turns.
+    """Select the solutions with the configuration and turns named in the text.
 
-    words: (k, configurations) the configuration of each solution.
+    solutions: (k, configurations, 6). words: (k, configurations), the configuration index of each
+    solution.
     """
     configuration = text.configuration
     assert configuration is not None
     names = np.array([spherical_wrist.branch_name(index) for index in range(8)])[words]
-    # what controllers call flip is which way axis 5 is bent as they count it
+    # controllers call the sign of axis 5, in their own counting direction, flip
     controller_values = cell.robot.to_controller(solutions)
     named = (names[..., 0] == "front") == configuration.front[rows, None]
     named &= (names[..., 1] == "up") == configuration.up[rows, None]
@@ -165,8 +167,8 @@ def _nearest(solutions: Array, free: Mask, previous: Array) -> Array:
     """Return the solutions (k, axes) nearest to the previous row, unwrapped; the first row follows
     `previous`.
 
-    solutions: (k, configurations, axes). free: (k, axes) values that stay unchanged, whatever the
-    solutions are.
+    solutions: (k, configurations, axes). free: (k, axes) values that do not matter, so they repeat
+    the previous value.
     """
     first_choice = int(_joint_distance(solutions[0], previous).argmin())
     choices = [first_choice]
@@ -180,7 +182,7 @@ def _nearest(solutions: Array, free: Mask, previous: Array) -> Array:
         for successors in nearest.tolist():
             choices.append(successors[choices[-1]])
     joints = np.vstack([previous, solutions[np.arange(len(solutions)), choices]])
-    # a free value repeats that in the last row with a value
+    # a free value repeats the last value that the direction determined
     bound = np.vstack([np.ones(len(previous), dtype=bool), ~free])
     last_bound = np.maximum.accumulate(np.where(bound, np.arange(len(joints))[:, None], 0), axis=0)
     joints = np.take_along_axis(joints, last_bound, axis=0)
@@ -190,10 +192,9 @@ def _nearest(solutions: Array, free: Mask, previous: Array) -> Array:
 
 
 def _joint_distance(joints: Array, reference: Array) -> Array:
-    """Return the distance (...) of joints (..., axes) from reference joints, apart from whole
-    turns.
+    """Return the distance (...) of joints (..., axes) from reference joints modulo whole turns.
 
-    Infinite for missing joints.
+    Missing joints give infinity.
     """
     turned = joints - reference
     distances = np.abs(turned - TURN * np.rint(turned / TURN)).max(axis=-1)
@@ -202,7 +203,7 @@ def _joint_distance(joints: Array, reference: Array) -> Array:
 
 @dataclass(frozen=True, eq=False)
 class DrivenBead:
-    """A bead of a motion in the form that collision checks use, without width and height."""
+    """A bead in the form that collision checks need, without width and height."""
 
     points: Array
     build: Array
@@ -212,17 +213,16 @@ class DrivenBead:
 
 
 def drive(cell: Cell, program: Program, text: ReadMoves) -> Motion:
-    """Return the rows of a motion along a text, in part coordinates; joints are NaN for unreachable
-    positions.
+    """Return the motion along a text in part coordinates; joints are NaN at unreachable positions.
 
-    program: its cell data; its moves are not used. Build directions are tool axes; widths are
-    unknown. Raises InputError NO_CONFIGURATION if a text does not give the arm configuration at its
-    start.
+    program: provides the cell data; its moves are not used. Build directions are tool axes. Widths
+    are unknown. Raises InputError NO_CONFIGURATION if the text does not give the arm configuration
+    at its start.
     """
     path, serial = _drive(cell, program, text)
     seconds = _durations(cell, text, path.position, serial)
     starts = _starts(text)
-    # the first row of a bead repeats the present position
+    # the first row of a bead repeats the current position
     inserted = np.maximum(starts - 1, 0)
     rows = np.insert(np.arange(len(text.deposit)), starts, inserted)
     fresh = np.insert(np.zeros(len(text.deposit), dtype=bool), starts, True)
@@ -248,7 +248,7 @@ def drive(cell: Cell, program: Program, text: ReadMoves) -> Motion:
 
 
 def beads(motion: Motion) -> list[DrivenBead]:
-    """The beads of a motion, in order."""
+    """Return the beads of a motion, in order."""
     deposited = np.flatnonzero(motion.deposit)
     row_groups = (
         np.split(deposited, np.flatnonzero(motion.point[deposited] == 0)[1:])
@@ -262,7 +262,7 @@ def beads(motion: Motion) -> list[DrivenBead]:
 
 
 def _drive(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array]:
-    """Return the tip path of the text, and its serial joints (n, axes)."""
+    """Return the tip path of the text and its serial joints (n, axes)."""
     machine, continuous = cell.machine, text_path.shorter_way(cell, program, text)
     if text.position is None:
         assert text.joints is not None
@@ -289,10 +289,10 @@ def _in_turns(controller_values: Array, continuous: Mask) -> Array:
 
 
 def _durations(cell: Cell, text: ReadMoves, position: Array, serial: Array) -> Array:
-    """Return the duration (n,) of each move from the text, s.
+    """Return the duration (n,) of each move, s.
 
-    The text gives a time, a speed of the tip, or a share of the axes' largest speeds. The first
-    move has 0, as its start is unknown.
+    The text gives a time, a tip speed, or a fraction of the maximum axis speeds. The first move has
+    0 s because its start is unknown.
     """
     step_lengths = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
     turned = np.abs(np.diff(cell.machine.to_controller(serial), axis=0, prepend=np.nan))
@@ -303,7 +303,7 @@ def _durations(cell: Cell, text: ReadMoves, position: Array, serial: Array) -> A
         by_speed = np.divide(
             step_lengths, text.speed, out=np.full(len(step_lengths), np.nan), where=text.speed > 0.0
         )
-        # a tip speed has no meaning while the tip does not move
+        # a tip speed has no meaning if the tip does not move
         seconds = np.where(
             np.isnan(seconds),
             np.maximum(by_speed, np.where(step_lengths > 0.0, 0.0, quickest)),
@@ -317,7 +317,7 @@ def _durations(cell: Cell, text: ReadMoves, position: Array, serial: Array) -> A
 
 
 def _starts(text: ReadMoves) -> Index:
-    """Return the first moves of beads: those at which the deposit begins or restarts."""
+    """Return the first moves of beads, where the deposit starts or restarts."""
     begins = np.diff(text.deposit, prepend=False) & text.deposit
     on = [event.row for event in text.events if event.kind == "on" and event.row < len(begins)]
     begins[on] |= text.deposit[on]
@@ -325,7 +325,7 @@ def _starts(text: ReadMoves) -> Index:
 
 
 def _layers(events: tuple[Event, ...], starts: Index) -> Integers:
-    """Return the layers (beads,) at the moves `starts` from remarks; 0 without a remark."""
+    """Return the layers (beads,) at the moves `starts` from the layer remarks; 0 without remarks."""
     layers = [(event.row, int(float(event.value[0]))) for event in events if event.kind == "layer"]
     if not layers:
         return np.zeros(len(starts), dtype=np.int64)
@@ -336,7 +336,10 @@ def _layers(events: tuple[Event, ...], starts: Index) -> Integers:
 
 
 def _places(deposit: Mask, fresh: Mask, layers: Integers) -> tuple[Integers, ...]:
-    """Layer, bead and point (n,) of the rows; rapids carry the bead that they lead to. fresh: the first rows of beads."""
+    """Return layer, bead and point (n,) of the rows. Rapids have the bead that follows.
+
+    fresh: (n,) the first rows of beads.
+    """
     if not len(layers):
         nowhere = np.zeros(len(deposit), dtype=np.int64)
         return nowhere, nowhere, np.arange(len(deposit))

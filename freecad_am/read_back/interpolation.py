@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Compares the interpolation of a text with the plan.
-
-It covers straight motion, stops, corner rounding, frames and arm configurations.
+"""Compare the interpolation of a text with the plan: straight motion, times, stops, corner
+rounding, frames and arm configurations.
 """
 
 from __future__ import annotations
@@ -16,17 +15,18 @@ from ..core.read_moves import Configuration, ReadMoves
 from ..core.types import Array, Mask
 from .text_path import COMPUTED_AXIS, Planned, digits, pieces
 
-# s: the step of a time in milliseconds and in tenths of a second, and where the second begins
+# s: tolerance of times in milliseconds and of times in tenths of a second; longest time in
+# milliseconds
 MILLISECOND, TENTH, LONGEST_MSEC = 0.001, 0.05, 32.0
-# rad: a rapid that turns no axis farther than this has no time to speak of
+# rad; a rapid that rotates every axis by less has a negligible duration
 STILL = 2e-5
 
 
 def time_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
-    """Compare times with the planned speed: each move within its digits, and each bead as a whole.
+    """Compare times with the planned speed: each move within its rounding, and each bead in total.
 
-    The first move starts from an unknown position: it uses its own share of the axes' speeds, or
-    its own time.
+    The first move starts from an unknown position. It uses a fixed fraction of the axis speeds
+    (FIRST_SHARE) or a fixed time (FIRST_TIME).
     """
     timed = np.arange(len(text.duration)) > 0
     step = np.linalg.norm(np.diff(planned.position, axis=0, prepend=planned.position[:1]), axis=1)
@@ -44,9 +44,10 @@ def time_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
             text.duration_digits + 1e-9 * expected + 1e-12,
             np.ones(len(timed), dtype=bool),
         )
-    if cell.arrangement.named_axes:  # rapids at the machine's own speed: the text says no more
+    # the machine tool moves rapids at its own speed, and the text gives no time
+    if cell.arrangement.named_axes:
         timed &= planned.deposit | np.isfinite(text_times)
-    # written as 1 ms, the shortest there is
+    # rapids below 1 ms are written as 1 ms, the shortest time
     short = timed & ~planned.deposit & (expected < MILLISECOND) & (text_times <= MILLISECOND + 1e-9)
     if text.share is not None:
         times, times_allowed, tame = _share_times(cell, planned, text, text.share, expected)
@@ -87,8 +88,8 @@ def time_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
 
 
 def owed(expected: Array) -> Array:
-    """Return how much shorter (n,) moves of `expected` (n,) s may be, s, as their neighbours take
-    less than a millisecond.
+    """Return how much shorter (n,), s, moves of `expected` (n,) s may be because their neighbours
+    take less than a millisecond.
     """
     debt = np.zeros((2, len(expected) + 1))
     for row, seconds in zip(debt, (expected, expected[::-1])):
@@ -100,20 +101,21 @@ def owed(expected: Array) -> Array:
 def _share_times(
     cell: Cell, planned: Planned, text: ReadMoves, share: Array, expected: Array
 ) -> tuple[Array, Array, Mask]:
-    """Return the times (n,) of moves with the fastest axis at a share of its largest speed, their
-    tolerance, and exceptions.
+    """Return times (n,) of moves whose fastest axis runs at a fraction of its maximum speed, their
+    tolerances, and exceptions.
 
-    The joint values of the text give the times, if it has them. The exceptions may take another
-    time: they are too short to express, or already use the least share.
+    Joint values of the text determine the times, if it has any. Exceptions may take another time:
+    they are too short to express, or already use the smallest fraction.
     """
     controller_values = cell.machine.to_controller(planned.joints)
     if text.joints is not None:
         controller_values = np.where(np.isnan(text.joints), controller_values, text.joints)
     turned = np.abs(np.diff(controller_values, axis=0, prepend=controller_values[:1]))
     times = (turned / cell.machine.max_speed).max(axis=1) / share
-    # a move that begins where the text has no joint values is off by the digits of both its ends
+    # a move that starts where the text has no joint values is off by the rounding at both ends
     ends = 2.0 * float((digits(cell, text) / cell.machine.max_speed).max()) / share
-    # the share itself was as much as a half digit less: at few percent that is more of the time than of the share
+    # the true fraction may be lower by half a digit, which at a few percent changes the time more
+    # than the fraction
     lowest_share = np.maximum(share - text.share_digits, 0.5 * share)
     slowest = (
         (expected <= SHORTEST_RAPID * (1.0 + 1e-9))
@@ -124,18 +126,18 @@ def _share_times(
     return times, times * text.share_digits / lowest_share + ends + COMPUTED_AXIS, tame
 
 
-# mm by which a distance that a text rounds to thousandths may be off
+# mm; tolerance of a distance that a text rounds to thousandths
 THOUSANDTH = 0.0011
-# of rounded corners, where a controller grades them
+# corner-rounding levels of a controller that grades corners
 LEVELS = 8
-# of the shorter segment at a point, the largest blend radius there
+# maximum blend radius at a point, as a fraction of the shorter adjacent segment
 BLEND_SHARE = 0.4
-# rad: near half a turn, within this angle, either number of turns is right
+# rad; within this angle of half a turn, either turn number is right
 HALF_TURN = np.radians(0.001)
 
 
 def way_issues(cell: Cell, planned: Planned, program: Program, text: ReadMoves) -> list[Issue]:
-    """VERIFY_INTERPOLATION, VERIFY_BLEND, VERIFY_FRAME, VERIFY_CONFIGURATION."""
+    """Return VERIFY_INTERPOLATION, VERIFY_BLEND, VERIFY_FRAME and VERIFY_CONFIGURATION issues."""
     linear = np.repeat(
         [run.interpolation == LINEAR_MOVE for run in program.moves],
         [len(run) for run in program.moves],
@@ -158,7 +160,7 @@ def way_issues(cell: Cell, planned: Planned, program: Program, text: ReadMoves) 
 
 
 def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, text: ReadMoves) -> Mask:
-    """(n,) moves that do not stop where they should, or pass through where they should not, or by another rounding."""
+    """Whether moves (n,) differ from the plan in stops or in corner rounding."""
     if text.level is not None:
         level = np.where(planned.stops, 0.0, np.ceil(0.01 * LEVELS * program.blend))
         return np.asarray(text.level != level)
@@ -170,7 +172,8 @@ def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, text: Rea
         )
     if text.rounding is None:
         return np.asarray(text.stops != planned.stops)
-    # the last corner of a bead is named, and not passed; a rounding of nothing is a stop
+    # the text names the last corner of a bead although the robot stops there; zero rounding is a
+    # stop
     table = bool(program.axis_names)
     rounding = (
         np.full(len(text.stops), program.nc.tolerance)
@@ -178,7 +181,7 @@ def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, text: Rea
         else _share_of_shortest(planned, program.blend)
     )
     rounded = np.where(np.isnan(text.rounding), 0.0, text.rounding)
-    # a stop that names no rounding says all there is to say where a stop was planned
+    # where a stop is planned, a stop without rounding is complete
     rounding = np.where(
         planned.deposit & ~(planned.stops & text.stops & np.isnan(text.rounding)), rounding, 0.0
     )
@@ -190,10 +193,10 @@ def _rounded_otherwise(cell: Cell, planned: Planned, program: Program, text: Rea
 
 
 def _blended_otherwise(cell: Cell, planned: Planned, program: Program, text: ReadMoves) -> Mask:
-    """Check a text with blend radii in the same way.
+    """Whether moves (n,) of a text with blend radii differ from the plan in stops or in radius.
 
-    The radius is in percent of BLEND_SHARE of the shorter segment at the point, along the path of
-    the text's tool, so that neighbouring blends never meet.
+    The radius is `program.blend` percent of BLEND_SHARE times the shorter adjacent segment, along
+    the path of the text's tool. Neighbouring blends therefore never meet.
     """
     assert text.blend_radius is not None and text.tool is not None
     tip = np.empty_like(planned.position)
@@ -215,7 +218,7 @@ def _blended_otherwise(cell: Cell, planned: Planned, program: Program, text: Rea
 
 
 def _share_of_shortest(planned: Planned, blend: float) -> Array:
-    """(n,) mm: the blend in percent of half the shortest move of each bead, never more than 100."""
+    """Return the blend (n,), mm: percent of half the shortest move of each bead, at most 100 mm."""
     starts = np.flatnonzero(np.diff(planned.deposit, prepend=False))
     length = np.where(planned.deposit, planned.speed * planned.duration, np.inf)
     if not len(starts):
@@ -261,7 +264,7 @@ def _frame_issues(
 
 
 def _near_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
-    """Joint values that a position's are to be next to: the planned ones."""
+    """Compare the nearby joint values given with positions with the planned joint values."""
     if text.near is None:
         return []
     differences = np.abs(text.near - cell.machine.to_controller(planned.joints))
@@ -277,7 +280,10 @@ def _near_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
 def _configuration_issues(
     cell: Cell, planned: Planned, program: Program, named: Configuration | None
 ) -> list[Issue]:
-    """The configuration of the arm and the turns of the last axis at each position; the other two turns must be none."""
+    """Compare the arm configuration and the turns of the last axis at each position with the plan.
+
+    The other turn numbers must be zero.
+    """
     if named is None:
         return []
     arm = cell.machine.arm

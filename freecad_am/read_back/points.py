@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points, axis values, limits and solvers: whether a text leads where it should."""
+"""Check whether a text leads to the planned points: positions, axis values, limits and solvers."""
 
 from __future__ import annotations
 
@@ -28,18 +28,17 @@ from .text_path import (
     tip_bounds,
 )
 
-# shares of the step between two points at which the path is checked
+# fractions of a move at which the path between two points is checked
 BETWEEN = np.array([1.0, 2.0, 3.0, 4.0, 5.0]) / 6.0
 
 
 def rapids_between(
     cell: Cell, planned: Planned, text: Joints, path: Path, linear: Mask
 ) -> tuple[float, float, Mask]:
-    """Return the largest deviation of the tip, mm, and of its direction, deg, from the checked
-    rapids.
+    """Return the maximum deviation of the tip, mm, and of the tool axis, deg, on rapids.
 
-    Also returns the moves (n,) that deviate by more than the digits explain. The text decides
-    whether the joints or (linear) the tip are straight.
+    Also return the moves (n,) whose deviation from the checked rapid exceeds the rounding of the
+    text. The text decides whether a move is straight in the joints or (linear) at the tip.
     """
     off, ends = np.zeros(len(planned.deposit), dtype=bool), planned.rapids
     if not len(ends):
@@ -52,9 +51,9 @@ def rapids_between(
     distances = np.linalg.norm(np.where(along, straight_tip, driven_tip) - tip, axis=1)
     tilted = np.linalg.norm(np.where(along, straight_tool, driven_tool) - tool, axis=1)
     bound, tool_bound = tip_bounds(cell, looked_at, _between(text.reach, ends))
-    # a linear rapid is rejected off a path checked in the joints, unless it was planned as linear.
-    # Near a singularity, digits may explain more than the clearance of rapids can spare; then the
-    # text is rejected
+    # a linear rapid may leave the path that was checked in the joints only by OFF_WAY. Near a
+    # singularity, rounding may explain more than the clearance of rapids can spare; such a text is
+    # rejected
     allowed = np.where(along[:, 0], OFF_WAY_MM, np.minimum(bound, OFF_WAY_MM))
     wrong = ~(
         (distances <= allowed) & (tilted <= np.maximum(tool_bound, OFF_WAY_RAD * along[:, 0]))
@@ -64,7 +63,7 @@ def rapids_between(
 
 
 def _between(rows: Array, ends: Index) -> Array:
-    """Return the points (len(ends) * len(BETWEEN), ...) on the straight lines that end at the rows
+    """Return intermediate points (len(ends) * len(BETWEEN), ...) of straight moves to the rows
     `ends`.
     """
     step = (rows[ends] - rows[ends - 1])[:, None]
@@ -79,10 +78,11 @@ def _tips(cell: Cell, serial: Array) -> tuple[Array, Array]:
 def beads_between(
     cell: Cell, planned: Planned, controller_values: Array, path: Path, chord_error: float
 ) -> tuple[float, Mask]:
-    """Largest distance of the tip from the planned segments while joints run straight, and the moves too far off.
+    """Return the maximum distance of the tip from the planned segments while joints move straight,
+    and the moves that are too far off.
 
-    The tip is driven where it can be off, or farther than it is anywhere else: between points no farther from the planned
-    ones it leaves their segment by that and its bow at most.
+    Only moves whose upper bound exceeds the tolerance or the maximum so far are evaluated. The
+    bound is the larger deviation at the two end points plus the bow.
     """
     serial, ends = cell.machine.from_controller(controller_values), planned.ends
     largest, off = 0.0, np.zeros(len(controller_values), dtype=bool)
@@ -102,18 +102,18 @@ def beads_between(
 
 
 def _larger_at_ends(values: Array, ends: Index) -> Array:
-    """Return the larger of the values (len(ends),) at the row `ends` and at the row before; NaN if
-    one is NaN.
+    """Return the larger value (len(ends),) of the row `ends` and the row before; NaN if either is
+    NaN.
     """
     return np.maximum(values[ends - 1], values[ends])
 
 
 def _bow(cell: Cell, serial: Array, ends: Index) -> Array:
-    """Return the maximum distance (len(ends),) of the tip from its chord on straight joint moves to
-    the rows `ends`, mm.
+    """Return the maximum distance (len(ends),) of the tip from its chord, mm, on straight joint
+    moves to the rows `ends`.
 
-    It is an eighth of the second derivative of the tip. In it, each rotation acts on every other
-    one over a lever of at most the chain length, and twice on prismatic axes.
+    The bow is an eighth of the second derivative of the tip. In this derivative, each rotation acts
+    on every other rotation over a lever of at most the chain length, and twice on prismatic axes.
     """
     chain, slides = cell.machine.chain, cell.machine.chain.sliding
     links = [*chain.origins, chain.flange, cell.poses.carried, cell.poses.station]
@@ -130,7 +130,10 @@ def _bow(cell: Cell, serial: Array, ends: Index) -> Array:
 def tools_between(
     cell: Cell, planned: Planned, flanges: Array, tools: Array, path: Path, chord_error: float
 ) -> tuple[float, Mask]:
-    """The same while tools (n, 4, 4), another one at each point, on flanges at `flanges` (n, 4, 4) run straight."""
+    """Return the same results as `beads_between` for tools that move straight in Cartesian space.
+
+    flanges: (n, 4, 4) poses. tools: (n, 4, 4), a different tool at each point.
+    """
     largest, off = 0.0, np.zeros(len(flanges), dtype=bool)
     for ends in pieces(planned.ends):
         flanges_between = (
@@ -147,10 +150,10 @@ def tools_between(
 def _off_segments(
     planned: Planned, ends: Index, tips: Array, path: Path, chord_error: float
 ) -> tuple[float, Mask]:
-    """Return the largest distance of tips (len(ends) * len(BETWEEN), 3) from the planned segments.
+    """Return the maximum distance of tips (len(ends) * len(BETWEEN), 3) from the planned segments.
 
-    The segments end at the rows `ends`. Also returns which (len(ends),) exceed the chord error and
-    the digits of both end points.
+    The segments end at the rows `ends`. Also return the segments (len(ends),) at which the distance
+    exceeds the chord error plus the rounding at the end points.
     """
     tips = tips.reshape(len(ends), len(BETWEEN), 3)
     start, step = planned.position[ends - 1], planned.position[ends] - planned.position[ends - 1]
@@ -164,7 +167,9 @@ def _off_segments(
 
 
 def _straight(start: Array, end: Array) -> Array:
-    """(n, len(BETWEEN), 4, 4) poses on the way from start to end (n, 4, 4): straight, turning about one axis."""
+    """Interpolate poses (n, len(BETWEEN), 4, 4) from start to end (n, 4, 4): linear in position,
+    with a rotation about one axis.
+    """
     turn = np.swapaxes(start[:, :3, :3], 1, 2) @ end[:, :3, :3]
     axis = 0.5 * np.stack(
         [
@@ -185,15 +190,15 @@ def _straight(start: Array, end: Array) -> Array:
     )
 
 
-ROW_STRIDE = 8  # stride of the rows that PyKDL computes in a long text
+ROW_STRIDE = 8  # PyKDL computes every eighth row of a long text
 THIRDS = np.array([0.0, 2.0, 4.0]) * np.pi / 3.0
 GRID_TO_ALL = (
     5.0 / 3.0
-)  # how much larger a sum of a constant, a sine and a cosine is anywhere than at three angles
+)  # maximum of a sum of a constant, a sine and a cosine, relative to its maximum at three angles
 
 
 def joint_issues(cell: Cell, planned: Planned, text: ReadMoves, continuous: Mask) -> list[Issue]:
-    """Joint values against the planned ones: the tip does not show where the rotation about the tool is."""
+    """Compare joint values with the planned values. The tip does not reveal the tool rotation."""
     assert text.joints is not None
     differences = text.joints - cell.machine.to_controller(planned.joints)
     differences[:, continuous] -= 2.0 * np.pi * np.rint(differences[:, continuous] / (2.0 * np.pi))
@@ -215,7 +220,7 @@ def joint_issues(cell: Cell, planned: Planned, text: ReadMoves, continuous: Mask
 
 
 def limit_issues(cell: Cell, planned: Planned, text: Joints) -> list[Issue]:
-    """Return issues if the joints of a text exceed the limits of the cell by more than its digits."""
+    """Return issues if joints exceed the limits of the cell by more than the rounding of the text."""
     limits, wrong = cell.limits, np.zeros(len(text.serial), dtype=bool)
     worst, label = -np.inf, 0
     for rows in pieces(np.arange(len(text.serial))):
@@ -255,9 +260,9 @@ def point_issues(planned: Planned, path: Path) -> list[Issue]:
 def twice_issues(
     cell: Cell, planned: Planned, program: Program, text: ReadMoves, flange: Array
 ) -> list[Issue]:
-    """Check positions that a text repeats with the joint values of a row, as at an arc start.
+    """Check positions that a text gives in addition to joint values, as at an arc start.
 
-    They must match the planned point and flange (n, 4, 4).
+    These positions must match the planned points and flange poses (n, 4, 4).
     """
     if text.position is None or text.joints is None:
         return []
@@ -275,8 +280,10 @@ def twice_issues(
 
 
 def turned_otherwise(text_flanges: Array, flange: Array, path: Path) -> Mask:
-    """(n,) whether flanges (n, 4, 4) are turned by more than digits explain: an angle of a shows as sqrt(2) a in the sum of
-    squares of the nine entries."""
+    """Whether flanges (n, 4, 4) are rotated by more than rounding explains.
+
+    A rotation by an angle a changes the Frobenius norm of the matrix by sqrt(2) a.
+    """
     differences = np.linalg.norm(text_flanges[:, :3, :3] - flange[:, :3, :3], axis=(1, 2))
     return np.asarray(differences > np.sqrt(2.0) * path.tool_bound)
 
@@ -284,9 +291,9 @@ def turned_otherwise(text_flanges: Array, flange: Array, path: Path) -> Mask:
 def second_opinion(
     cell: Cell, planned: Planned, controller_values: Array, flange: Array
 ) -> tuple[list[Issue], tuple[str, ...]]:
-    """Return the result of PyKDL for the same joint values, if it is installed.
+    """Compare the flange poses with PyKDL for the same joint values, if PyKDL is installed.
 
-    Long texts use some rows and joint values of every kind (docs/decisions/0022).
+    For long texts, PyKDL computes some rows and a grid of joint values (docs/decisions/0022).
     """
     if not kdl_chain.available():
         message = "PyKDL is not installed; the program was checked by one solver only"
@@ -295,7 +302,7 @@ def second_opinion(
     grid = grid_of(cell.machine.chain, planned.joints)
     long = len(controller_values) > ROW_STRIDE * len(grid)
     if long:
-        # a difference on the grid may double with each rotary axis elsewhere
+        # away from the grid, a difference may grow by GRID_TO_ALL with each rotary axis
         share = GRID_TO_ALL ** -np.count_nonzero(~cell.machine.chain.sliding)
         wrong |= _differ(arm.forward(grid), cell.machine.chain.forward(grid), share).any()
     for rows in pieces(np.arange(0, len(controller_values), ROW_STRIDE if long else 1)):
@@ -311,9 +318,7 @@ def second_opinion(
 
 
 def _differ(poses: Array, reference: Array, share: float = 1.0) -> Mask:
-    """Return whether (n,) poses (n, 4, 4) of two solvers differ by more than a share of the
-    rounding error.
-    """
+    """Whether poses (n, 4, 4) of two solvers differ by more than a fraction of the rounding error."""
     differences = poses - reference
     differing: Mask = lengths(differences[:, :3, 3]) > share * COMPUTED_MM
     differing |= np.abs(differences[:, :3, :3]).max(axis=(1, 2)) > share * COMPUTED_AXIS
@@ -321,9 +326,12 @@ def _differ(poses: Array, reference: Array, share: float = 1.0) -> Mask:
 
 
 def grid_of(chain: Chain, joints: Array) -> Array:
-    """Joint values (m, axes) on which two solvers that agree do so everywhere: three of each turning axis, two of each that
-    slides. The entries of a pose are a sum of constants, sines and cosines in each angle, and of degree one in each way;
-    so is their difference."""
+    """Return joint values (m, axes) such that solvers that agree on them agree everywhere.
+
+    The grid has three values of each rotary axis and two of each prismatic axis. Pose entries, and
+    so their difference, are sums of a constant, a sine and a cosine in each angle, and linear in
+    each prismatic value.
+    """
     low, high = np.nanmin(joints, axis=0), np.nanmax(joints, axis=0)
     end_values = np.stack([low, np.where(high > low, high, low + 1.0)], axis=1)
     values = [

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Settings that a text uses without containing them: numbers of frames and tools, and programs of
-the controller.
+"""Check settings that a text refers to but does not contain: frame and tool numbers, and programs
+on the controller.
 """
 
 from __future__ import annotations
@@ -20,21 +20,23 @@ from .events import timed
 
 
 class Finding(NamedTuple):
-    """An issue and its motion row, None without a row."""
+    """An issue and its motion row; None if it has no row."""
 
     issue: Issue
     row: int | None
 
     def line(self, motion: Motion, text: ReadMoves) -> tuple[str, int] | None:
-        """Return file and line, from 1, of the move to a row of the text's motion; None if unknown."""
+        """Return file and line (from 1) of the move to this row of the text's motion; None if
+        unknown.
+        """
         if self.row is None or text.lines is None:
             return None
-        # the first row of a bead repeats the end of the move before
+        # the first row of a bead repeats the end of the previous move
         return text.lines.at(max(int(np.count_nonzero(motion.moves[: self.row + 1])) - 1, 0))
 
 
 def error_at(code: str, message: Text, motion: Motion, row: int) -> Finding:
-    """An error about a row of the motion."""
+    """Return an error at a motion row."""
     return Finding(
         Issue(
             ERROR,
@@ -51,9 +53,10 @@ def error_at(code: str, message: Text, motion: Motion, row: int) -> Finding:
 def selection_findings(
     motion: Motion, text: ReadMoves, expected: tuple[int, int] | None
 ) -> list[Finding]:
-    """Return FRAME_NUMBER if a text selects several frames or tools, or others than the job.
+    """Return FRAME_NUMBER if a text selects several frames or tools, or differs from the job.
 
-    Only one frame and tool are known. Adds OTHER_PROGRAM for each called program that was not given.
+    Only one frame and one tool can be simulated. Add OTHER_PROGRAM for each called program that is
+    missing.
 
     Parameters
     ----------
@@ -62,7 +65,7 @@ def selection_findings(
     text
         The moves of the text.
     expected
-        Numbers of the frame and of the tool of a job, None without one.
+        Frame number and tool number of the job; None without a job.
     """
     return [*_numbers(motion, text, expected), *_calls(motion, text)]
 
@@ -103,7 +106,7 @@ def _numbers(
 
 
 def _calls(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
-    """One finding of each name, at the first move behind the call."""
+    """Yield one finding per called program, at the first move after the call."""
     rows = np.flatnonzero(motion.moves)
     first_calls: dict[str, int] = {}
     for event in text.events:
@@ -125,15 +128,15 @@ def _finding_at(level: str, code: str, message: Text, motion: Motion, row: int) 
     return Finding(Issue(level, code, message, *bead_point), row)
 
 
-# s; tolerance of a time in a text beyond the time of its move: both are rounded to milliseconds
+# s; how much longer than its move a lead may be: the text rounds both times to milliseconds
 MOST_LONGER = 0.002
 
 
 def switching_findings(motion: Motion, text: ReadMoves) -> list[Finding]:
-    """Return DEPOSIT_SWITCH if the deposit is switched on twice or is on at the end of the program.
+    """Return DEPOSIT_SWITCH if the deposit is switched on twice or stays on at the program end.
 
-    Then the end of a bead is missing. Also returns the first TRIGGER_LEAD if a switch comes before
-    its move begins. motion: that of the text.
+    In both cases the end of a bead is missing. Also return the first TRIGGER_LEAD if a switch comes
+    before its move begins. motion: the motion of the text.
     """
     first_findings: dict[str, Finding] = {}
     for finding in _findings(motion, text):
@@ -166,13 +169,14 @@ def _findings(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
 
 
 def _finding(code: str, message: Text, motion: Motion, rows: Index, move: int) -> Finding:
-    """Return an error at a move; at the last move for an event after it."""
+    """Return an error at a move, or at the last move for a later event."""
     return error_at(code, message, motion, int(rows[min(move, len(rows) - 1)]))
 
 
 def _time_of_its_move(event: Event, seconds: Array) -> float | None:
-    """Return the duration of the move of an early event, s. The duration of the first move is
-    unknown.
+    """Return the duration of the last move before an event, s, if the lead exceeds it; else None.
+
+    The duration of the first move is unknown.
     """
     move = event.row - 1
     if (
@@ -184,14 +188,14 @@ def _time_of_its_move(event: Event, seconds: Array) -> float | None:
     return float(seconds[move])
 
 
-ROUNDED = 0.1  # mm that digits of a program, and joints between its points, may take
+ROUNDED = 0.1  # mm; tolerance for rounding in the program and for joint motion between points
 
 
 def into_platform(motion: Motion, cell: Cell) -> list[Finding]:
-    """Return INTO_PLATFORM with the lowest place, if the tip deposits below the platform within its
+    """Return INTO_PLATFORM at the lowest point if the tip deposits below the platform within its
     edge.
 
-    motion: that of the text; unreachable rows are not checked.
+    motion: the motion of the text. Unreachable rows are not checked.
     """
     rows = np.flatnonzero(motion.deposit & motion.reachable)
     to_platform = frames.inverse(cell.poses.mount)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The path of the tip and the joints of a text, with the error that its digits allow.
+"""Compute tip path and joints of a text, with the error bounds due to its rounding.
 
-The joint-frame chain computes it from the joint values, independent of the closed form of the
-planner. For texts with positions, the chain's Jacobian near the planned joints gives the joint
-values.
+The joint-frame chain computes the path from joint values, independent of the planner's closed form.
+For texts with positions, a Newton step from the planned joints with the chain's Jacobian gives the
+joint values.
 """
 
 from __future__ import annotations
@@ -21,13 +21,15 @@ from ..core.program import Program
 from ..core.read_moves import ReadMoves
 from ..core.types import Array, Index, Mask
 
-# what rounding in the computation itself may amount to: mm, and of unit vectors
+# rounding error of the computation itself: mm, and of unit vectors
 COMPUTED_MM, COMPUTED_AXIS = 1e-6, 1e-9
-PIECE = 4096  # moves in one batch: the poses of a whole program would take too much memory
+PIECE = 4096  # moves in one batch; the poses of a whole program would take too much memory
 
 
 class Planned:
-    """The rows of the motion that a controller moves to, with the finding of a place."""
+    """The motion rows that a controller moves to. Also builds issues with their position in the
+    job.
+    """
 
     def __init__(self, motion: Motion, rows: Index) -> None:
         self.rows, self.motion = rows, motion
@@ -35,7 +37,7 @@ class Planned:
         self.position, self.tool = motion.position[rows], motion.tool[rows]
         self.duration, self.speed = motion.duration[rows], motion.speed[rows]
         self.stops, self.halt = motion.stops[rows], motion.halt[rows]
-        # moves that begin at the end of another move, of beads and of rapids
+        # moves that start at the end of another move: in beads, and as rapids
         moved = np.arange(len(rows)) > 0
         self.ends, self.rapids = (
             np.flatnonzero(self.deposit & moved),
@@ -43,8 +45,8 @@ class Planned:
         )
 
     def issue(self, code: str, wrong: Mask, message: str) -> list[Issue]:
-        """Return an error at the first wrong move, none without one; the message gives their
-        number.
+        """Return an error at the first wrong move, with the number of wrong moves; empty without
+        one.
         """
         if not wrong.any():
             return []
@@ -59,9 +61,7 @@ class Planned:
         ]
 
     def place(self, move: int) -> tuple[int, int, int]:
-        """Return layer, bead and point of a move; for an event after the end, those of the last
-        move.
-        """
+        """Return layer, bead and point of a move. An event after the last move uses that move."""
         row = self.rows[min(move, len(self.rows) - 1)]
         layer, bead, point = (
             int(column[row]) for column in (self.motion.layer, self.motion.bead, self.motion.point)
@@ -70,13 +70,13 @@ class Planned:
 
 
 def pieces(rows: Index) -> list[Index]:
-    """Yield the rows (n,) in batches."""
+    """Split the rows (n,) into batches."""
     return [rows[start : start + PIECE] for start in range(0, len(rows), PIECE)]
 
 
 @dataclass(frozen=True, eq=False)
 class Path:
-    """The path of the tip in a text, in part coordinates, with the error its digits allow. Rows are
+    """The tip path of a text in part coordinates, with error bounds due to rounding. Rows are
     moves.
     """
 
@@ -88,7 +88,7 @@ class Path:
 
 @dataclass(frozen=True, eq=False)
 class Joints:
-    """The serial joints (n, axes) that a text asks for, rad and mm, and by how much each may be off (n, axes)."""
+    """Serial joints (n, axes) of a text, rad and mm, and the error bound (n, axes) of each joint."""
 
     serial: Array
     reach: Array
@@ -97,33 +97,36 @@ class Joints:
 def given_by_position(cell: Cell, joints: Array) -> Mask:
     """Return the axis values (n, axes) that the controller may derive from a Cartesian position.
 
-    These are a robot's own axes, and the prismatic axes of a five-axis machine. Its rotary axes
-    follow from the direction of the tool.
+    These are the robot's own axes, and the prismatic axes of a five-axis machine. The rotary axes
+    of a five-axis machine follow from the tool direction.
     """
     robot_axes = (
         np.arange(joints.shape[1]) < cell.robot.chain.axes
-    )  # a position says nothing of the external axes
+    )  # a position does not determine external axes
     untold = np.isnan(joints[:, robot_axes]).all(axis=1, keepdims=True)
     return np.asarray((cell.machine.chain.sliding | untold) & robot_axes, dtype=np.bool_)
 
 
 def shorter_way(cell: Cell, program: Program, text: ReadMoves) -> Mask:
-    """Return the axes (axes,) that the controller turns the shorter way: the continuous axes of
+    """Return the axes (axes,) that the controller rotates the shorter way: continuous axes of
     robots.
 
-    Rotary axes of machine tools count their turns, unless the text states otherwise.
+    Rotary axes of machine tools count turns, unless the text states otherwise.
     """
     shorter = not cell.arrangement.named_axes if text.shorter_way is None else text.shorter_way
     return np.array(program.continuous) & shorter
 
 
 def digits(cell: Cell, text: ReadMoves) -> Array:
-    """(axes,) half of the last digit of each axis, rad and mm."""
+    """Return the rounding error of each axis (axes,): half a unit of the last digit, rad and mm."""
     return np.where(cell.machine.chain.sliding, text.linear_digits, text.digits)
 
 
 def joint_path(cell: Cell, controller_values: Array, half: Array) -> tuple[Path, Array]:
-    """The path of controller joint values (n, axes), each off by at most `half` (axes,), and the flange poses (n, 4, 4)."""
+    """Return the path of controller joint values (n, axes) and their flange poses (n, 4, 4).
+
+    half: (axes,) rounding error of the joint values.
+    """
     machine, count = cell.machine, len(controller_values)
     path = Path(np.empty((count, 3)), np.empty((count, 3)), np.empty(count), np.empty(count))
     flange = np.empty((count, 4, 4))
@@ -139,7 +142,9 @@ def joint_path(cell: Cell, controller_values: Array, half: Array) -> tuple[Path,
 
 
 def tip_bounds(cell: Cell, serial: Array, reach: Array) -> tuple[Array, Array]:
-    """(n,) mm and (n,) by how much tip and tool axis move at most where joints (n, axes) are off by `reach` (n, axes)."""
+    """Return how far tip, (n,) mm, and tool axis, (n,), move at most if joints (n, axes) are off by
+    `reach` (n, axes).
+    """
     return _bounds(cell, cell.machine.chain.frames(serial), np.eye(serial.shape[1]), reach)
 
 
@@ -149,12 +154,12 @@ def _bounds(
     """Return first-order bounds of tip and tool if matrix @ joints is off by `half`, (n, axes) or
     (1, axes).
 
-    The bound sums the lengths of the Jacobian's columns. The second order adds at most this sum
-    times the sum of the angles.
+    The bound sums the column norms of the Jacobian, weighted by `half`. The second-order term adds
+    at most this sum times the sum of the angles.
     """
     slides = cell.machine.chain.sliding
     to_serial = np.linalg.inv(matrix)
-    # one row per joint and entry, each for all poses
+    # one row per joint and component, each for all poses
     direction, origin = (
         joint_frames.directions.transpose(1, 2, 0),
         joint_frames.origins.transpose(1, 2, 0),
@@ -184,13 +189,13 @@ def text_joints(
     path: Path,
     flanges: Array | None,
 ) -> Joints:
-    """Return the joints of a text from its values `controller_values` (n, axes), with errors `half`
+    """Return the joints of a text from `controller_values` (n, axes) with rounding errors `half`
     (axes,).
 
-    Where a value is missing (NaN), one Newton step from serial joints `reference` (n, axes) moves
-    flange or tip to the position in the text.
+    Where a value is missing (NaN), one Newton step from the serial joints `reference` (n, axes)
+    moves flange or tip to the position in the text.
 
-    flanges: (n, 4, 4) flange poses of the text, None if it only has tips and directions.
+    flanges: (n, 4, 4) flange poses of the text; None if the text has only tips and directions.
     """
     machine = cell.machine
     reference_values = machine.to_controller(reference)
@@ -215,17 +220,17 @@ def text_joints(
     return Joints(serial, reach)
 
 
-# mm that a radian counts as where positions and directions are brought together
+# mm per radian; weights directions against positions in one residual
 _LEVER = 300.0
 
 
 def _to_flange(
     cell: Cell, serial: Array, path: Path, flanges: Array, rows: Index
 ) -> tuple[Array, Array, Array]:
-    """Return the Jacobian of the flange (n, 6, axes), its distance from the target and the error
-    bound (n, 6).
+    """Return the flange Jacobian (n, 6, axes), the residual to the target (n, 6) and its bound (n,
+    6).
 
-    Units are mm, and radians times the lever.
+    Units are mm, and radians times `_LEVER`.
     """
     joint_frames = cell.machine.chain.frames(serial)
     slides = cell.machine.chain.sliding[:, None]
@@ -237,7 +242,7 @@ def _to_flange(
     )
     turned = np.where(slides, 0.0, joint_frames.directions) * _LEVER
     turn = flanges[:, :3, :3] @ np.swapaxes(joint_frames.flange[:, :3, :3], 1, 2)
-    # the angles have the size of digits, so their sines are accurate enough
+    # the angles are as small as the rounding, so their sines are accurate enough
     about = 0.5 * np.stack(
         [
             turn[:, 2, 1] - turn[:, 1, 2],
@@ -256,7 +261,10 @@ def _to_flange(
 
 
 def _to_tip(cell: Cell, serial: Array, path: Path, rows: Index) -> tuple[Array, Array, Array]:
-    """The same of the tip and its direction in part coordinates, where the part is what the chain moves."""
+    """Return the Jacobian of the tip and its direction in part coordinates, the residual and its bound.
+
+    The chain moves the part. Shapes and units are as in `_to_flange`.
+    """
     joint_frames = cell.machine.chain.frames(serial)
     slides = cell.machine.chain.sliding[:, None]
     tip, tool = cell.tip_in_part(joint_frames.flange)
@@ -279,7 +287,8 @@ def _to_tip(cell: Cell, serial: Array, path: Path, rows: Index) -> tuple[Array, 
 def text_tips(cell: Cell, program: Program, text: ReadMoves) -> Path:
     """Return tips and tool axes of a text in part coordinates.
 
-    They come from its positions and its directions or rotary axes; rows with axis values use these.
+    Tips come from the positions. Tool axes come from the directions or the rotary axes. Rows with
+    all axis values use the axis values instead.
     """
     assert text.position is not None and program.carried is not None
     in_part = cell.poses.mount @ frames.inverse(cell.poses.carried) @ frames.bryant(program.carried)
@@ -292,7 +301,7 @@ def text_tips(cell: Cell, program: Program, text: ReadMoves) -> Path:
         tool_bound = (
             np.sqrt(3.0) * text.direction_digits / np.maximum(length, 1e-300) + COMPUTED_AXIS
         )
-    elif text.joints is not None:  # the linear axes do not turn the tool
+    elif text.joints is not None:  # the linear axes do not rotate the tool
         path_in_axes, _ = joint_path(
             cell, np.where(cell.machine.chain.sliding, 0.0, text.joints), digits(cell, text)
         )
@@ -310,10 +319,10 @@ def text_tips(cell: Cell, program: Program, text: ReadMoves) -> Path:
 
 
 def text_path(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array, Array]:
-    """Return the path of a text with positions, its flange poses and its tools (n, 4, 4) on the
+    """Return the path of a text with positions, its flange poses and the tools (n, 4, 4) on the
     flange.
 
-    Rows with joint values use these.
+    Rows with joint values use the joint values.
     """
     path, flanges, tools = positions_path(cell, program, text)
     if text.joints is not None:
@@ -329,11 +338,11 @@ def text_path(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Arra
 
 
 def positions_path(cell: Cell, program: Program, text: ReadMoves) -> tuple[Path, Array, Array]:
-    """Return the same by positions only, NaN in rows without one.
+    """Return path, flange poses and tools from positions only; NaN in rows without a position.
 
-    Texts without frames of their own use the user frame of the program. Every frame is off by half
-    a digit: its origin by at most sqrt(3) times that, its rotation by three angles; a frame that
-    does not turn the target about itself has no lever.
+    Texts without frames use the user frame of the program. Rounding displaces each frame by half a
+    digit: the origin by at most sqrt(3) times half a digit, the rotation by three angles. A frame
+    that does not rotate the target about itself has no lever.
     """
     assert text.position is not None and text.rotation is not None
     count, lever = 1, np.zeros(len(text.position))

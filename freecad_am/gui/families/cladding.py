@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cladding in the window."""
+"""The window functions of cladding."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves in the window."""
+"""The window functions of curves."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids on a hub in the window."""
+"""The window functions of solids on a hub."""
 
 from __future__ import annotations
 

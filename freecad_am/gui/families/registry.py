@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What each family adds to the window, imported on first use.
+"""The window classes of all families, imported on first use.
 
-`core.families.registry` lists the families; the module here has the kind as its name.
+`core.families.registry` lists the families; each module here is named after the family's kind.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts of revolution in the window."""
+"""The window functions of parts of revolution."""
 
 from __future__ import annotations
 

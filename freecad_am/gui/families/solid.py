@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids in the window."""
+"""The window functions of solids."""
 
 from __future__ import annotations
 

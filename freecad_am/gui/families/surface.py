@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls on a part in the window."""
+"""The window functions of walls on a part."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The part of the window that belongs to a family: its tool, panel, view and entry in New Job."""
+"""The family-specific part of the window: tool, panel, view and entry in New Job."""
 
 from __future__ import annotations
 
@@ -22,8 +22,11 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class JobProposal:
-    """A family, its reason, the deposited parts and their ground. missing: inputs still to select, '' for none.
-    layers: for solids. mend: size of the largest hole to close, mm, 0 for the default."""
+    """A family with its reason, the deposited parts and their ground.
+
+    missing: inputs still to be selected, '' for none. layers: for solids. mend: mm, size of the
+    largest hole to close, 0 for the default.
+    """
 
     kind: str
     reason: str
@@ -35,7 +38,7 @@ class JobProposal:
 
     @property
     def choice(self) -> str:
-        """The entry of the kinds to choose from."""
+        """The entry in the list of kinds."""
         return self.layers if self.layers == GEODESIC else self.kind
 
     @property
@@ -45,9 +48,10 @@ class JobProposal:
 
 
 class FeatureWindow:
-    """What a family of `core.families` adds to the window; the file has its kind as name.
+    """The window functions of a family of `core.families`; the file is named after the kind.
 
-    rank: the order of tools. job_rank: the order of entries in New Job. page: of docs/tools. face_is_base: whether a clicked face is the base of the rest of the part.
+    rank: position among the tools. job_rank: position among the entries in New Job. page: page in
+    docs/tools. face_is_base: whether a clicked face is the base of the rest of the part.
     """
 
     rank: ClassVar[int]
@@ -56,7 +60,7 @@ class FeatureWindow:
     face_is_base: ClassVar[bool] = False
 
     def tools(self) -> dict[str, Tool]:
-        """Return the command that makes a feature, by its name."""
+        """Return the command that creates a feature, by its name."""
         raise NotImplementedError
 
     def open_panel(self) -> None:
@@ -66,7 +70,7 @@ class FeatureWindow:
         show(self.panel()())
 
     def panel(self) -> type[Any]:
-        """Return the class of the panel, imported at first need."""
+        """Return the class of the panel, imported at first use."""
         raise NotImplementedError
 
     def view(self) -> type[Any]:
@@ -76,11 +80,11 @@ class FeatureWindow:
         return FeatureView
 
     def entries(self) -> dict[str, str]:
-        """Return the texts of New Job by what is chosen: the kind, or a kind of layers."""
+        """Return the texts of New Job by choice: the kind, or a kind of layers."""
         raise NotImplementedError
 
     def assign_roles(self, picks: Sequence[Pick], reason: str, layers: str) -> JobProposal:
-        """Return the roles of picks where the user chose the family, and layers or ''."""
+        """Return the roles of picks if the user chose the family, and layers or ''."""
         raise NotImplementedError
 
     def arguments(self, job: JobProposal) -> dict[str, str]:
@@ -93,24 +97,24 @@ class FeatureWindow:
     def balance(
         self, job: JobProposal, snapshots: Sequence[Taken], under: Taken | None, width: float
     ) -> Balance | None:
-        """Return what beads of a width, mm, leave out of a proposed job; None if nothing is known."""
+        """Return the regions of a proposed job that beads of a width, mm, miss; None if unknown."""
         return None
 
 
 def second_ground(picks: Sequence[Pick]) -> Pick | None:
-    """Return the second picked object as the ground of the first one."""
+    """Return the second picked object as the ground of the first."""
     return next((Pick(pick.obj) for pick in picks[1:]), None)
 
 
 def ground_missing(wall: Pick, ground: Pick | None) -> str:
-    """Return what a wall lacks; a mesh may start on the platform."""
+    """Return the missing input of a wall; a mesh may start on the platform."""
     if ground is not None or picking.is_mesh(wall.obj):
         return ""
     return tr("Also Ctrl+click the part it grows on.")
 
 
 def several_elements(pick: Pick) -> Pick:
-    """Return the pick with its elements; a single one means the whole object."""
+    """Return the pick with its elements; a single element selects the whole object."""
     return pick if len(pick.names) > 1 else Pick(pick.obj)
 
 

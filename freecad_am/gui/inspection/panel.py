@@ -33,8 +33,11 @@ from ..widgets.shape_inputs import job_selection
 
 
 class PlannedChoice(Input):
-    """Choice of a feature, a toolpath, or an object with a shape or mesh: the present one, else the selected one or
-    the one of the selected job, else the last feature."""
+    """Choice of a feature, a toolpath, or an object with a shape or mesh.
+
+    The default is the present object, then the selected object or the object of the selected job,
+    then the last feature.
+    """
 
     def __init__(self, link: Link, present: Any) -> None:
         self.link, self.label = link, tr("Planned")
@@ -59,7 +62,7 @@ class PlannedChoice(Input):
             self.widget.setCurrentIndex(max(0, self.widget.findData(proposed.Name)))
 
     def choose_toolpath(self) -> None:
-        """The last toolpath, where none is chosen."""
+        """Select the last toolpath unless a toolpath is selected."""
         paths = [k for k in range(self.widget.count()) if self._kind(k) == "toolpath"]
         if paths and self.widget.currentIndex() not in paths:
             self.widget.setCurrentIndex(paths[-1])
@@ -93,12 +96,12 @@ class PlannedChoice(Input):
 
 
 class FileChoice(Input):
-    """The file of measured points, typed or chosen."""
+    """The file of measured points, typed or selected."""
 
     def __init__(self, path: str) -> None:
         self.label = tr("File")
         self.widget = QtGui.QWidget()
-        grid = QtGui.QGridLayout(self.widget)  # the path has the whole width, buttons are below
+        grid = QtGui.QGridLayout(self.widget)  # the path has the whole width; buttons are below
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setVerticalSpacing(2)
         self.line = QtGui.QLineEdit(path)
@@ -168,7 +171,7 @@ _SIDE, _TOP, _FOOT, _FAINT = 12, 6, 34, 90
 
 
 class Histogram(QtGui.QWidget):
-    """How many points have what deviation, and where the tolerance ends."""
+    """Histogram of deviations, with the tolerance limits."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -241,11 +244,13 @@ class Histogram(QtGui.QWidget):
 
 
 _LINES = 3  # pixels between the lines of the table
-_INDENT = "\u2003"  # before figures under the name of their place
+_INDENT = "\u2003"  # before values under the name of their region
 
 
 class InspectionPanel(StagePanel):
-    """Above its inputs and parameters, once there are any, the figures and the histogram of the result."""
+    """Shows statistics and histogram of the result above the inputs and parameters, if there is a
+    result.
+    """
 
     stage = Inspection
     icon, function, draft = "inspect", "inspect", "Inspection"
@@ -259,7 +264,7 @@ class InspectionPanel(StagePanel):
         choices[1].predict.clicked.connect(lambda *_: choices[0].choose_toolpath())
         super().__init__(Inspection, tr("Inspect") if obj is None else obj.Label, choices, obj)
         if obj is None and not choices[0].missing:
-            self.say("")  # no file chosen yet; show no error
+            self.say("")  # no file selected yet, so show no error
         self.heading.heading.setChecked(obj is None or not obj.Key)
         self.results = Fold(tr("Result"), True)
         self.table, self.histogram = QtGui.QTableWidget(0, 3), Histogram()
@@ -292,7 +297,7 @@ class InspectionPanel(StagePanel):
             self._show_results()
 
     def _show_results(self) -> None:
-        """Show the figures that the object has now; nothing before there are any."""
+        """Show the current statistics of the object; hide them without a result."""
         value = self._value()
         self.results.widget.setVisible(value is not None)
         if value is None:
@@ -345,7 +350,7 @@ class InspectionPanel(StagePanel):
             return None
 
     def _save(self, *_: Any) -> None:
-        """Ask for a folder and write the figures."""
+        """Ask for a folder and write the statistics."""
         try:
             start_folder = os.path.dirname(self.obj.Document.FileName)
             folder = QtGui.QFileDialog.getExistingDirectory(
@@ -363,7 +368,7 @@ class InspectionPanel(StagePanel):
 
 
 def inspect() -> None:
-    """Open the panel of the selected inspection, else of a new one."""
+    """Open the panel of the selected inspection, or of a new inspection."""
     inspections = [
         obj
         for obj in Gui.Selection.getSelection()

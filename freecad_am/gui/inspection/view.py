@@ -19,7 +19,7 @@ from ..views.base import StageView
 
 
 class InspectionView(StageView):
-    """Green within tolerance, to red for excess, to blue for missing material."""
+    """Draws points green within tolerance, red for excess material and blue for missing material."""
 
     icon = "inspect"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
@@ -57,14 +57,14 @@ class InspectionView(StageView):
         legend.renew_soon()
 
     def onChanged(self, vobj: Any, name: str) -> None:
-        """A view property has changed."""
+        """Handle a changed view property."""
         super().onChanged(vobj, name)
         if name == "Visibility":
             legend.renew_soon()
 
 
 def scale_of(value: Inspected) -> Scale:
-    """The legend of an inspection: its bands, the most outside first."""
+    """Return the legend of an inspection: its bands, outermost first."""
     factor, unit = preferences.scale_of(value.tolerance, "mm")
     classes = tuple(
         (band.text, band.colour)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A table of typed or pasted figures; errors name row and column."""
+"""A table of typed or pasted numbers; errors name row and column."""
 
 from __future__ import annotations
 
@@ -17,8 +17,11 @@ from ..in_language import sentence, tr, translated_error
 
 
 class Page(QtGui.QWizardPage):
-    """A page that completes the wizard's draft by one step. `fill` shows a draft from another source; `take` stores
-    the entries in the draft and raises InputError."""
+    """A page that completes the wizard's draft by one step.
+
+    `fill` shows a draft from another source. `take` stores the entries in the draft and raises
+    InputError.
+    """
 
     def __init__(self, wizard: Any, name: str, title: str, explanation: str) -> None:
         super().__init__(wizard)
@@ -34,7 +37,7 @@ class Page(QtGui.QWizardPage):
         self.error.hide()
 
     def add_text(self, text: str) -> Any:
-        """A paragraph."""
+        """Add a paragraph."""
         label = QtGui.QLabel(text)
         label.setWordWrap(True)
         label.setTextInteractionFlags(QtCore.Qt.TextSelectableByMouse)
@@ -53,7 +56,7 @@ class Page(QtGui.QWizardPage):
         """Store the entries in the draft."""
 
     def initializePage(self) -> None:
-        """Called by Qt when the page opens: entries stay unless the machine changed."""
+        """Called by Qt when the page opens; entries stay unless the machine changed."""
         self.say("")
         if self.filled_with is not self.owner.origin:
             self.filled_with = self.owner.origin
@@ -74,7 +77,7 @@ class Page(QtGui.QWizardPage):
 
 
 def error_text(error: InputError) -> str:
-    """An error with its place, where that is a place a user knows."""
+    """Format an error, with its location if the user knows it."""
     return (
         sentence(error.message)
         if error.where in ("geometry", "flange", "table")
@@ -83,7 +86,7 @@ def error_text(error: InputError) -> str:
 
 
 def choice(name: str, entries: list[tuple[str, Any]]) -> Any:
-    """A box of texts with their values."""
+    """Create a combo box of texts with their values."""
     box = QtGui.QComboBox()
     box.setObjectName(name)
     for text, value in entries:
@@ -92,14 +95,14 @@ def choice(name: str, entries: list[tuple[str, Any]]) -> Any:
 
 
 def heading(text: str) -> Any:
-    """A heading within a page."""
+    """Create a heading within a page."""
     label = QtGui.QLabel(f"<b>{text}</b>")
     label.setWordWrap(True)
     return label
 
 
 def axis_names(owner: Any) -> list[str]:
-    """How the axes of the draft are called: by number, or the names of a machine tool."""
+    """Return the names of the draft's axes: numbers, or the names of a machine tool."""
     draft = owner.draft
     if draft.chain.sliding.any():
         return [
@@ -115,7 +118,7 @@ MOST_SHOWN = 9  # maximum number of visible rows
 
 
 class FigureTable:
-    """The table `widget`: rows of figures under columns. Empty cells are NaN where `blank` lets them."""
+    """The table `widget`: numbers in rows and columns. Empty cells are NaN if `blank` allows them."""
 
     def __init__(
         self, name: str, rows: Sequence[str], columns: Sequence[str], helps: Sequence[str] = ()
@@ -141,21 +144,19 @@ class FigureTable:
         for column, text in enumerate(self.helps[: len(columns)]):
             self.widget.horizontalHeaderItem(column).setToolTip(text)
         self.widget.horizontalHeader().setSectionResizeMode(QtGui.QHeaderView.Stretch)
-        self.widget.setTextElideMode(
-            QtCore.Qt.ElideNone
-        )  # '0.7071', not '0.…', where a column is narrow
-        self.widget.setWordWrap(False)  # which would break a figure at its point
+        self.widget.setTextElideMode(QtCore.Qt.ElideNone)  # '0.7071', not '0.…', in a narrow column
+        self.widget.setWordWrap(False)  # wrapping would break a number at its point
         self.fit()
 
     def fit(self) -> None:
-        """Be as high as the rows there are."""
+        """Fit the height to the number of rows."""
         row_count = min(self.widget.rowCount(), MOST_SHOWN)
         self.widget.setFixedHeight(
             ROW_HEIGHT * row_count + self.widget.horizontalHeader().sizeHint().height() + 4
         )
 
     def widen(self, columns: Sequence[int], widest: str) -> None:
-        """Fit columns to such a figure; the others share the remaining width."""
+        """Fit columns to the widest number; the other columns share the remaining width."""
         header, width = (
             self.widget.horizontalHeader(),
             self.widget.fontMetrics().boundingRect(widest).width() + CELL_PADDING,
@@ -173,7 +174,7 @@ class FigureTable:
                 item.setFlags(item.flags() & ~QtCore.Qt.ItemIsEditable)
 
     def fill(self, values: Any) -> None:
-        """Show figures (rows, columns); NaN and infinite ones are empty cells."""
+        """Show numbers (rows, columns); NaN and infinity become empty cells."""
         self.widget.blockSignals(True)
         for row, line in enumerate(np.asarray(values, float).tolist()):
             for column, value in enumerate(line):
@@ -192,16 +193,18 @@ class FigureTable:
         item.setForeground(QtGui.QBrush() if colour is None else QtGui.QBrush(of(colour)))
 
     def row(self, row: int, count: int | None = None, blank: bool = False) -> Array:
-        """The figures of a row, of the first `count` columns. Raises InputError BAD_VALUE, which names the cell."""
+        """Return the numbers of a row, of the first `count` columns. Raises InputError BAD_VALUE,
+        naming the cell.
+        """
         columns = range(self.widget.columnCount() if count is None else count)
         return np.array([self.figure(row, column, blank) for column in columns])
 
     def figures(self, blank: bool = False) -> Array:
-        """All figures (rows, columns)."""
+        """Return all numbers (rows, columns)."""
         return np.stack([self.row(row, None, blank) for row in range(self.widget.rowCount())])
 
     def figure(self, row: int, column: int, blank: bool = False) -> float:
-        """The figure of a cell; raises InputError BAD_VALUE for none."""
+        """Return the number in a cell. Raises InputError BAD_VALUE without a number."""
         text = self.text(row, column)
         if not text and blank:
             return math.nan
@@ -211,11 +214,13 @@ class FigureTable:
         return number(text, where)
 
     def has_entries(self, row: int, count: int) -> bool:
-        """Whether anything is in the first cells of a row."""
+        """Whether any of the first cells of a row has a text."""
         return any(self.text(row, column) for column in range(count))
 
     def paste(self) -> None:
-        """Fill cells from the clipboard, from the current one on: figures with tabs, blanks or semicolons between them."""
+        """Fill cells from the clipboard, starting at the current cell; tabs, blanks or semicolons
+        separate numbers.
+        """
         text = str(QtGui.QApplication.clipboard().text())
         top_row, left_column = max(0, self.widget.currentRow()), max(0, self.widget.currentColumn())
         for down, line in enumerate(line for line in text.splitlines() if line.strip()):
@@ -231,7 +236,7 @@ class FigureTable:
 
 
 class _Table(QtGui.QTableWidget):
-    """A table that accepts pasted figures; Enter moves to the cell below instead of closing the
+    """A table that accepts pasted numbers; Enter moves to the cell below instead of closing the
     dialog.
     """
 
@@ -251,13 +256,15 @@ class _Table(QtGui.QTableWidget):
 
 
 def format_figure(value: float) -> str:
-    """A figure as it is typed, '' for none."""
+    """Format a number as a user types it; '' for a non-finite number."""
     return f"{value:.10g}" if math.isfinite(value) else ""
 
 
 def number(text: str, where: str) -> float:
-    """The number that was typed, with the decimal point of the language or a plain one.
-    Raises InputError BAD_VALUE for none."""
+    """Parse a number with the decimal point of the language or a plain point.
+
+    Raises InputError BAD_VALUE for other text.
+    """
     point = str(QtCore.QLocale().decimalPoint())
     try:
         value = float(text.replace(point, "."))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The pages of geometry: where it comes from, and check poses that prove it."""
+"""The geometry pages: the source of the geometry, and check poses that verify it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from ..in_language import tr
 from ..worker import Later
 from .figure_table import FigureTable, Page, axis_names, choice, error_text, format_figure, heading
 
-# ---- The first page: where the geometry comes from
+# ---- The first page: source of the geometry
 
 LENGTHS = ("a1", "a2", "b", "c1", "c2", "c3", "c4")
 MOST_AXES = 6
@@ -219,7 +219,7 @@ class SourcePage(Page):
             self.file.setText(answer[0])
 
     def _look(self, *_: Any) -> None:
-        """Offer the links of the file, once there is one."""
+        """Offer the links of the file if it exists."""
         self.robot = None
         self.base.clear()
         self.say("")
@@ -233,10 +233,12 @@ class SourcePage(Page):
         self._offer_mechanisms()
 
     def _offer_mechanisms(self) -> None:
-        """Robot, track and positioner of a file that has more than a robot; the robot is proposed."""
+        """Offer robot, track and positioner of a file with more than a robot; the robot is
+        preselected.
+        """
         self.mechanisms = []
         if self.robot is not None:
-            with contextlib.suppress(InputError):  # no whole cell: links are chosen one by one
+            with contextlib.suppress(InputError):  # not a whole cell: links are selected one by one
                 cell = UrdfCell(self.robot.path)
                 self.mechanisms = [(tr("Robot"), cell.machine(), "")] + [
                     (
@@ -253,14 +255,16 @@ class SourcePage(Page):
             widget.setVisible(several)
 
     def _choose_mechanism(self, index: int) -> None:
-        """The links of the mechanism that is chosen."""
+        """Select the links of the chosen mechanism."""
         if index >= 0:
             _, ends, _ = self.mechanisms[index]
             for box, link in ((self.base, ends.base), (self.tip, ends.tip)):
                 box.setCurrentIndex(box.findText(link))
 
     def _stands(self) -> str:
-        """Return the location of the mechanism of these links in the file's cell; '' if unknown."""
+        """Return the location of the mechanism of the selected links in the file's cell; '' if
+        unknown.
+        """
         links = self.base.currentText(), self.tip.currentText()
         return next(
             (where for _, ends, where in self.mechanisms if (ends.base, ends.tip) == links), ""
@@ -275,7 +279,7 @@ class SourcePage(Page):
     # ---- the draft
 
     def take(self) -> None:
-        """Make the draft. Entries on later pages stay if the source is unchanged."""
+        """Create the draft. Entries on later pages stay if the source is unchanged."""
         entered = self._entered()
         if entered == self.taken and self.owner.draft is not None:
             return
@@ -288,7 +292,7 @@ class SourcePage(Page):
         try:
             machine_draft.closed_form(draft)
         except InputError as error:
-            if error.where != opw_recognition.FLANGE:  # which has a page of its own
+            if error.where != opw_recognition.FLANGE:  # the flange has its own page
                 raise
         self.taken = entered
         self.owner.begin(draft)
@@ -390,13 +394,13 @@ class SourcePage(Page):
         )
 
 
-# ---- Check poses typed from the pendant: the machine's deviations and the likely errors
+# ---- Check poses typed from the pendant: deviations of the machine and likely errors
 
-MIN_POSES, INITIAL_ROWS = 3, 5  # poses that a machine needs, rows that are there at first
+MIN_POSES, INITIAL_ROWS = 3, 5  # minimum number of poses, initial number of rows
 
 
 class PosesPage(Page):
-    """A row per pose: joints and place as the controller shows them, then the deviations."""
+    """A row per pose: joints and position as the controller shows them, then the deviations."""
 
     def __init__(self, wizard: Any) -> None:
         super().__init__(
@@ -447,12 +451,12 @@ class PosesPage(Page):
 
     @property
     def axes(self) -> int:
-        """How many columns are joints."""
+        """Number of joint columns."""
         return int(self.owner.draft.chain.axes)
 
     @property
     def width(self) -> int:
-        """How many columns are typed."""
+        """Number of typed columns."""
         return self.axes + 3 + len(self._angles())
 
     def _angles(self) -> list[str]:
@@ -461,7 +465,7 @@ class PosesPage(Page):
     # ---- display
 
     def fill(self) -> None:
-        """Empty rows, the first at the serial zeros; or the poses of the machine that is copied."""
+        """Show empty rows, the first at the serial zeros, or the poses of the copied machine."""
         draft = self.owner.draft
         count = INITIAL_ROWS if draft.values is None else len(draft.values)
         self.table.widget.setRowCount(0)
@@ -479,7 +483,7 @@ class PosesPage(Page):
     def _head(self, rows: int) -> None:
         columns = [*axis_names(self.owner), "X", "Y", "Z", *self._angles(), "Δ mm", "Δ deg"]
         self.table.set_shape([str(number) for number in range(1, rows + 1)], columns)
-        if len(self._angles()) == 4:  # a quaternion has more decimals than an angle
+        if len(self._angles()) == 4:  # quaternions need more decimals than angles
             self.table.widen(range(self.axes + 3, self.axes + 7), "-0.000000")
         self.table.lock(len(columns) - 2, len(columns) - 1)
 
@@ -487,7 +491,7 @@ class PosesPage(Page):
         self._head(self.table.widget.rowCount() + 1)
 
     def _convention_changed(self, *_: Any) -> None:
-        """Columns of another way to write angles; the figures stay, for they were typed."""
+        """Show the columns of another angle convention; the typed numbers stay."""
         if self.owner.draft is not None and self.filled_with is not None:
             self.table.widget.blockSignals(True)
             for row in range(self.table.widget.rowCount()):
@@ -498,7 +502,7 @@ class PosesPage(Page):
             self.later.ask()
 
     def initializePage(self) -> None:
-        """Called by Qt when the page opens: poses stay, deviations use the current conventions."""
+        """Called by Qt when the page opens; poses stay, and deviations use the current conventions."""
         super().initializePage()
         zeros = ", ".join(format_figure(value) for value in self.owner.draft.shown.zeros)
         self.zero.setText(
@@ -509,9 +513,10 @@ class PosesPage(Page):
     # ---- entries
 
     def _entered(self, require_complete: bool) -> tuple[Array, Array, list[int]]:
-        """Joints (n, axes) as shown, flange poses (n, 4, 4) in base_link and their rows.
+        """Return joints (n, axes) as shown, flange poses (n, 4, 4) in base_link, and their rows.
 
-        Incomplete rows are skipped unless `require_complete`; then InputError names the missing figure.
+        Incomplete rows are skipped. With `require_complete`, InputError names the missing number
+        instead.
         """
         draft, values, figures, rows = self.owner.draft, [], [], []
         for row in range(self.table.widget.rowCount()):
@@ -542,7 +547,7 @@ class PosesPage(Page):
         return np.stack(values), poses, rows
 
     def take(self) -> None:
-        """Into the draft, if the machine gives them."""
+        """Store the poses in the draft if the machine reproduces them."""
         draft = self.owner.draft
         values, poses, rows = self._entered(require_complete=True)
         if len(rows) < MIN_POSES:
@@ -643,7 +648,7 @@ class PosesPage(Page):
             widget.deleteLater()
 
     def _offer(self) -> None:
-        """Add a button per likely error that corrects it."""
+        """Add a button per likely error that corrects the error."""
         if len(self._entered(require_complete=False)[2]) < MIN_POSES:
             return
         for number, suspect in enumerate(self.suspects):
@@ -688,7 +693,7 @@ class PosesPage(Page):
         return tr("signs and zeros of {} differ").format(axes)
 
     def adopt(self, suspect: Suspect) -> None:
-        """Correct a likely error in the draft and on the page of conventions."""
+        """Correct a likely error in the draft and on the conventions page."""
         draft = self.owner.draft
         if suspect.shown is not None:
             draft = replace(draft, shown=suspect.shown)

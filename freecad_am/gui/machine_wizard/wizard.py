@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""New Machine: from a source of geometry over limits, frames and check poses to a machine file."""
+"""The New Machine wizard: geometry source, limits, frames and check poses, then a machine file."""
 
 from __future__ import annotations
 
@@ -33,7 +33,9 @@ _POSE = ["X", "Y", "Z", "roll", "pitch", "yaw"]
 
 
 class FramesPage(Page):
-    """Frames in mm and deg, roll, pitch and yaw as URDF has them; signs and zeros of the axes on the pendant."""
+    """Frames in mm and deg (roll, pitch, yaw, as in URDF); signs and zeros of the axes on the
+    pendant.
+    """
 
     def __init__(self, wizard: Any) -> None:
         super().__init__(
@@ -153,7 +155,7 @@ class FramesPage(Page):
 
 
 class NamePage(Page):
-    """Finish writes the file."""
+    """The name page, whose Finish writes the file."""
 
     def __init__(self, wizard: Any) -> None:
         super().__init__(
@@ -195,7 +197,7 @@ class NamePage(Page):
         return line
 
     def _propose(self, *_: Any) -> None:
-        """A name from the title, unless one was typed."""
+        """Derive a name from the title, unless the user typed one."""
         if self.name.text() == self.proposed:
             self.proposed = re.sub(r"[^a-z0-9]+", "-", plain(self.title_of.text()).lower()).strip(
                 "-"
@@ -215,7 +217,7 @@ class NamePage(Page):
             box.setChecked(name in (draft.posts or ()))
 
     def initializePage(self) -> None:
-        """Called by Qt when the page comes."""
+        """Called by Qt when the page opens."""
         super().initializePage()
         arm = machine_draft.closed_form(self.owner.draft)
         if arm is None:
@@ -291,19 +293,19 @@ class LimitsPage(Page):
         self.column.addStretch(1)
 
     def fill(self) -> None:
-        """Show the figures of the source."""
+        """Show the values of the source."""
         draft = self.owner.draft
         names = axis_names(self.owner)
         self.table.set_shape(names, _heads())
         values = np.column_stack(
             (draft.lower, draft.upper, draft.max_speed, draft.max_acceleration, draft.max_jerk)
         )
-        # what a URDF writes in rad is rarely a whole degree in its last digits
+        # URDF values in rad are rarely whole degrees in their last digits
         self.table.fill(np.round(values / draft.units[:, None], 6))
         self.notes.setText("\n".join(draft.notes))
 
     def take(self) -> None:
-        """Into the draft."""
+        """Store the limits in the draft."""
         draft = self.owner.draft
         values = self.table.figures(blank=True)
         for row, (lower, upper, *rates) in enumerate(values.tolist()):
@@ -355,14 +357,14 @@ _open: list[Any] = []
 
 
 class MachineWizard(QtGui.QWizard):
-    """The pages and the draft they fill. Nothing is written before Finish."""
+    """The pages, and the draft that they fill. Nothing is written before Finish."""
 
     def __init__(self) -> None:
         super().__init__(Gui.getMainWindow())
         self.draft: Draft | None = None
-        self.origin: object = None  # another one each time the source is
+        self.origin: object = None  # a new object for each source
         self.geometry_sources: tuple[str, ...] = ()
-        self.copied = False  # with the check poses of another machine
+        self.copied = False  # whether the draft has the check poses of another machine
         self.saved = ""
         self.setObjectName("RoboticAM_NewMachine")
         self.setWindowTitle(tr("New machine"))
@@ -387,19 +389,19 @@ class MachineWizard(QtGui.QWizard):
         self.finished.connect(self._closed)
 
     def begin(self, draft: Draft) -> None:
-        """Reset for another source: earlier entries belong to another machine."""
+        """Reset for another source, because earlier entries belong to another machine."""
         self.draft = draft
         self.origin = object()
         self.geometry_sources = draft.sources
         self.copied = draft.values is not None
 
     def reject(self) -> None:
-        """Handle Cancel, Esc and the close button: ask before entries are lost."""
+        """Handle Cancel, Esc and the close button; ask before entries are lost."""
         if not self._entered() or self._confirm_discard():
             super().reject()
 
     def _entered(self) -> bool:
-        """Whether there is something to lose."""
+        """Whether closing would lose entries."""
         return self.draft is not None or self.source_page.has_entries()
 
     def _confirm_discard(self) -> bool:
@@ -414,7 +416,7 @@ class MachineWizard(QtGui.QWizard):
         return bool(answer == box.Discard)
 
     def keyPressEvent(self, event: Any) -> None:
-        """Enter in a field ends the field, not the page."""
+        """Let Enter in a field finish the field, not the page."""
         if event.key() not in (QtCore.Qt.Key_Return, QtCore.Qt.Key_Enter):
             super().keyPressEvent(event)
 
@@ -428,7 +430,7 @@ class MachineWizard(QtGui.QWizard):
 
 
 def show() -> Any:
-    """Open the wizard, or bring up the one that is open."""
+    """Open the wizard, or raise the open wizard."""
     if not _open:
         _open.append(MachineWizard())
     _open[0].show()

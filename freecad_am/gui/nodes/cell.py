@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A cell as the part sees it: the platform under it, the nozzle, and on demand the machine at rest; and its nodes."""
+"""Draw a cell in part coordinates: the platform under the part, the nozzle, and optionally the
+machine at rest.
+"""
 
 from __future__ import annotations
 
@@ -37,12 +39,12 @@ from .wall import unpickable
 
 TONES = {DARK: (0.24, 0.27, 0.31), BRIGHT: (0.66, 0.68, 0.71)}
 BAD = (0.86, 0.1, 0.12)
-_SHAPE = (0.8, 0.81, 0.83)  # of a user's file without a colour
-_CREASE = 0.6  # rad; flatter edges of a user's mesh look round
-_MIN_TABLE_RATIO = 1.05  # a table is a little wider than the platform on it
+_SHAPE = (0.8, 0.81, 0.83)  # colour of a user's file without a colour
+_CREASE = 0.6  # rad; flatter edges of a user's mesh look smooth
+_MIN_TABLE_RATIO = 1.05  # minimum ratio of table to platform diameter
 
 
-Look = Sequence[float] | None  # a colour, None for the one that is preferred
+Look = Sequence[float] | None  # a colour; None for the preferred colour
 Links = Sequence[Sequence[Solid]]  # solids of each link
 
 
@@ -51,8 +53,11 @@ def _rgb(colour: Look) -> Sequence[float]:
 
 
 def plain_links(machine: Machine, platform: float, torch: float) -> Links:
-    """The solids of each link (axes + 1), base first. platform: diameter of the platform on a table, torch: length of the
-    nozzle, mm; machines with rotary axes are drawn to fit them."""
+    """Return the solids of each link (axes + 1), base first.
+
+    platform: mm, platform diameter. torch: mm, nozzle length. Machines with rotary axes are sized
+    to fit both.
+    """
     if not machine.arrangements[0].links_known:
         return table_links.solids(
             machine.chain, max(table_links.RADIUS, 0.5 * _MIN_TABLE_RATIO * platform), torch
@@ -61,9 +66,9 @@ def plain_links(machine: Machine, platform: float, torch: float) -> Links:
 
 
 class MachineNodes:
-    """Nodes of a machine's links, in the frame of their poses.
+    """Nodes of a machine's links, in the frame of the link poses.
 
-    solids: as of `plain_links`. meshes: from the user's files of links, if already read. Unreadable
+    solids: as from `plain_links`. meshes: from the user's link files, if already read. Unreadable
     files are reported once in the report view.
     """
 
@@ -72,7 +77,7 @@ class MachineNodes:
         self.transforms: list[Any] = []
         self.matrices: list[
             Any
-        ] = []  # of the transforms; to ask a node for its field takes longer than to set it
+        ] = []  # matrix fields of the transforms; asking a node for a field takes longer than setting it
         self.materials: list[list[tuple[Any, Look]]] = []
         self.bad = np.zeros(machine.chain.axes + 1, dtype=bool)
         for shape, mesh, plain in zip_longest(machine.shapes, meshes, solids):
@@ -103,32 +108,32 @@ class MachineNodes:
         self.materials.append(materials)
 
     def pose(self, links: Array) -> None:
-        """Move the links to their poses (axes + 1, 4, 4); NaN leaves them where they are."""
+        """Move the links to their poses (axes + 1, 4, 4); NaN leaves the links unchanged."""
         if np.isfinite(links).all():
             for matrix, pose in zip(self.matrices, links):
                 move(matrix, pose)
 
     def paint(self, bad: Mask) -> None:
-        """Links (axes + 1,) to be red; the others get their own colours back."""
+        """Show links (axes + 1,) in red, and the other links in their own colours."""
         for index in np.flatnonzero(bad != self.bad):
             for material, colour in self.materials[index]:
                 material.diffuseColor.setValue(*(BAD if bad[index] else _rgb(colour)))
         self.bad = bad.copy()
 
     def renew_colours(self) -> None:
-        """Plain links get the colour that is preferred now."""
+        """Give plain links the preferred colour."""
         for bad, materials in zip(self.bad, self.materials):
             for material, colour in materials:
                 material.diffuseColor.setValue(*(BAD if bad else _rgb(colour)))
 
 
 def move(matrix: Any, pose: Array) -> None:
-    """Give the matrix field of a SoMatrixTransform a pose (4, 4)."""
+    """Set the matrix field of a SoMatrixTransform to a pose (4, 4)."""
     matrix.setValue(coin.SbMatrix(*pose.T.ravel().tolist()))
 
 
 def solid_node(solid: Solid) -> Any:
-    """The node of a solid, without a colour."""
+    """Return the node of a solid, without a colour."""
     values, shape = coin.SoVertexProperty(), coin.SoIndexedFaceSet()
     fill(values.vertex, solid.points.astype(np.float32))
     fill(values.normal, solid.normals.astype(np.float32))
@@ -139,7 +144,9 @@ def solid_node(solid: Solid) -> Any:
 
 
 def _drawn_mesh(shape: LinkShape) -> Mesh | None:
-    """Return the mesh of a user's file; report an unreadable file in the report view and return None."""
+    """Return the mesh of a user's file; report an unreadable file in the report view and return
+    None.
+    """
     try:
         return mesh_of(shape)
     except InputError as error:
@@ -151,7 +158,7 @@ def _drawn_mesh(shape: LinkShape) -> Mesh | None:
 
 
 def mesh_node(mesh: Mesh) -> Any:
-    """The node of a user's file."""
+    """Return the node of a user's mesh."""
     group, hints = coin.SoGroup(), coin.SoShapeHints()
     hints.vertexOrdering, hints.shapeType = (
         coin.SoShapeHints.COUNTERCLOCKWISE,
@@ -167,7 +174,7 @@ def mesh_node(mesh: Mesh) -> Any:
 
 
 def _corners(triangles: Integers) -> NDArray[np.int32]:
-    """Corners as Coin wants them, each triangle with its end."""
+    """Return triangle corners in Coin's form, with an end marker after each triangle."""
     corners = np.full((len(triangles), 4), -1, dtype=np.int32)
     corners[:, :3] = triangles
     return corners.ravel()
@@ -177,7 +184,7 @@ STANDING, CARRYING, MOVING = (0.36, 0.39, 0.43), (0.66, 0.68, 0.71), (0.5, 0.53,
 
 
 class ExternalLinkNodes:
-    """Nodes of external links, in the frame of their poses."""
+    """Nodes of external links, in the frame of the link poses."""
 
     def __init__(self, links: Sequence[ExternalLink]) -> None:
         self.node = coin.SoSeparator()
@@ -208,7 +215,9 @@ class ExternalLinkNodes:
             move(matrix, frame)
 
     def paint(self, bad: Mask) -> None:
-        """Show the links of bad external axes (k,) in red, and the others in their own colours."""
+        """Show the links of bad external axes (k,) in red, and the other links in their own
+        colours.
+        """
         red = np.array([link.link > 0 and bool(bad[link.axis]) for link in self.links], dtype=bool)
         for index in np.flatnonzero(red != self.bad):
             self.materials[index].diffuseColor.setValue(
@@ -222,17 +231,20 @@ def _colour(link: ExternalLink) -> tuple[float, float, float]:
 
 
 _LEAST_THICKNESS = 1.0
-_BODY = 2.5  # end of the body of a fixed nozzle, in nozzle lengths
-_REACHED = 1.0  # max. position error of the nozzle, mm; check poses of machine files may be rounded by half as much
+_BODY = 2.5  # end of a fixed nozzle's body, in nozzle lengths
+_REACHED = 1.0  # mm; maximum position error of the nozzle; check poses of machine files may be rounded by half of it
 _GHOST = 0.55  # transparency of a machine that only previews entries
 PLATFORM, NOZZLE = ((0.55, 0.58, 0.62), 0.2), ((0.8, 0.82, 0.85), 0.0)
 
 
 @dataclass(frozen=True, eq=False)
 class Rest:
-    """A machine at rest, in part coordinates: links (axes + 1, 4, 4), their solids and the meshes from the user's
-    files. reached: whether the nozzle reaches its pose; otherwise all axes are at 0. joints (axes,): current
-    position. external_links: known links of positioner and track, with poses `stands` (k, 4, 4)."""
+    """A machine at rest, in part coordinates.
+
+    links: (axes + 1, 4, 4), with their solids and the meshes from the user's files. reached:
+    whether the nozzle reaches its pose; otherwise all axes are at 0. joints: (axes,) current
+    position. external_links: known links of positioner and track, with poses `stands` (k, 4, 4).
+    """
 
     machine: Machine
     links: Array
@@ -247,8 +259,11 @@ class Rest:
 
 @dataclass(frozen=True, eq=False)
 class Scenery:
-    """The drawing of a cell, poses (4, 4) in part coordinates. mount: the part on the platform. nozzle: its tip, Z
-    into the nozzle. rest: the machine, None if hidden."""
+    """The drawing of a cell, with poses (4, 4) in part coordinates.
+
+    mount: the part on the platform. nozzle: its tip, with Z into the nozzle. rest: the machine;
+    None if hidden.
+    """
 
     parameters: CellParameters
     mount: Array
@@ -257,19 +272,24 @@ class Scenery:
 
 
 def nozzle_scenery(parameters: CellParameters, tip: Array, tool: Array, mount: Array) -> Scenery:
-    """The nozzle where the deposit ends: its last point (3,) and the tool axis there (3,)."""
+    """Return the nozzle at the end of the deposit: the last point (3,) and its tool axis (3,)."""
     return Scenery(parameters, mount, at_end(tip, tool))
 
 
 def at_end(tip: Array, tool: Array) -> Array:
-    """(4, 4) pose of a nozzle whose tip is at a point (3,), its axis along the tool's (3,)."""
+    """Return the pose (4, 4) of a nozzle with its tip at a point (3,) and its axis along the tool
+    axis (3,).
+    """
     return frames.pose(frames.smallest_rotation([0.0, 0.0, 1.0], tool), tip)
 
 
 def at_the_end(
     parameters: CellParameters, toolpath: Toolpath | None, folders: Sequence[str]
 ) -> Scenery:
-    """The nozzle where a toolpath ends, upright on the platform without one. Errors as `cell.resolve`."""
+    """Return the nozzle at the end of a toolpath, or upright on the platform without a toolpath.
+
+    Raises the errors of `cell.resolve`.
+    """
     if toolpath is None:
         return nozzle_scenery(parameters, np.zeros(3), np.array([0.0, 0.0, 1.0]), np.eye(4))
     mount, last_bead = (
@@ -282,8 +302,10 @@ def at_the_end(
 def machine_scenery(
     parameters: CellParameters, toolpath: Toolpath | None, folders: Sequence[str]
 ) -> Scenery:
-    """The machine at rest: the part upright, its highest point under the nozzle; the platform without a toolpath. Errors as
-    `cell.resolve`."""
+    """Return the machine at rest, with the part upright and its highest point under the nozzle.
+
+    Without a toolpath, the platform is under the nozzle. Raises the errors of `cell.resolve`.
+    """
     frame, family = (
         (np.eye(4), "revolution") if toolpath is None else (toolpath.frame, toolpath.family)
     )
@@ -317,7 +339,7 @@ def _standing(cell: Cell, joints: Array, point: Array, solids: Links) -> tuple[A
 
 
 def resting_point(toolpath: Toolpath | None, mount: Array) -> Array:
-    """Return the nozzle position (3,) at rest: the highest point of the toolpath, else the platform."""
+    """Return the nozzle position (3,) at rest: the highest point of the toolpath, or the platform."""
     if toolpath is None:
         return np.asarray(mount[:3, 3])
     points = np.concatenate([bead.points for _, _, bead in toolpath])
@@ -325,13 +347,15 @@ def resting_point(toolpath: Toolpath | None, mount: Array) -> Array:
 
 
 class CellNodes:
-    """Draws a cell, initially nothing. As a `ghost` its machine is translucent and clicks pass through."""
+    """Draws a cell, initially nothing. As a `ghost`, its machine is translucent and clicks pass
+    through.
+    """
 
     def __init__(self, ghost: bool = False) -> None:
         self.machine: MachineNodes | None = None
         self.external_links: ExternalLinkNodes | None = None
-        self.standing: Any = None  # the transformation of the nozzle
-        self.looks: tuple[Any, ...] = ()  # what the machine's nodes were made of
+        self.standing: Any = None  # the transform of the nozzle
+        self.looks: tuple[Any, ...] = ()  # inputs of the machine's nodes
         self.platform, self.nozzle, self.links = (
             coin.SoSeparator(),
             coin.SoSeparator(),
@@ -393,8 +417,9 @@ class CellNodes:
 
 
 def _appearance(value: CellParameters, rest_pose: Rest) -> tuple[Any, ...]:
-    """What the nodes of a machine are made of: its links as they are at zero, of machines with rotary axes the sizes that
-    they are drawn to fit, and the files a user gave the links."""
+    """Return the inputs of a machine's nodes: its links at zero, the sizes that machines with
+    rotary axes are fitted to, and the user's link files.
+    """
     chain = rest_pose.machine.chain
     return (
         rest_pose.machine.id,
@@ -424,7 +449,7 @@ def _seen_through() -> Any:
 
 
 def coloured(look: tuple[tuple[float, float, float], float], node: Any) -> Any:
-    """A node in a look: its colour and how transparent it is."""
+    """Wrap a node with a colour and a transparency."""
     material, group = coin.SoMaterial(), coin.SoSeparator()
     material.diffuseColor.setValue(*look[0])
     material.transparency = look[1]
@@ -434,7 +459,7 @@ def coloured(look: tuple[tuple[float, float, float], float], node: Any) -> Any:
 
 
 def platform_nodes(value: CellParameters, mount: Array) -> list[Any]:
-    """Return the nodes of the platform below the frame on it (4, 4); none if its diameter is 0."""
+    """Return the nodes of the platform below its frame (4, 4); none if the diameter is 0."""
     if value.platform_diameter <= 0.0:
         return []
     radius = 0.5 * value.platform_diameter
@@ -444,7 +469,9 @@ def platform_nodes(value: CellParameters, mount: Array) -> list[Any]:
 
 
 def nozzle_node(value: CellParameters) -> Any:
-    """The nozzle of a cell: its tip at the origin, Z into it; with a torch this."""
+    """Return the node of a cell's nozzle or torch, with the tip at the origin and Z into the
+    nozzle.
+    """
     torch = torch_seen(value)
     if torch is not None:
         return mesh_node((torch.body.vertices, torch.body.triangles))
@@ -457,7 +484,9 @@ def nozzle_node(value: CellParameters) -> Any:
 
 
 def torch_seen(value: CellParameters) -> Torch | None:
-    """Return the torch in the frame of its tip; None without one or if it is rejected, which its field reports."""
+    """Return the torch in the frame of its tip; None without a torch, or if its field reports it as
+    invalid.
+    """
     try:
         return torch_of(value)
     except InputError:
@@ -465,7 +494,9 @@ def torch_seen(value: CellParameters) -> Torch | None:
 
 
 def holder_node(value: CellParameters) -> Any:
-    """What holds the nozzle, seen from its tip: from its end to the flange of a robot that carries it, else a short body."""
+    """Return the nozzle holder in the frame of the tip: from the nozzle's end to the flange of a
+    robot that carries the nozzle, otherwise a short body.
+    """
     arrangement, length = arrangement_of(value.setup), value.nozzle.length
     end, flange = np.array([0.0, 0.0, length]), np.array([0.0, 0.0, _BODY * length])
     if not arrangement.carries_part:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids in the 3D view: their base cylinders, cones or plane, the guide and the first layer's contours."""
+"""Draw solids: base cylinders, cones or plane, the guide and the first layer's contours."""
 
 from __future__ import annotations
 
@@ -17,15 +17,17 @@ from .wall import WallNodes, unpickable
 
 OUTLINE, TINT = (0.0, 0.45, 0.45), (0.1, 0.62, 0.6)
 SIDES = 96
-MARGIN_RATIO = 0.15  # of the way along the axis from contour to contour, by which a base is drawn longer on either side
-OUTSIDE = (
-    0.003  # of its radius; the base is drawn this far out to be visible in front of the hub face
-)
-APEX_RATIO = 0.98  # of the way to the apex
+# extension of a base at either end, as a fraction of the axial distance between contours
+MARGIN_RATIO = 0.15
+# radial offset as a fraction of the radius, so that the base is visible in front of the hub face
+OUTSIDE = 0.003
+APEX_RATIO = 0.98  # fraction of the distance to the apex
 
 
 class HubNodes(WallNodes):
-    """Draws bases and first layers. Clicks go through the bases, and, where nothing is `pickable`, through all."""
+    """Draws bases and first layers. Clicks pass through the bases, and through everything unless
+    `pickable`.
+    """
 
     tint, transparency = TINT, 0.65
 
@@ -40,7 +42,7 @@ class HubNodes(WallNodes):
         self.set(drawing(solids))
 
     def set(self, drawn: Drawing) -> None:
-        """Draw what `drawing` has made."""
+        """Draw the result of `drawing`."""
         self.set_first(
             [contour for group in drawn.contours for solid in group for contour in solid]
         )
@@ -51,8 +53,12 @@ class HubNodes(WallNodes):
 
 
 class Drawing(NamedTuple):
-    """The contours of each solid of each group, (k, 3), the first point repeated; points (n, 3) and triangles (m, 3) of the
-    bases, and lines (k, 3) along their ends and up them."""
+    """The drawing of solids.
+
+    contours: of each solid of each group, (k, 3), with the first point repeated. points, corners:
+    points (n, 3) and triangles (m, 3) of the bases. lines: (k, 3), along the ends of the bases and
+    up them.
+    """
 
     contours: list[list[list[Array]]]
     points: Array
@@ -82,7 +88,10 @@ def drawing(solids: SolidsOnHub) -> Drawing:
 
 
 def first_contours(group: Group, chord_error: float) -> list[list[Array]]:
-    """Where each solid of a group leaves the base: closed curves (k, 3) in part coordinates, the first point repeated."""
+    """Return the curves (k, 3) in which each solid of a group leaves the base, in part coordinates.
+
+    The curves are closed; the first point is repeated.
+    """
     return [
         [np.concatenate([loop, loop[:1]]) for loop in loops]
         for loops in footprints(group, chord_error)
@@ -90,7 +99,7 @@ def first_contours(group: Group, chord_error: float) -> list[list[Array]]:
 
 
 def _base(group: Group, contours: list[Array]) -> tuple[Array, Array, list[Array]]:
-    """Points and triangles of the base about contours, and lines along its ends and up it."""
+    """Return points and triangles of the base around contours, and lines along its ends and up it."""
     base = group.base
     if isinstance(base.surface, Guide):
         points, corners, lines = _plane(
@@ -119,7 +128,7 @@ def _base(group: Group, contours: list[Array]) -> tuple[Array, Array, list[Array
 
 
 def _plane(base: Base, around: Array) -> tuple[Array, Array, list[Array]]:
-    """Points, triangles and border of a rectangle of the base about points (n, 3)."""
+    """Return points, triangles and border of a rectangle of the base around points (n, 3)."""
     flat = base.inside(around)[:, :2]
     low, high = flat.min(axis=0), flat.max(axis=0)
     margin = MARGIN_RATIO * float((high - low).max())

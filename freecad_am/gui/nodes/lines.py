@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Coin nodes filled from arrays: polylines, points, triangles and surfaces between two circles."""
+"""Fill Coin nodes from arrays: polylines, points, triangles and surfaces between two circles."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ DASHED = 0xF0F0
 
 
 class Lines:
-    """Polylines in one node, coloured by vertex or all alike, not shaded."""
+    """Unshaded polylines in one node, with a colour per vertex or a common colour."""
 
     def __init__(
         self, width: float = 2.0, colour: Sequence[float] = (0.2, 0.2, 0.2), pattern: int = 0xFFFF
@@ -62,13 +62,13 @@ class Lines:
         fill(self.lines.numVertices, np.asarray(counts, dtype=np.int32))
 
     def paint(self, colours: Any) -> None:
-        """Give each point its own colour: colours (n, 3) from 0 to 1."""
+        """Colour each point: colours (n, 3) in 0..1."""
         fill(self.colour.diffuseColor, np.asarray(colours, dtype=np.float32))
         self.binding.value = coin.SoMaterialBinding.PER_VERTEX
 
 
 class Points:
-    """Points of one colour, not shaded."""
+    """Unshaded points of one colour."""
 
     def __init__(self, size: float, colour: Sequence[float]) -> None:
         style, material = coin.SoDrawStyle(), coin.SoMaterial()
@@ -82,7 +82,7 @@ class Points:
         self.set([])  # Coin starts with a point at the origin
 
     def set(self, points: Any) -> None:
-        """points (n, 3)."""
+        """Set the points (n, 3)."""
         values = np.asarray(points, dtype=np.float32).reshape(-1, 3)
         fill(self.coordinates.point, values)
         self.set_node.numPoints = len(values)
@@ -112,7 +112,7 @@ class Faces:
         self.node.whichChild = coin.SO_SWITCH_ALL if visible else coin.SO_SWITCH_NONE
 
     def set(self, points: Any, corners: Any) -> None:
-        """points (n, 3), corners (m, 3) their indices."""
+        """Set points (n, 3) and triangles (m, 3) of point indices."""
         corners = np.asarray(corners, dtype=np.int32).reshape(-1, 3)
         fill(self.coordinates.point, np.asarray(points, dtype=np.float32).reshape(-1, 3))
         fill(
@@ -130,9 +130,11 @@ _KINDS = {
 
 
 def fill(field: Any, values: Any) -> None:
-    """Put an array into a multiple-value field of vectors, colours or whole numbers, which keeps no more than it.
+    """Copy an array into a multiple-value field of vectors, colours or integers, and resize the
+    field to it.
 
-    Straight into the field's memory: pivy's own way takes an array for a Python list, number by number.
+    The copy writes into the field's memory, because pivy treats an array as a Python list, number
+    by number.
     """
     array = np.ascontiguousarray(values, dtype=_KINDS[type(field)])
     field.setNum(len(array))
@@ -143,14 +145,16 @@ def fill(field: Any, values: Any) -> None:
 
 
 def unshaded() -> Any:
-    """The node that makes colours show as they are."""
+    """Return a node that shows colours without shading."""
     model = coin.SoLightModel()
     model.model = coin.SoLightModel.BASE_COLOR
     return model
 
 
 def revolve(outline: Any, sides: int = 48) -> Any:
-    """A surface turned about Z from its outline (n, 2) of (radius, height), outside to the right of its course."""
+    """Revolve an outline (n, 2) of (radius, height) about Z; the outside is to the right of the
+    outline.
+    """
     outline = np.asarray(outline, dtype=np.float64)
     node, hints = coin.SoSeparator(), coin.SoShapeHints()
     hints.vertexOrdering = coin.SoShapeHints.CLOCKWISE
@@ -165,12 +169,12 @@ def revolve(outline: Any, sides: int = 48) -> Any:
 
 
 def _strip(ring: Any, start: Any, end: Any, normal: Any) -> Any:
-    """The cone between two circles given by (radius, height), with its exact normals."""
+    """Return the cone between two circles given by (radius, height), with its exact normals."""
     points = np.stack([np.column_stack([r * ring, np.full(len(ring), z)]) for r, z in (start, end)])
     normals = np.column_stack([normal[0] * ring, np.full(len(ring), normal[1])])
     node, coordinates, mesh = coin.SoSeparator(), coin.SoCoordinate3(), coin.SoQuadMesh()
     directions, binding = coin.SoNormal(), coin.SoNormalBinding()
-    binding.set("value PER_VERTEX")  # as a text, which Coin reads sooner than pivy finds a field
+    binding.set("value PER_VERTEX")  # as text, which Coin parses faster than pivy finds a field
     fill(coordinates.point, points.reshape(-1, 3).astype(np.float32))
     fill(directions.vector, np.concatenate([normals, normals]).astype(np.float32))
     mesh.set(f"verticesPerRow {len(ring)} verticesPerColumn 2")
@@ -180,20 +184,20 @@ def _strip(ring: Any, start: Any, end: Any, normal: Any) -> Any:
 
 
 def transform_node(pose: Any) -> Any:
-    """A transformation node for a (4, 4) pose."""
+    """Return a transform node for a pose (4, 4)."""
     node = coin.SoMatrixTransform()
     node.matrix = coin.SbMatrix(*np.asarray(pose, dtype=np.float64).T.ravel().tolist())
     return node
 
 
 COLOUR = (0.96, 0.47, 0.0)
-MOST_LAYERS = 150  # that are drawn, evenly chosen
-SIDES = 72  # of a whole turn
+MOST_LAYERS = 150  # maximum number of drawn layers, evenly spaced
+SIDES = 72  # segments of a full turn
 _NOTHING = np.zeros((0, 3))
 
 
 class MeridianNodes:
-    """Draws a wall, nothing at first."""
+    """Draws a wall, initially nothing."""
 
     def __init__(self) -> None:
         self.meridian, self.axis, self.layers = (
@@ -216,7 +220,7 @@ class MeridianNodes:
             lines.set(_NOTHING, [])
 
     def set_wall(self, wall: RevolvedWall) -> None:
-        """Meridian and axis; the axis protrudes at both ends."""
+        """Draw meridian and axis; the axis protrudes at both ends."""
         radius, height = wall.meridian.points.T
         points = wall.points(radius, height, np.full(len(radius), wall.start))
         low, high = float(height.min()), float(height.max())
@@ -226,7 +230,7 @@ class MeridianNodes:
         self.axis.set(wall.points(np.zeros(2), ends, np.zeros(2)), [2])
 
     def set_layers(self, wall: RevolvedWall, slices: Slices) -> None:
-        """The beads of layers, or of some of many."""
+        """Draw the beads of the layers, or of an even selection of many layers."""
         count = len(slices.layer)
         indices = np.unique(np.linspace(0, count - 1, min(count, MOST_LAYERS)).round().astype(int))
         angles = np.linspace(

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A wall on a substrate in the 3D view: its faces tinted, and the curves in which its first layer leaves the substrate."""
+"""Draw a wall on a substrate: its tinted faces, and the curves in which its first layer leaves the
+substrate.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +18,7 @@ from .lines import DASHED, Faces, Lines
 
 COLOUR = (0.96, 0.47, 0.0)
 TINT = (1.0, 0.62, 0.2)
-_COARSE = 0.004  # chord error of the tinted faces as a share of the shape's size: FreeCAD's own, on screen, is less
+_COARSE = 0.004  # chord error of the tinted faces as a fraction of the shape's size; FreeCAD's display is finer
 _NOTHING = np.zeros((0, 3))
 NONE = (_NOTHING, np.zeros((0, 3), dtype=np.int32))  # points and triangles
 
@@ -56,13 +58,13 @@ class WallNodes:
         self.switch.whichChild = coin.SO_SWITCH_ALL if visible else coin.SO_SWITCH_NONE
 
     def set_first(self, curves: Sequence[Array]) -> None:
-        """The first layers, each (k, 3), closed ones with the first point repeated."""
+        """Draw the first layers, each (k, 3); closed curves repeat the first point."""
         points = np.concatenate([_NOTHING, *curves])
         for lines in (self.first, self.hidden):
             lines.set(points, [len(curve) for curve in curves])
 
     def set_faces(self, source: Any, names: Sequence[str]) -> None:
-        """Tint faces of an object, all where none are named; nothing where it has none such now."""
+        """Tint faces of an object, all faces without names; nothing if a name is unknown."""
         try:
             mesh = face_mesh(snapshot_of(source), names)
         except InputError:  # the shape is not read yet
@@ -78,7 +80,9 @@ def unpickable() -> Any:
 
 
 def first_curves(wall: Any) -> list[Array]:
-    """The curves in which a wall leaves its substrate, each (k, 3), closed ones with the first point repeated."""
+    """Return the curves (k, 3) in which a wall leaves its substrate; closed curves repeat the first
+    point.
+    """
     curves = wall.first
     if isinstance(curves, np.ndarray):
         return [np.concatenate([curves, curves[:1]])]
@@ -89,7 +93,11 @@ def first_curves(wall: Any) -> list[Array]:
 
 
 def face_mesh(snapshot: Taken, names: Sequence[str]) -> tuple[Array, Array]:
-    """Points (n, 3) and triangles (m, 3) of a mesh, or of faces of a shape, all where none are named. NO_FACES."""
+    """Return points (n, 3) and triangles (m, 3) of a mesh or of named faces, all faces without
+    names; NONE if a name is unknown.
+
+    Raises InputError NO_FACES.
+    """
     if snapshot.shape is not None:
         return triangles_of(snapshot.shape.copy(False, True), names)
     body = snapshot.body()
@@ -97,8 +105,11 @@ def face_mesh(snapshot: Taken, names: Sequence[str]) -> tuple[Array, Array]:
 
 
 def triangles_of(shape: Any, names: Sequence[str]) -> tuple[Array, Array]:
-    """Return points (n, 3) and triangles (m, 3) of faces of a shape, of all faces without names; NONE if a name is
-    unknown. Uses the shape's own triangles, as on screen: others would cross them."""
+    """Return points (n, 3) and triangles (m, 3) of named faces, all faces without names; NONE if a
+    name is unknown.
+
+    Uses the shape's own display triangles, because other triangles would intersect them.
+    """
     try:
         faces = [
             shape.getElement(name.rsplit(".", maxsplit=1)[-1]) for name in names

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a cell: platform, nozzle and machine are seen while it is open, and it follows the machine that is chosen."""
+"""The panel of a cell. It shows platform, nozzle and machine while open, and follows the selected
+machine.
+"""
 
 from __future__ import annotations
 
@@ -38,16 +40,16 @@ from ..widgets.shape_inputs import job_selection
 from ..worker import Background, Later, Worker
 from .preview import PreviewPanel
 
-# ---- Proposals of the cell panel: values that suit the chosen machine, then a cell in which the
-# toolpath's job is feasible. Entries are kept; the panel shows what it would propose
+# ---- Proposals of the cell panel: values that suit the selected machine, then a cell in which the
+# toolpath's job is feasible. Entries are kept; the panel notes its proposal next to them
 
 
 def whole_cell(machine: object, external: object) -> tuple[str, str] | None:
-    """Return machine and external axes for a URDF of a whole cell; None unless
-    `external` asks for one.
+    """Return machine and external axes for a URDF of a whole cell; None unless `external` asks for
+    one.
 
-    Raises InputError BAD_URDF if robot, track and positioner cannot be distinguished, BAD_VALUE if the file is not
-    a URDF.
+    Raises InputError BAD_URDF if robot, track and positioner cannot be distinguished, and BAD_VALUE
+    if the file is not a URDF.
     """
     if not isinstance(external, str) or external.strip() != WHOLE_CELL:
         return None
@@ -62,15 +64,17 @@ OF_ROBOTS = (SETUP, POINT, BRANCH, TOOL, TORCH, ARM, OBSTACLES, EXTERNAL)
 
 
 class ProposingPanel(PreviewPanel):
-    """Proposes field values of a cell. A subclass reports problems of a machine and gives the toolpath."""
+    """Proposes field values of a cell. A subclass reports problems of a machine and provides the
+    toolpath.
+    """
 
     later: Later
 
     def __init__(self, title: str, obj: Any, nodes: Any) -> None:
-        # proposals by machine and setup of the fields, and the last pair followed
+        # proposals by machine and set-up in the fields, and the last such pair
         self.of_machine: dict[tuple[str, str], CellParameters] = {}
         self.before: tuple[str, str] | None = None
-        self.put: dict[str, Any] = {}  # what the panel itself has entered
+        self.put: dict[str, Any] = {}  # values entered by the panel itself
         self.noted: dict[str, Any] = {}  # field values when a proposal was reported
         super().__init__(title, [], obj, nodes)
         self.enabled = {key: self.places[key][0].widget.isEnabled() for key in OF_ROBOTS}
@@ -79,7 +83,7 @@ class ProposingPanel(PreviewPanel):
         self.proposing, self.suiting = Background(self.form), Background(self.form)
 
     def follow_undo(self) -> None:
-        """Restored entries belong to the user and get no proposals."""
+        """Show restored entries without proposals, because they belong to the user."""
         super().follow_undo()
         self.proposing.cancel()
         self.suiting.cancel()
@@ -93,13 +97,13 @@ class ProposingPanel(PreviewPanel):
         raise NotImplementedError
 
     def _toolpath(self) -> Any:
-        """The toolpath that is at hand, None without one."""
+        """Return the current toolpath; None without one."""
         raise NotImplementedError
 
-    # ---- what suits a machine
+    # ---- proposals for a machine
 
     def _ask_proposal(self, name: str, machine: Machine) -> None:
-        """Compute a proposal for the machine in the background, unless it was not chosen here."""
+        """Compute a proposal for the machine in the background, unless the machine is unchanged."""
         setup = self._widget(SETUP).currentData()
         previous, self.before = self.before, (name, setup)
         if previous == self.before or (previous is None and self.obj is not None):
@@ -120,7 +124,7 @@ class ProposingPanel(PreviewPanel):
 
         def work() -> dict[tuple[str, str], CellParameters]:
             for pair in filter(None, (previous, current)):
-                with contextlib.suppress(InputError):  # the one before is gone
+                with contextlib.suppress(InputError):  # the previous machine is deleted
                     proposals[pair] = proposals.get(pair) or cell_of(
                         pair[0], folders, pair[1], tool
                     )
@@ -152,10 +156,10 @@ class ProposingPanel(PreviewPanel):
         proposal = self.of_machine.get(current)
         default = CellParameters()
         usual = (None if previous is None else self.of_machine.get(previous)) or default
-        if proposal is None:  # no cell can have it; the preview reports it
+        if proposal is None:  # no cell can have this machine; the preview reports it
             return
         no_axes = self.places[EXTERNAL][0].row.outer(default.external)
-        if EXTERNAL in self.put and self._may_put(EXTERNAL, no_axes):  # of the previous machine
+        if EXTERNAL in self.put and self._may_put(EXTERNAL, no_axes):  # of the old machine
             self.places[EXTERNAL][0].show(no_axes)
         for key, value, *was in (
             (POINT, proposal.deposition_point, usual.deposition_point, default.deposition_point),
@@ -181,7 +185,7 @@ class ProposingPanel(PreviewPanel):
         self._ask_for_job()
 
     def _may_put(self, key: str, *usual: Any) -> bool:
-        """Whether the field has only a value from the panel or a default."""
+        """Whether the field contains only a value from the panel or a default."""
         return self.enabled[key] and any(
             _alike(self._holds(key), value) for value in (self.put.get(key), *usual)
         )
@@ -197,11 +201,14 @@ class ProposingPanel(PreviewPanel):
         self.noted[key] = self._holds(key)
         self.show_note(key, text, wrong=False)
 
-    # ---- what suits the job at hand
+    # ---- proposals for the current job
 
     def _ask_for_job(self) -> None:
-        """Search a feasible cell for the toolpath's job in the background, starting from the entries. The preview
-        reports entries that are not a cell."""
+        """Search for a feasible cell for the toolpath's job in the background, starting from the
+        entries.
+
+        The preview reports invalid cells.
+        """
         toolpath = self._toolpath()
         if toolpath is None:
             return
@@ -223,7 +230,7 @@ class ProposingPanel(PreviewPanel):
             )
 
     def _suit(self, worker: Worker, entered: dict[str, Any], label: str) -> None:
-        """Enter the job's cell if all its fields are unedited, else note it at the fields."""
+        """Enter the job's cell if all its fields are unedited; otherwise note it at the fields."""
         try:
             entered_values, suited_values = worker.result()
         except AmError:  # the preview reports it
@@ -231,7 +238,7 @@ class ProposingPanel(PreviewPanel):
         except Exception as error:  # unexpected
             self._show_machine_problem(f"{type(error).__name__}: {error}")
             return
-        if self._all_held() != entered:  # something else was entered meanwhile
+        if self._all_held() != entered:  # an entry changed meanwhile
             self._ask_for_job()
             return
         default, changes = flat(CellParameters()), {}
@@ -275,7 +282,9 @@ class ProposingPanel(PreviewPanel):
                 self.show_note(key, "")
 
     def _carry_out(self) -> bool:
-        """Make or change the cell after following the last entry. Report values that the user has not seen."""
+        """Create or change the cell after following the last entry. Report values that the user has
+        not seen.
+        """
         previous = dict(self.put)
         self.later.at_once()
         for background in (self.proposing, self.suiting):
@@ -296,7 +305,7 @@ class ProposingPanel(PreviewPanel):
         return succeeded
 
     def _line(self, key: str) -> str:
-        """A line of the report view about what the panel itself has entered at a place."""
+        """Return a report view line about a value that the panel entered."""
         label, value = self.places[key][0].label, _value_text(self.put[key])
         text = tr("{}: {} is now {}. {}").format(
             self.form.windowTitle(), label, value, self.notes[key].text()
@@ -304,7 +313,7 @@ class ProposingPanel(PreviewPanel):
         return f"{text}\n"
 
     def close(self, *_: Any) -> None:
-        """Take away the preview; once or more often."""
+        """Remove the preview; may be called repeatedly."""
         if self.is_open:
             self.proposing.cancel()
             self.suiting.cancel()
@@ -324,7 +333,7 @@ def _value_text(value: Any) -> str:
     return value if isinstance(value, str) else " ".join(f"{number:g}" for number in value)
 
 
-# ---- Describe a machine at rest for the cell panel
+# ---- Description of a machine at rest for the cell panel
 
 
 def stands(rest_pose: Rest) -> str:
@@ -344,19 +353,22 @@ def stands(rest_pose: Rest) -> str:
     return text.format(rest_pose.machine.title, axis, abs(margin_deg))
 
 
-_OF_TOOLS = (TOOL, EXTERNAL)  # that a robot carries
+_OF_TOOLS = (TOOL, EXTERNAL)  # fields of tools that a robot carries
 
 
 class CellPanel(ProposingPanel):
-    """Follows machine and set-up: a machine with sliding and turning axes carries the part on its table, and has no
-    branches; a robot gets a deposition point, or a place of the platform, and a branch that suit, unless others were
-    entered."""
+    """Adapts the fields to machine and set-up.
+
+    A machine with prismatic and revolute axes carries the part on its table and has no branches.
+    For a robot, the panel proposes a suitable deposition point or platform pose and a branch,
+    unless the user has entered them.
+    """
 
     stage, draft = Cell, "Cell"
     lines = 4
 
     def __init__(self, obj: Any = None) -> None:
-        self.unknown = ""  # the message about its name
+        self.unknown = ""  # the message about an unknown machine name
         self.aside = Aside()
         super().__init__(tr("Cell") if obj is None else obj.Label, obj, CellNodes(ghost=True))
         self._add_machine_box()
@@ -380,10 +392,10 @@ class CellPanel(ProposingPanel):
             self.column.indexOf(self.messages) + 1, self.machine_box, 0, QtCore.Qt.AlignLeft
         )
 
-    # ---- what the machine asks for
+    # ---- fields for the machine
 
     def _follow(self) -> None:
-        """Fit the fields to the machine; leave them unchanged for an unknown one."""
+        """Adapt the fields to the machine; leave them unchanged for an unknown machine."""
         with contextlib.suppress(InputError):  # the preview reports it
             names = whole_cell(self._holds(MACHINE), self._holds(EXTERNAL))
             if names is not None:
@@ -403,8 +415,11 @@ class CellPanel(ProposingPanel):
         self._ask_proposal(name, machine)
 
     def _fit(self, machine: Machine) -> None:
-        """Hide fields without meaning for the machine or its setup: a part the robot does not carry is at the
-        deposition point or on a positioner's platform."""
+        """Hide fields without meaning for the machine or set-up.
+
+        A part that the robot does not carry is at the deposition point or on a positioner's
+        platform.
+        """
         if not machine.free:
             without: tuple[str, ...] = OF_ROBOTS
         elif arrangement_of(self._widget(SETUP).currentData()).carries_part:
@@ -414,7 +429,7 @@ class CellPanel(ProposingPanel):
         self.leave_out(without, also_entered=True)
 
     def _show_machine_problem(self, text: str) -> None:
-        """Show a problem of the machine until the panel follows another one."""
+        """Show a problem of the machine until the panel follows another machine."""
         self.unknown = text
         self.show_note(MACHINE, text)
 
@@ -455,7 +470,7 @@ class CellPanel(ProposingPanel):
         return compute
 
     def _toolpath(self) -> Any:
-        """The toolpath that is for the cell; for a new one the selected toolpath, or the only one there is."""
+        """Return the toolpath of the cell; for a new cell, the selected toolpath or the only one."""
         if self.obj is not None:
             return toolpath_of(self.obj)
         candidates = [

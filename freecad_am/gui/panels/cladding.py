@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of faces that are covered with layers of beads: they are picked, and their borders are seen while it is open."""
+"""The panel of faces that are covered with layers of beads; it previews the borders of the picked
+faces.
+"""
 
 from __future__ import annotations
 
@@ -57,7 +59,7 @@ class CladdingPanel(PickPanel):
         )
 
     def _propose(self, picks: list[picking.Pick]) -> str:
-        """Return the first selected object with its faces."""
+        """Take the first selected object with its faces."""
         if picks:
             self.faces.take(picks[0])
         return ""

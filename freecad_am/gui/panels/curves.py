@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of curves printed as beads; it previews the points while it is open."""
+"""The panel of curves printed as beads; it previews the points."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class CurvesPanel(PickPanel):
         }
 
     def _propose(self, picks: list[picking.Pick]) -> str:
-        """Return the first selected object with its edges."""
+        """Take the first selected object with its edges."""
         if picks:
             self.curves.take(picks[0])
         return ""
@@ -84,7 +84,7 @@ class CurvesPanel(PickPanel):
         return tr("{} cannot be used here.").format(pick.obj.Label)
 
     def _elements(self) -> list[str]:
-        """The names of edges and faces of the source."""
+        """Return the names of edges and faces of the source."""
         source_pick = self.curves.picks[0] if self.curves.picks else picking.Pick(None)
         faces = [
             name
@@ -142,7 +142,7 @@ class CurvesPanel(PickPanel):
 
 
 def _present(obj: Any) -> tuple[Any, ...]:
-    """Curves, faces of their normals, substrate and fixtures as an object has them."""
+    """Return an object's curves, faces for their normals, substrate and fixtures."""
     source, names = obj.Source or (None, [])
     edges, faces = (
         [name for name in names if name.rsplit(".", maxsplit=1)[-1].startswith(kind)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of solids on a hub: solids and hub are picked, and base and first layer are seen while it is open."""
+"""The panel of solids on a hub; it previews base and first layer."""
 
 from __future__ import annotations
 
@@ -42,7 +42,8 @@ HUB = Link(
     required=False,
     type_name="App::PropertyLinkSub",
 )
-_SHAPING = ("ChordError", "BaseRadius", "BaseHeight", "BaseAxis")  # what base and solids depend on
+# properties that determine base and solids
+_SHAPING = ("ChordError", "BaseRadius", "BaseHeight", "BaseAxis")
 _OF_WALLS = ("build_direction_mode", "build_direction_max_tilt", "build_direction_plane")
 _NO_BASE = ("NO_HUB", "NO_BASE")
 
@@ -50,7 +51,7 @@ _NO_BASE = ("NO_HUB", "NO_BASE")
 class HubPanel(PickPanel):
     """Panel that creates a feature of solids on a hub from the selection, or changes one.
 
-    Where a face of the only solid is picked as hub, both are one.
+    If a face of the only solid is picked as hub, solid and hub are the same object.
     """
 
     stage, icon, function, draft = (
@@ -90,7 +91,9 @@ class HubPanel(PickPanel):
     # ---- picks
 
     def _propose(self, picks: list[picking.Pick]) -> str:
-        """The hub is the last pick, or the only pick with faces; a single pick is deposited."""
+        """Assign the picks: the hub is the only pick with faces, or else the last; a single pick is
+        deposited.
+        """
         faced = [
             pick for pick in picks if any(name.startswith(picking.FACE) for name in pick.names)
         ]
@@ -103,7 +106,7 @@ class HubPanel(PickPanel):
         return None if self.solids.picks else self.solids
 
     def _handle_pick(self, field: PickField) -> None:
-        """Remove the hub from the solids if there are others."""
+        """Remove the hub from the solids if there are other solids."""
         hub = self.hub.picks[0].obj if self.hub.picks else None
         solid_picks = [pick for pick in self.solids.picks if pick.obj != hub]
         if solid_picks and len(solid_picks) < len(self.solids.picks):
@@ -118,7 +121,7 @@ class HubPanel(PickPanel):
         return text.format(pick.obj.Label)
 
     def _roles(self) -> tuple[list[Any], tuple[str, ...], Any, tuple[str, ...]]:
-        """Return the objects to deposit, base faces of the first one, the hub and its faces."""
+        """Return the objects to deposit, base faces of the first object, the hub and its faces."""
         solids = [pick.obj for pick in self.solids.picks]
         hub = self.hub.picks[0] if self.hub.picks else picking.Pick(None)
         if solids == [hub.obj]:
@@ -151,11 +154,13 @@ class HubPanel(PickPanel):
     # ---- preview
 
     def _values(self) -> dict[str, Any]:
-        """Return the entries. The preview ignores a valid chord error."""
+        """Return the entries, with a valid fine chord error replaced by the preview's coarse chord
+        error.
+        """
         return coarsened(super()._values())
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Drawing]]:
-        """Recompute only if the solids or the hub changed."""
+        """Return work that recomputes the solids only if the solids or the hub changed."""
         draft.check()
         key = (self._inputs(), [str(getattr(draft.obj, name)) for name in _SHAPING])
         cached, work, strategy = self.cached, draft.prepare(), self._strategy()
@@ -205,7 +210,7 @@ class HubPanel(PickPanel):
 
 
 def _present(obj: Any) -> tuple[list[Any], Any, list[Any]]:
-    """Solids, hub and fixtures of a feature."""
+    """Return solids, hub and fixtures of a feature."""
     source, faces = obj.Source or (None, [])
     faces = [name for name in faces if name]
     hub = (

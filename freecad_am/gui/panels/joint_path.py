@@ -36,8 +36,7 @@ from ..views.preview import Aside, Draft
 from ..widgets import shape_inputs
 from .preview import PreviewPanel, stale_lines
 
-# ---- Planned beads in the 3D view, coloured by the distance to the machine's limits, with a
-# legend
+# ---- Planned beads in the 3D view, coloured by the margin to the machine's limits, with a legend
 
 _NOTHING = np.zeros((0, 3))
 
@@ -60,8 +59,11 @@ class JointPathNodes:
         self.legend.hide()
 
     def set(self, paths: Sequence[BeadPath], values: Array, kind: str, unreachable: Array) -> None:
-        """The beads of paths in colours of the values (n,) of their points, of one of the kinds that `by_machine` knows;
-        dots where they are lost (n,)."""
+        """Draw beads coloured by the values (n,) of their points, of a kind that `by_machine`
+        knows.
+
+        unreachable: (n,) points that are marked with dots.
+        """
         points = np.concatenate([path.bead.points for path in paths])
         colours, scale = by_machine(values, kind)
         self.lines.set(points, [len(path.bead) for path in paths])
@@ -70,8 +72,8 @@ class JointPathNodes:
         self.legend.show(((), scale), 0)
 
 
-MAX_POINTS = 1000  # points that are planned for a preview, about: a second or two
-MOST_SHOWN = 3  # findings
+MAX_POINTS = 1000  # approximate number of points planned for a preview; takes a second or two
+MOST_SHOWN = 3  # maximum number of issues shown
 METHOD = "joints_method"
 _ENDS = {"joints_rotation_range_low", "joints_rotation_range_high"}
 _OF_ROTARY_AXES = ("lock", "lock_at", "max_residual")
@@ -83,19 +85,22 @@ _OF_METHODS = {
 
 @dataclass(frozen=True)
 class Trial:
-    """A plan of some points of a toolpath. toolpath: its object, which may be gone by now. stale: labels of the inputs that
-    were out of date when it was begun."""
+    """A plan of some points of a toolpath.
+
+    toolpath: its object, which may be deleted meanwhile. stale: labels of the inputs that were
+    stale at the start.
+    """
 
     toolpath: Any
     stale: tuple[str, ...]
     sample: Sampled
     planned: JointsOfBeads
     judgement: Judgement
-    size: list[Issue]  # of the program to come
+    size: list[Issue]  # issues about the size of the later program
 
 
 class JointPathPanel(PreviewPanel):
-    """Makes a joint path, or changes one. Its preview knows no rapid moves."""
+    """Creates or changes a joint path. The preview does not include rapids."""
 
     stage, draft = JointPath, "Joint path"
     lines = 7
@@ -185,8 +190,11 @@ def _place(name: str) -> str:
 
 
 def _plan_sample(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement, list[Issue]]:
-    """The plan of as many points as are soon planned, with external axes where optimising them, which takes long, begins.
-    Raises what planning raises."""
+    """Plan as many points as can be planned quickly.
+
+    External axes stay at the initial values of their optimisation, which takes long. Raises the
+    errors of planning.
+    """
     sample = sample_toolpath(job.toolpath(), MAX_POINTS)
     toolpath = sample.toolpath
     cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
@@ -202,7 +210,7 @@ def _plan_sample(job: Job) -> tuple[Sampled, JointsOfBeads, Judgement, list[Issu
 
 
 def _feasibility_lines(trial: Trial) -> list[str]:
-    """Whether it can be carried out, as far as that is known, and where not."""
+    """Return whether the path is feasible, as far as known, and the locations of issues."""
     errors = [issue for issue in trial.planned.issues if issue.level == ERROR]
     if not errors:
         return [
@@ -220,8 +228,10 @@ def _feasibility_lines(trial: Trial) -> list[str]:
 
 
 def _issue_text(issue: Issue, is_complete: bool) -> str:
-    """Return an issue with its location: for a sample only the layer, because its beads and points have other
-    numbers."""
+    """Return an issue with its location.
+
+    For a sample this is only the layer, because sampled beads and points have other numbers.
+    """
     placed = issue if is_complete else replace(issue, bead=None, point=None)
     return (
         tr("{}: {}").format(translated(placed.where), translated(issue.message))
@@ -231,7 +241,9 @@ def _issue_text(issue: Issue, is_complete: bool) -> str:
 
 
 def _figures(judgement: Judgement) -> list[str]:
-    """Return the extremes as text. Machines with rotary axes have no condition, unreachable points no figures."""
+    """Return the extreme values as text. Machines with rotary axes have no condition, unreachable
+    points no values.
+    """
     figures = (
         (tr("Smallest joint margin: {:.1f} %, of {} in layer {}"), judgement.worst_margin, 100.0),
         (tr("Smallest condition: {0:.3f}, in layer {2}"), judgement.worst_condition, 1.0),

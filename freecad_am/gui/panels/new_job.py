@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a new job: selection, its interpretation, machine and name; all else has defaults."""
+"""The panel of a new job: selection, its interpretation, machine and name. Everything else has
+defaults.
+"""
 
 from __future__ import annotations
 
@@ -40,8 +42,11 @@ from .stage import CLOSED
 
 
 def left_out(job: JobProposal, width: float) -> Callable[[], tuple[Issue, ...]]:
-    """Return a function that finds the regions missed by beads of a width, mm; it touches no document.
-    Errors of the job are reported when it is made."""
+    """Return a function that finds the regions that beads of a width, mm, miss; it touches no
+    document.
+
+    Errors of the job are reported when the job is created.
+    """
     snapshots, ground = [snapshot_of(pick.obj) for pick in job.parts], job.ground
     is_same_object = ground is not None and ground.obj == job.parts[0].obj
     under = None if ground is None or is_same_object else snapshot_of(ground.obj)
@@ -57,8 +62,11 @@ def left_out(job: JobProposal, width: float) -> Callable[[], tuple[Issue, ...]]:
 
 
 def arguments(job: JobProposal, machine: str, is_chosen: bool) -> dict[str, str]:
-    """Return keywords and values as text for a proposed or chosen job, with a machine or a saved cell. If proposed
-    curved layers are infeasible, planes are used, as in jobs with `kind: auto`."""
+    """Return keywords and values as text for a proposed or chosen job, with a machine or a saved
+    cell.
+
+    If proposed curved layers are infeasible, planes are used, as in jobs with `kind: auto`.
+    """
     keywords = {"source": recorded.reference(job.parts[0].obj)}
     if job.kind != DEFAULT_KIND:
         keywords["kind"] = repr(job.kind)
@@ -81,24 +89,24 @@ def arguments(job: JobProposal, machine: str, is_chosen: bool) -> dict[str, str]
 
 
 def machine(document: Any) -> str:
-    """Return the machine of the last cell of a document, else the default machine."""
+    """Return the machine of the last cell of a document, or the default machine."""
     cells = api.stages_of(document, "cell")
     return str(cells[-1].Machine) if cells else preferences.machine()
 
 
 def setup(document: Any, name: str) -> str:
-    """The set-up of the last cell of a document where that has the machine, else ''."""
+    """Return the set-up of the last cell of a document if that cell has the machine, otherwise ''."""
     with contextlib.suppress(ReferenceError, RuntimeError, NameError):  # the document is closed
         cells = api.stages_of(document, "cell")
         return str(cells[-1].Setup) if cells and cells[-1].Machine == name else ""
     return ""
 
 
-WIDEST_LABEL = 70  # pixels; with a wider label the setup box exceeds the panel
+WIDEST_LABEL = 70  # pixels; with a wider label, the setup box exceeds the panel
 
 
 class JobPanel:
-    """Follows the selection as long as it is open; OK makes all stages in one step."""
+    """Follows the selection while open; OK creates all stages in one step."""
 
     is_open = True
 
@@ -108,9 +116,9 @@ class JobPanel:
         self.kinds = {key: text for window in windows for key, text in window.entries().items()}
         self.picks: list[Pick] = []
         self.found = JobProposal("", "")
-        self.asked = ""  # the family the user chose, '' for the one that is proposed
-        self.width = 0.0  # mm, of the bead that this was judged by
-        self.followed = ""  # the machine that a set-up was proposed for
+        self.asked = ""  # family that the user chose, '' for the proposed family
+        self.width = 0.0  # mm; bead width that the interpretation used
+        self.followed = ""  # machine of the last proposed set-up
         self._lay_out()
         self.background = Background(self.form)
         self.form.destroyed.connect(self.close)
@@ -190,7 +198,7 @@ class JobPanel:
         kind.setToolTip(tr("Method of cutting the part into layers; proposed from the selection"))
         kind.setSizeAdjustPolicy(
             QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon
-        )  # a narrow panel stays whole
+        )  # keeps a narrow panel complete
         for key, text in self.kinds.items():
             kind.addItem(text, key)
         kind.activated.connect(self._choose)
@@ -199,13 +207,13 @@ class JobPanel:
     # ---- the selection
 
     def addSelection(self, *_: Any) -> None:
-        """Something was selected, or is no more; called by FreeCAD, which must first be done with it."""
+        """Handle a changed selection after FreeCAD has finished it; called by FreeCAD."""
         QtCore.QTimer.singleShot(0, self._take)
 
     setSelection = removeSelection = clearSelection = addSelection
 
     def _take(self) -> None:
-        """Take the selection; an empty one changes nothing."""
+        """Take the selection; an empty selection changes nothing."""
         if not self.is_open:
             return
         try:
@@ -223,7 +231,7 @@ class JobPanel:
         self.say(wrong if not picks else "")
 
     def _choose(self, *_: Any) -> None:
-        """A family was chosen."""
+        """Apply the chosen family."""
         self.asked = self.kind.currentData()
         if self.picks:
             try:
@@ -232,9 +240,11 @@ class JobPanel:
                 self.say(tr(CLOSED))
 
     def _judge_anew(self, *_: Any) -> None:
-        """Beads of another width may suit another family, and leave out something else."""
+        """Reinterpret the selection for another bead width, which may change the family and the
+        missed regions.
+        """
         if self.is_open and self.picks and self.sizes.bead_width() != self.width:
-            with contextlib.suppress(ReferenceError):  # reported when the job is made
+            with contextlib.suppress(ReferenceError):  # reported when the job is created
                 self._understand()
 
     def _understand(self) -> None:
@@ -269,13 +279,13 @@ class JobPanel:
         self.found = job
         self._show()
         if job.parts and not job.missing:
-            with contextlib.suppress(AmError):  # reported when the job is made
+            with contextlib.suppress(AmError):  # reported when the job is created
                 self.background.start(
                     left_out(job, self.sizes.bead_width()), self._receive_left_out
                 )
 
     def _receive_left_out(self, worker: Worker) -> None:
-        # errors are reported when the job is made; RuntimeError if the panel is closed
+        # errors are reported when the job is created; RuntimeError if the panel is closed
         with contextlib.suppress(AmError, Cancelled, RuntimeError):
             self._show_left_out(worker.result())
 
@@ -349,11 +359,11 @@ class JobPanel:
     # ---- called by FreeCAD
 
     def accept(self) -> bool:
-        """Make all stages; True closes the panel, an error is shown in it."""
+        """Create all stages; return True to close the panel, or show an error in it."""
         self.say("")
         self._entered_anew()
         if self.notes[self.name.where].text():
-            self.fold.heading.setChecked(True)  # the note is in it
+            self.fold.heading.setChecked(True)  # the section contains the note
             return False
         try:
             self._wait()
@@ -395,7 +405,7 @@ class JobPanel:
         return {**keywords, **self.stands.arguments(), **self.name.choice.arguments(), **sizes}
 
     def reject(self) -> Any:
-        """Nothing was done."""
+        """Close the panel; the document is unchanged."""
         self.close()
         return True
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Panels that show what OK would make while they are open."""
+"""Panels that preview the result of OK while they are open."""
 
 from __future__ import annotations
 
@@ -28,25 +28,27 @@ from ..widgets.shape_inputs import StageChoice
 from ..worker import Background, Worker
 from .stage import CLOSED, StagePanel
 
-LOOK_EVERY = 200  # ms; an entry that stays this long is previewed
-SHOWN_AFTER_MS = 400  # ms; when a preview takes longer, that is said
+LOOK_EVERY = 200  # ms; an entry that is stable for this long is previewed
+SHOWN_AFTER_MS = 400  # ms; when a longer preview shows a message
 
 
 class PreviewPanel(StagePanel):
-    """Panel that creates or changes a stage and previews it in the 3D view if it has nodes. The document changes
-    only on OK."""
+    """Panel that creates or changes a stage, with a preview in the 3D view if it has nodes.
+
+    The document changes only on OK.
+    """
 
     stage: type[Stage]
     is_open = True
-    refused: Any = None  # the entries that OK or Apply did not take
+    refused: Any = None  # the entries that OK or Apply rejected
     lines = 5
 
     def __init__(self, title: str, choices: Sequence[Input], obj: Any, nodes: Any) -> None:
         self.nodes = nodes
         super().__init__(self.stage, title, choices, obj)
-        self.seen: Any = None  # the entries at the last look
+        self.seen: Any = None  # the entries at the last check
         self.shown: Any = None  # the previewed entries
-        self.blamed: set[str] = set()  # the places that the last preview was refused for
+        self.blamed: set[str] = set()  # fields with an error from the last preview
         self.state = self.messages.add("preview", PLAIN)
         self.preview = None if nodes is None else Preview(self.document, nodes.switch)
         self._show_own(False)
@@ -57,19 +59,22 @@ class PreviewPanel(StagePanel):
         self.background = Background(self.form)
         self.form.destroyed.connect(self.close)
 
-    # ---- what a panel defines
+    # ---- to be defined by a panel
 
     def _lacks(self) -> str:
         """Return which input is missing, '' for none."""
         return next((choice.missing for choice in self.choices if choice.missing), "")
 
     def _links(self) -> dict[str, Any]:
-        """The inputs as the links of the stage hold them."""
+        """Return the inputs in the form of the stage's links."""
         return {choice.link.name: choice.value() for choice in self.choices}
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, Any]]:
-        """Return a function that computes the outcome and its drawing without touching the document. Both raise
-        AmError."""
+        """Return a function that computes the outcome and its drawing without touching the
+        document.
+
+        Both raise AmError.
+        """
         raise NotImplementedError
 
     def _draw(self, outcome: Outcome, drawing: Any) -> str:
@@ -101,9 +106,9 @@ class PreviewPanel(StagePanel):
             self._report_closed()
 
     def _report_closed(self) -> None:
-        """The document or the object is no more: say so, before anything else is clicked or typed."""
+        """Report a deleted document or object before the user clicks or types anything else."""
         self.close()
-        with contextlib.suppress(RuntimeError):  # so is the panel
+        with contextlib.suppress(RuntimeError):  # the panel may be deleted, too
             self.say(tr(CLOSED))
 
     def _entered(self) -> Any:
@@ -117,7 +122,7 @@ class PreviewPanel(StagePanel):
         return self.document.Name, self._inputs(), results, texts
 
     def _stages(self) -> list[Any]:
-        """The stages that are inputs."""
+        """Return the stages that are inputs."""
         stages = [choice.value() for choice in self.choices if isinstance(choice, StageChoice)]
         return [stage for stage in stages if stage is not None]
 
@@ -130,7 +135,7 @@ class PreviewPanel(StagePanel):
         self.background.cancel()
         refused = set(self.marked) if self.shown == self.refused else set()
         for key in (self.blamed | set(self.marked)) - refused:
-            # keep the remark on the entry; it may belong to the previous entry until the next one is judged
+            # keep the remark on the entry; it may belong to the previous entry until the next check
             if self.remarks.get(key) != self.notes[key].text():
                 self.show_note(key, "")
         self.blamed.clear()
@@ -198,14 +203,14 @@ class PreviewPanel(StagePanel):
     # ---- called by FreeCAD
 
     def accept(self) -> bool:
-        """Make or change the feature; True closes the panel."""
+        """Create or change the feature; return True to close the panel."""
         succeeded = super().accept()
         if succeeded:
             self.close()
         return succeeded
 
     def apply(self) -> bool:
-        """Make or change the feature; the preview keeps replacing its drawing."""
+        """Create or change the feature; the preview continues to replace its drawing."""
         succeeded = super().apply()
         if succeeded:
             self._show_own(False)
@@ -214,7 +219,7 @@ class PreviewPanel(StagePanel):
     def _carry_out(self) -> bool:
         self.background.cancel()
         succeeded = super()._carry_out()
-        self.seen = self.shown = None  # the preview restarts; the created object differs
+        self.seen = self.shown = None  # the preview restarts, because the created object differs
         if not succeeded:
             with contextlib.suppress(ReferenceError):
                 self.refused = self._entered()
@@ -226,18 +231,18 @@ class PreviewPanel(StagePanel):
         return super().reject()
 
     def close(self, *_: Any) -> None:
-        """Take away the preview; once or more often."""
+        """Remove the preview; may be called repeatedly."""
         if not self.is_open:
             return
         self.is_open = False
         self.background.cancel()
         if self.preview is not None:
             self.preview.remove()
-        with contextlib.suppress(RuntimeError):  # the panel is gone, and with it the timer
+        with contextlib.suppress(RuntimeError):  # the panel and its timer are deleted
             self.timer.stop()
         with contextlib.suppress(
             RuntimeError, ReferenceError, AttributeError
-        ):  # the object is gone
+        ):  # the object is deleted
             self._show_own(True)
 
 
@@ -250,7 +255,9 @@ def stale_lines(labels: Sequence[str]) -> list[str]:
 
 
 def coarsened(values: dict[str, Any]) -> dict[str, Any]:
-    """Return the entries. The preview ignores a valid chord error."""
+    """Return the entries, with a valid fine chord error replaced by the preview's coarse chord
+    error.
+    """
     error = values["ChordError"]
     return (
         {**values, "ChordError": COARSE}
@@ -262,40 +269,40 @@ def coarsened(values: dict[str, Any]) -> dict[str, Any]:
 class PickPanel(PreviewPanel):
     """Panel that creates a feature from the selection, or changes one."""
 
-    armed: PickField | None = None  # the one that waits for clicks
+    armed: PickField | None = None  # the field that waits for clicks
 
     def __init__(self, title: str, picks: list[PickField], obj: Any, nodes: WallNodes) -> None:
         self.picks = picks
         unclear = self._propose(picking.selected(App.ActiveDocument)) if obj is None else ""
         super().__init__(title, picks, obj, nodes)
-        Gui.Selection.clearSelection()  # or its colour would hide the preview
+        Gui.Selection.clearSelection()  # the selection colour would hide the preview
         Gui.Selection.addObserver(self)
         self._arm_missing()
         self.say(unclear)
 
-    # ---- what a panel defines
+    # ---- to be defined by a panel
 
     def _propose(self, picks: list[picking.Pick]) -> str:
         """Fill in the selection and return what is unclear."""
         raise NotImplementedError
 
     def _lacking(self) -> PickField | None:
-        """The first input that is missing."""
+        """Return the first missing input."""
         raise NotImplementedError
 
     def _following(self, field: PickField) -> PickField | None:
-        """The input that a click can only mean which the one that waits for it does not take."""
+        """Return the only input that can take a click which the waiting input rejects."""
         return None
 
     def _handle_pick(self, field: PickField) -> None:
-        """Something was picked for an input."""
+        """Handle a pick for an input."""
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
         """Return why an input rejects a click."""
         raise NotImplementedError
 
     def _link_places(self) -> dict[str, str]:
-        """The label of the input that each link is entered by."""
+        """Return the label of the input for each link."""
         return {field.link.name: field.label for field in self.picks}
 
     def _lacks(self) -> str:
@@ -312,8 +319,10 @@ class PickPanel(PreviewPanel):
     # ---- picking
 
     def _worth_telling(self, inputs: dict[str, str]) -> dict[str, str]:
-        """Return the part and other picks of a new feature, or all inputs of an existing one, as some may be
-        cleared."""
+        """Return the part and other picks of a new feature, or all inputs of an existing feature.
+
+        Inputs of an existing feature may be cleared.
+        """
         if self.obj is not None:
             return inputs
         return {
@@ -326,7 +335,7 @@ class PickPanel(PreviewPanel):
         return next(field for field in self.picks if field.link.name == name)
 
     def _arm(self, field: PickField, on: bool) -> None:
-        """The pick button of a field was pressed or released."""
+        """Handle the pick button of a field."""
         for pick_field in self.picks:
             if on and pick_field is not field:
                 pick_field.pick.setChecked(False)
@@ -336,13 +345,13 @@ class PickPanel(PreviewPanel):
             self._take()  # the current selection
 
     def _arm_missing(self) -> None:
-        """Wait for the first input that is missing."""
+        """Wait for the first missing input."""
         field = self._lacking()
         if field is not None:
             field.pick.setChecked(True)
 
     def addSelection(self, *_: Any) -> None:
-        """Something was clicked; called by FreeCAD, which must first be done with it."""
+        """Handle a click after FreeCAD has finished it; called by FreeCAD."""
         if self.armed is not None:
             QtCore.QTimer.singleShot(0, self._take)
 
@@ -390,7 +399,7 @@ class PickPanel(PreviewPanel):
                 )
         return "", translated_error(error)
 
-    # ---- the end
+    # ---- closing
 
     def close(self, *_: Any) -> None:
         """Remove the preview and stop observing clicks; may be called repeatedly."""

@@ -30,15 +30,14 @@ from ..widgets import shape_inputs, suggestions
 from ..widgets.shape_inputs import job_selection
 from .preview import PreviewPanel, stale_lines
 
-# ---- The preflight in a panel: every promise with its mark, its worst value and its place, to
-# which a click goes
+# ---- The preflight in a panel: every promise with its mark, worst value and location; a click goes there
 
-ROW_HEIGHT = 16  # lines that are seen at once, about
+ROW_HEIGHT = 16  # approximate number of visible lines
 PLACE_ROLE = QtCore.Qt.UserRole
 
 
 class PreflightList:
-    """A list of promises. go: called with the place of the one that is clicked."""
+    """A list of promises. go: called with the location of a clicked promise."""
 
     def __init__(self, go: Callable[[Place], None]) -> None:
         self.widget = QtGui.QListWidget()
@@ -62,12 +61,12 @@ class PreflightList:
             self.widget.addItem(_row(promise))
 
     def clear(self) -> None:
-        """Show none."""
+        """Clear the list."""
         self.widget.clear()
 
 
 def summary(promises: Sequence[Promise]) -> str:
-    """How many promises are kept, broken and not checked."""
+    """Return the numbers of kept, broken and unchecked promises as text."""
     passed, broken = (sum(promise.ok is ok for promise in promises) for ok in (True, False))
     return tr("Preflight: {} passed, {} failed, {} not checked").format(
         passed, broken, len(promises) - passed - broken
@@ -75,8 +74,9 @@ def summary(promises: Sequence[Promise]) -> str:
 
 
 def _row(promise: Promise) -> Any:
-    """Return an item of two lines: the promise; its figure and position. The tooltip explains the
-    check."""
+    """Return an item of two lines: the promise; its value and location. The tooltip explains the
+    check.
+    """
     mark, colour = {True: ("✓", GOOD), False: ("✗", INVALID), None: ("?", FAINT)}[promise.ok]
     further = [translated(promise.figure), "" if promise.place is None else _where(promise.place)]
     item = QtGui.QListWidgetItem(
@@ -97,7 +97,7 @@ def _row(promise: Promise) -> Any:
 
 
 def _where(position: Place) -> str:
-    """Format the position as in issues."""
+    """Format a location as in issues."""
     return translated(Issue(NOTE, "", "", *position).where)
 
 
@@ -107,13 +107,13 @@ def _clicked(item: Any, go: Callable[[Place], None]) -> None:
         go(Place(*position))
 
 
-SHOWN_LINES = 40  # lines that are shown: controllers want a head of twenty
-HIGH = 14  # lines that are seen at once, about
+SHOWN_LINES = 40  # number of lines shown; some program headers have twenty lines
+HIGH = 14  # approximate number of visible lines
 FONT_SCALE, MIN_FONT_PT = (
     0.85,
     6.0,
-)  # than the text of the panel, which is narrow, and points at least
-NC = "program_nc_"  # before the names of parameters of five-axis machines
+)  # font size relative to the panel's text, and minimum size in points
+NC = "program_nc_"  # prefix of the parameters of five-axis machines
 POST, MOTION, START, START_LAYER = (
     "program_post",
     "program_motion",
@@ -124,8 +124,11 @@ POST, MOTION, START, START_LAYER = (
 
 @dataclass(frozen=True)
 class Beginning:
-    """The start of a program. name: main file; text: first lines. lines, files: totals. stale: labels of stale
-    inputs. promises: from its preflight."""
+    """The start of a program.
+
+    name: main file. text: first lines. lines, files: totals. stale: labels of stale inputs.
+    promises: from its preflight.
+    """
 
     name: str
     text: str
@@ -138,8 +141,10 @@ class Beginning:
 
 
 class ProgramPanel(PreviewPanel):
-    """Makes a program, or changes one. Its preview is written as the program will be; it is read back with OK, and until
-    then its preflight says so."""
+    """Creates or changes a program. The preview is the text of the later program.
+
+    OK reads the program back; until then the preflight marks this check as not done.
+    """
 
     stage, draft = Program, "Program"
 
@@ -164,7 +169,7 @@ class ProgramPanel(PreviewPanel):
         self._fit_post()
 
     def _fit_post(self, *_: Any) -> None:
-        """Leave out what the post that is chosen does not read, unless something is entered there."""
+        """Hide the parameters that the chosen post does not read, unless they have an entry."""
         post = str(self.places[POST][0].value)
         self.leave_out(
             [
@@ -192,7 +197,7 @@ class ProgramPanel(PreviewPanel):
         self.column.insertWidget(self.column.indexOf(self.text) + 1, self.preflight.widget)
 
     def _go(self, location: Place) -> None:
-        """A promise was clicked: the path is shown up to where it is worst."""
+        """Show the path up to the worst point of a clicked promise."""
         path = self._links()["JointPath"]
         if path is not None:
             dock.go_to(path, *location)
@@ -240,10 +245,10 @@ class ProgramPanel(PreviewPanel):
 
     def _draw_without(self) -> None:
         self.preflight.clear()
-        self.text.clear()  # once seen it keeps its room: a field that is typed into stays in place
+        self.text.clear()  # keeps its space once visible, so that fields do not move
 
     def _show_own(self, visible: bool) -> None:
-        """A program draws nothing."""
+        """Do nothing, because a program draws nothing."""
 
     def _locate(self, error: AmError) -> tuple[str, str]:
         """Show an error of the start under the first of its two fields."""
@@ -255,7 +260,7 @@ class ProgramPanel(PreviewPanel):
 
 
 def _write_beginning(job: Job, stale: tuple[str, ...], promised: preflight.Work) -> Beginning:
-    """The program of a joint path. Raises what writing it raises."""
+    """Write the program of a joint path and return its start. Raises the errors of writing."""
     written = posted(job)
     main = catalogue.main_file(written.files)
     lines = written.files[main].decode("latin-1").splitlines()[:SHOWN_LINES]

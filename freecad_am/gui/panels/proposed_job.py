@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The role of each selected object in a new job, and suitable family and layers: those of `kind: auto`."""
+"""Propose the role of each selected object in a new job, and its family and layers, as `kind: auto`
+does.
+"""
 
 from __future__ import annotations
 
@@ -78,15 +80,17 @@ def machines(selected: str, doc: Any) -> Any:
 
 
 class JobName:
-    """The program name: derived from the deposited part for the controller until the user types one."""
+    """The program name, derived from the deposited part and the controller until the user types a
+    name.
+    """
 
-    where = "name"  # as errors call it
+    where = "name"  # location in errors
 
     def __init__(self) -> None:
         self.choice = shape_inputs.NameChoice("")
         self.widget = self.choice.widget
         self.label = self.post = self.proposed = ""
-        self.asked: tuple[str, str] | None = None  # machine and set-up that the post is of
+        self.asked: tuple[str, str] | None = None  # machine and set-up that determine the post
 
     def of(self, label: str) -> None:
         """Derive the name from a label."""
@@ -94,8 +98,10 @@ class JobName:
         self._propose()
 
     def follow(self, machine: str, setup: str) -> str:
-        """Propose a name for a machine or saved cell; return why its controller rejects the entry, '' if it does
-        not."""
+        """Propose a name for a machine or saved cell.
+
+        Return why its controller rejects the entry; '' if it accepts the entry.
+        """
         if self.asked != (machine, setup):
             self.asked, self.post = (machine, setup), suggestions.post_of_job(machine, setup)
             self._propose()
@@ -109,7 +115,7 @@ class JobName:
 
 
 class HowItStands:
-    """What a robot carries, `setup`, and, where that is the tool, how far it may lean, `leaning`."""
+    """The set-up of a robot, `setup`, and the maximum lean of a carried tool, `leaning`."""
 
     def __init__(self) -> None:
         self.setup = QtGui.QComboBox()
@@ -128,19 +134,19 @@ class HowItStands:
         self.leaning = fields.make(row, row.default)
 
     def follow(self, is_robot: bool) -> None:
-        """Leave out what means nothing for a machine that is no robot, or a saved cell."""
+        """Disable the fields for a machine other than a robot, or for a saved cell."""
         self.setup.setEnabled(is_robot)
         self.leaning.widget.setEnabled(bool(self.chosen()))
 
     def propose(self, setup: str) -> None:
-        """Put a set-up that suits the machine, unless another one was chosen than was proposed before."""
+        """Select a suitable set-up for the machine, unless the user changed the last proposal."""
         index = self.setup.findData(setup)
         if index >= 0 and self.setup.currentData() == self.proposed:
             self.proposed = setup
             self.setup.setCurrentIndex(index)
 
     def chosen(self) -> str:
-        """Return the chosen setup, '' for the default or without a choice."""
+        """Return the chosen set-up, '' for the default or without a choice."""
         return (
             str(self.setup.currentData())
             if self.setup.isEnabled() and self.setup.currentIndex()
@@ -148,9 +154,10 @@ class HowItStands:
         )
 
     def arguments(self) -> dict[str, str]:
-        """Return keywords of `make_all` with values as text; none for the default setup.
-        Raises InputError for unreadable
-        entries."""
+        """Return keywords of `make_all` with values as text; none for the default set-up.
+
+        Raises InputError for unreadable entries.
+        """
         if not self.chosen():
             return {}
         keywords, value = {"setup": repr(self.chosen())}, self.leaning.value
@@ -158,7 +165,7 @@ class HowItStands:
 
 
 class FittedLength:
-    """A length that may be left empty, as which it is found out when the job is made."""
+    """A length that may be left empty; an empty length is determined when the job is created."""
 
     def __init__(self, row: Row, placeholder: str, extra_help: str) -> None:
         self.quantity = QuantityField(row.outer(row.default), row.unit, row.label)
@@ -174,7 +181,9 @@ class FittedLength:
 
     @property
     def value(self) -> Any:
-        """Return the entry in outer units or as an expression; None for an empty field. Raises InputError."""
+        """Return the entry in outer units or as an expression; None for an empty field. Raises
+        InputError.
+        """
         return self.quantity.read() if self.quantity.line.text().strip() else None
 
 
@@ -200,7 +209,9 @@ class Sizes:
         }
 
     def bead_width(self) -> float:
-        """What parts are judged by, mm; the usual one where an expression or nothing that is understood is entered."""
+        """Return the bead width for interpreting parts, mm; the default for an expression or an
+        unreadable entry.
+        """
         try:
             value = self.width.value
         except InputError:
@@ -208,8 +219,11 @@ class Sizes:
         return deposit.bead_width() if is_expression(value) or value <= 0.0 else float(value)
 
     def arguments(self, filled: bool, saved: bool) -> dict[str, str]:
-        """Return the entries as keywords of `make_all` with values as text. filled: beads have a spacing; saved: the
-        cell has its own platform. Raises InputError for unreadable entries."""
+        """Return the entries as keywords of `make_all` with values as text.
+
+        filled: beads have a spacing. saved: the cell has its own platform. Raises InputError for
+        unreadable entries.
+        """
         keywords = {}
         for field in (self.layer, *((self.spacing,) if filled else ())):
             if field.changed:
@@ -226,15 +240,15 @@ def _row(section: type, key: str) -> Row:
     return next(row for row in rows(section) if row.key == key)
 
 
-LOOK_AT = (ARM_NEAR, LOW_MARGIN)  # codes of notes shown with the result
-SHOWN_MS = 15000  # ms that the status bar shows the next step
+LOOK_AT = (ARM_NEAR, LOW_MARGIN)  # codes of notes that are shown with the result
+SHOWN_MS = 15000  # ms; how long the status bar shows the next step
 
 
 def report_next_steps(stages: list[Any], proposed: str = "") -> None:
     """Show the result with its status and the next steps. proposed: proposed layers, if any."""
     wrong = next((obj for obj in stages if obj.Status != UP_TO_DATE), None)
     if wrong is not None:
-        # why is in the report view already
+        # the report view already shows the reason
         state = {
             FAILED: tr("{} failed."),
             INFEASIBLE: tr("{} is infeasible."),
@@ -276,14 +290,14 @@ def report_next_steps(stages: list[Any], proposed: str = "") -> None:
 
 
 def show_alone(stages: list[Any]) -> None:
-    """Hide cells and paths of earlier jobs, which would overlap those of this one."""
+    """Hide cells and paths of earlier jobs, which would overlap those of the new job."""
     for obj in api.stages_of(stages[0].Document) if stages else []:
         if obj not in stages and obj.ViewObject.Visibility:
             obj.ViewObject.Visibility = False
 
 
 def show_machine(stages: list[Any], is_setup_chosen: bool) -> None:
-    """Show the robot if its setup was chosen, and report the proposed positioner."""
+    """Show the robot if its set-up was chosen, and report the proposed positioner."""
     cell = next((obj for obj in stages if obj.Proxy.kind == "cell"), None)
     if cell is None or not is_setup_chosen:
         return
@@ -299,7 +313,9 @@ def show_machine(stages: list[Any], is_setup_chosen: bool) -> None:
 
 
 def _show_whole() -> None:
-    """Fit the view; one that is still as FreeCAD opens it, straight from above, is turned so that heights are seen."""
+    """Fit the view. A view still in FreeCAD's initial top view becomes isometric, so that heights
+    are visible.
+    """
     view = Gui.activeDocument().activeView()
     if hasattr(view, "getCameraOrientation") and view.getCameraOrientation().isIdentity():
         view.viewIsometric()
@@ -307,8 +323,11 @@ def _show_whole() -> None:
 
 
 def proposal(picks: Sequence[Pick], width: float) -> Callable[[], JobProposal]:
-    """Return a function that interprets picks for beads of a width, mm, without touching the document. Raises
-    InputError NO_SHAPE; the function raises FAULTY, NO_FACES."""
+    """Return a function that interprets picks for beads of a width, mm, without touching the
+    document.
+
+    Raises InputError NO_SHAPE; the function raises FAULTY or NO_FACES.
+    """
     pairs = [(pick, _copy_shape(pick)) for pick in picks]
     if len(pairs) == 1:
         return lambda: _propose_for_one(*pairs[0], width)
@@ -316,7 +335,7 @@ def proposal(picks: Sequence[Pick], width: float) -> Callable[[], JobProposal]:
 
 
 def as_kind(choice: str, picks: Sequence[Pick], reason: str) -> JobProposal:
-    """The roles of picks where the family is chosen, or a kind of layers."""
+    """Return the roles of picks for a chosen family or kind of layers."""
     for window in feature_windows():
         entries = tuple(window.entries())
         if choice in entries:
@@ -326,7 +345,7 @@ def as_kind(choice: str, picks: Sequence[Pick], reason: str) -> JobProposal:
 
 
 def taken_whole(job: JobProposal, picks: Sequence[Pick]) -> str:
-    """Return a note that one clicked face selects the whole object; '' if it does not apply."""
+    """Return a note that a single clicked face selects the whole object; '' if it does not apply."""
     if job.family is not None and window_of(job.family).face_is_base:
         return ""
     clicked = {pick.obj.Name for pick in picks if len(picking.pick_of_faces(pick).names) == 1}
@@ -353,7 +372,7 @@ def _propose_for_one(pick: Pick, snapshot: Taken, width: float) -> JobProposal:
             clicked=() if target.names else clicked,
         )
     )
-    if window_of(KINDS[result.kind]).face_is_base:  # hub and solids are of one object
+    if window_of(KINDS[result.kind]).face_is_base:  # hubs and solids belong to one object
         ground = (
             Pick(pick.obj, clicked)
             if clicked and snapshot.shape is not None and len(snapshot.shape.Solids) < 2
@@ -364,7 +383,7 @@ def _propose_for_one(pick: Pick, snapshot: Taken, width: float) -> JobProposal:
 
 
 def _propose_for_several(pairs: Sequence[tuple[Pick, Taken]], width: float) -> JobProposal:
-    """Propose from contacts between the objects, their number and the picked faces."""
+    """Propose a job from the contacts between the objects, their number and the picked faces."""
     picks = [pick for pick, _ in pairs]
     faced = [pair for pair in pairs if picking.pick_of_faces(pair[0]).names]
     for ground, hub in (*faced, *(pair for pair in reversed(pairs) if pair not in faced)):
@@ -420,6 +439,8 @@ def _deposit_pick(pick: Pick, snapshot: Taken) -> Pick:
 
 
 def _copy_shape(pick: Pick) -> Taken:
-    """Return a copy of an object's shape; the window may draw the original at the same time."""
+    """Return a copy of an object's shape, because the window may draw the original at the same
+    time.
+    """
     snapshot = snapshot_of(pick.obj)
     return snapshot if snapshot.shape is None else Taken(snapshot.label, snapshot.shape.copy(False))

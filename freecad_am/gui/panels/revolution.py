@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a part of revolution: meridian, axis and layers are seen while it is open."""
+"""The panel of a part of revolution; it previews meridian, axis and layers."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ Drawing = tuple[RevolutionParameters, Slices, list[Issue]]
 
 
 class FeaturePanel(PreviewPanel):
-    """Makes a feature of the shape that is selected, or changes one."""
+    """Creates a feature from the selected shape, or changes one."""
 
     stage, draft = RevolutionFeature, "Feature"
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of solids: pick solids and a guide for their layers; it previews the base plane."""
+"""The panel of solids; it previews the base plane, and offers a guide for the layers."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from ..widgets.pick_field import PickField
 from ..widgets.upright import scrolls
 from .preview import PickPanel, coarsened
 
-STEEPEST = 89  # deg of the slider
+STEEPEST = 89  # deg; maximum of the slider
 MM2_PER_CM2 = 100.0
 OVERHUNG = (0.86, 0.1, 0.12)
 
@@ -76,7 +76,7 @@ class SolidNodes(HubNodes):
         self.root.addChild(self.over.node)
 
     def set_overhang(self, corners: Array) -> None:
-        """Facets (m, 3, 3) that are to be red."""
+        """Show facets (m, 3, 3) in red."""
         self.over.set(corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
 
 
@@ -86,8 +86,8 @@ class SolidPanel(PickPanel):
     stage, icon, function, draft = SolidFeature, "solid", "make_solid_feature", "Solids"
     nodes: SolidNodes
     leaning: Leaning | None = None  # overhang of the previewed part
-    lean = -1  # deg that the field of the largest overhang held when the slider followed it
-    cached: tuple[Any, Outcome] | None = None  # last solids: their inputs and outcome
+    lean = -1  # deg; value of the maximum overhang field that the slider last followed
+    cached: tuple[Any, Outcome] | None = None  # inputs and outcome of the last solids
 
     def __init__(self, obj: Any = None) -> None:
         solids, substrate, guide, start, fixtures = (
@@ -110,7 +110,7 @@ class SolidPanel(PickPanel):
         }
 
     def _add_overhang(self) -> None:
-        """Add the slider of the overhang view, which changes only the picture."""
+        """Add the slider of the overhang view, which changes only the colours."""
         box, help = (
             QtGui.QWidget(),
             tr("Faces that overhang by more than this angle are red in the 3D view"),
@@ -147,7 +147,7 @@ class SolidPanel(PickPanel):
         )
 
     def _propose(self, picks: list[picking.Pick]) -> str:
-        """All that is selected is to be deposited."""
+        """Take all selected objects as solids to deposit."""
         for pick in picks:
             self.solids.take(pick)
         return ""
@@ -182,11 +182,13 @@ class SolidPanel(PickPanel):
         return self._worth_telling(arguments)
 
     def _values(self) -> dict[str, Any]:
-        """Return the entries. The preview ignores a valid chord error."""
+        """Return the entries, with a valid fine chord error replaced by the preview's coarse chord
+        error.
+        """
         return coarsened(super()._values())
 
     def _work(self, draft: Draft) -> Callable[[], tuple[Outcome, tuple[Drawing, Leaning, int]]]:
-        """Read the solids again only if they changed."""
+        """Return work that reads the solids again only if they changed."""
         draft.check()
         cached, work = self.cached, draft.prepare()
         strategy: SolidParameters = draft.stage.parameters(draft.obj, SolidParameters)
@@ -234,7 +236,8 @@ class SolidPanel(PickPanel):
     def _draw(self, outcome: Outcome, drawn: tuple[Drawing, Leaning, int]) -> str:
         drawing, self.leaning, overhang_deg = drawn
         self.nodes.set(drawing)
-        if overhang_deg != self.lean:  # the slider begins where the field is, and follows it
+        # the slider starts at the field's value and follows its changes
+        if overhang_deg != self.lean:
             self.lean = overhang_deg
             self.overhang.setValue(overhang_deg)
         self._show_overhang()
@@ -266,7 +269,7 @@ class SolidPanel(PickPanel):
 
 
 def _pick_argument(field: PickField) -> str:
-    """An object with its edges or faces as a macro gives it."""
+    """Return an object with its edges or faces as a macro argument."""
     if not field.picks:
         return "None"
     pick = field.picks[0]
@@ -274,7 +277,7 @@ def _pick_argument(field: PickField) -> str:
 
 
 def _present(obj: Any) -> tuple[Any, ...]:
-    """Solids, substrate, guide, start faces and fixtures as an object has them."""
+    """Return an object's solids, substrate, guide, start faces and fixtures."""
     solids = [obj.Source[0], *obj.Further] if obj.Source else []
     return (
         solids,

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The task panel of a stage, made from its parameters: OK and Apply are one call of the macro interface each."""
+"""The task panel of a stage, built from its parameters. OK and Apply are one call of the macro
+interface each.
+"""
 
 from __future__ import annotations
 
@@ -36,11 +38,11 @@ from ..widgets.pick_field import Input
 from ..widgets.upright import present, scroll_areas_of, scrolls, upright
 from ..worker import Later
 
-# ---- Problems of a panel's entries, under their fields, else at the top
+# ---- Problems of a panel's entries, under their fields or else at the top
 
 
 class Noted:
-    """Fields with a note under each; a panel has them filled in."""
+    """Fields with a note under each; a panel fills them in."""
 
     draft = ""  # name of an object to be created, in errors
     proxy: type[Stage]
@@ -50,13 +52,13 @@ class Noted:
     form: Any
     messages: Messages
     error: Any  # at the top
-    heading: Any  # of the inputs
-    marked: dict[str, str]  # keys with an error from OK or Apply, and their entries
-    remarks: dict[str, str]  # those with what an expression gives or is wrong as typed, and that
-    notes: dict[str, Any]  # under the fields, by the label of an input or the place of a parameter
+    heading: Any  # heading of the inputs
+    marked: dict[str, str]  # entries with an error from OK or Apply, by key
+    remarks: dict[str, str]  # notes with the value of an expression or a typing error, by key
+    notes: dict[str, Any]  # notes under the fields, by input label or parameter key
     places: dict[
         str, tuple[fields.Field, str, Fold]
-    ]  # by the name that errors give a parameter: field, how it is called
+    ]  # field, displayed name and section, by the parameter name in errors
 
     def say(self, text: str) -> None:
         """Show an error at the top."""
@@ -72,7 +74,9 @@ class Noted:
         note.setVisible(bool(text))
 
     def show_error(self, error: AmError) -> None:
-        """Under the field it belongs to, which is brought into sight and gets the focus; else at the top."""
+        """Show an error under its field, scroll to the field and focus it; otherwise show it at the
+        top.
+        """
         key, text = self._locate(error)
         if not key:
             self.say(translated_error(error))
@@ -84,7 +88,7 @@ class Noted:
         QtCore.QTimer.singleShot(0, lambda: _bring_into_sight(self.form, self.notes.get(key)))
 
     def _locate(self, error: AmError) -> tuple[str, str]:
-        """Return the key of the note for an error, '' for none, and its text."""
+        """Return key ('' for none) and text of the note for an error."""
         error_key, names = error.where.replace(".", "_"), self._names()
         for key, (field, _, _) in self.places.items():
             if key == error_key or error.where in [f"{name}.{field.row.name}" for name in names]:
@@ -100,7 +104,9 @@ class Noted:
         return "", translated_error(error)
 
     def _names(self) -> list[str]:
-        """What errors call the stage: by its label, while it is made and where it is but previewed."""
+        """Return the names of the stage in errors: its label, and its names as a draft and in a
+        preview.
+        """
         return [
             self.draft,
             self.proxy.kind.capitalize(),
@@ -110,9 +116,7 @@ class Noted:
     def leave_out(self, keys: Collection[str], also_entered: bool = False) -> None:
         """Show all fields except `keys`. A field with an entry stays visible unless `also_entered`."""
         for key, (field, _, fold) in self.places.items():
-            default = field.row.outer(
-                field.row.default
-            )  # which some fields hold as a text, of nothing too
+            default = field.row.outer(field.row.default)  # some fields hold None as a text, too
             empty = {repr(default), repr("" if default is None else str(default))}
             holds = not also_entered and self._entry(key) not in empty
             fold.show(field.widget, key not in keys or holds)
@@ -138,7 +142,9 @@ class Noted:
             return error.message
 
     def judge_entries(self) -> None:
-        """Show the value or problem of each expression under its field; clear errors of changed entries."""
+        """Show the value or problem of each expression under its field; clear errors of changed
+        entries.
+        """
         for key, entry in list(self.marked.items()):
             if self._entry(key) != entry:
                 del self.marked[key]
@@ -153,7 +159,9 @@ class Noted:
                     self.show_note(key, "")
 
     def _judge_field(self, field: fields.Field) -> tuple[str, bool] | None:
-        """Return the value of a field's expression or the problem of its entry; None without either."""
+        """Return the value of a field's expression or the problem of its entry; None without
+        either.
+        """
         try:
             value = field.value
             if field.row.form not in FOLLOW:
@@ -167,21 +175,21 @@ class Noted:
         return None
 
     def _evaluated(self, field: fields.Field, value: str) -> Any:
-        """An expression's value now, in the unit that a plain entry would have."""
+        """Return an expression's current value in the unit of a plain entry."""
         around = self.obj if self.obj is not None else next(iter(self.document.Objects), None)
         result = evaluated(value, around, field.label)
-        field.row.inner(result, field.label)  # refuses another dimension
+        field.row.inner(result, field.label)  # rejects other dimensions
         return result
 
 
 def lines_of(widget: Any) -> list[Any]:
-    """The line edits of a field: itself, or those in it."""
+    """Return the line edits of a field: the field itself or its children."""
     return [widget] if isinstance(widget, QtGui.QLineEdit) else present(widget, QtGui.QLineEdit)
 
 
 def _bring_into_sight(form: Any, widget: Any) -> None:
-    """Scroll the task panel to something in it."""
-    with contextlib.suppress(RuntimeError):  # the panel is gone by now
+    """Scroll the task panel to a widget in it."""
+    with contextlib.suppress(RuntimeError):  # the panel is already deleted
         for area in scroll_areas_of(form):
             if widget is not None and area.isVisible():
                 area.ensureWidgetVisible(widget)
@@ -193,22 +201,24 @@ _DELETED_ERRORS = (RuntimeError, ReferenceError, NameError)
 
 
 class Watch:
-    """Observer of documents. It refers only to the panel's widget, which FreeCAD deletes with the panel."""
+    """Observer of documents. It refers only to the panel's widget, which FreeCAD deletes with the
+    panel.
+    """
 
     def __init__(self) -> None:
         self.form: Any = None
         self.document = ""
         self.follow_undo: Callable[[], Callable[[], None] | None] = lambda: (
             None
-        )  # gives it as long as the panel is there
+        )  # returns the method while the panel exists
 
     def slotDeletedDocument(self, document: Any) -> None:
-        """A document is about to go; once it is gone, so does the panel."""
+        """Close the panel after its document is deleted."""
         if self.form is not None and document.Name == self.document:
             QtCore.QTimer.singleShot(0, self._close)
 
     def slotUndoDocument(self, document: Any) -> None:
-        """Something was undone or done again; once FreeCAD is through with it, the panel shows that."""
+        """Update the panel after FreeCAD has finished an undo or redo."""
         if self.form is not None and document.Name == self.document:
             QtCore.QTimer.singleShot(0, self._follow)
 
@@ -216,18 +226,18 @@ class Watch:
 
     def _follow(self) -> None:
         follow = self.follow_undo()
-        with contextlib.suppress(*_DELETED_ERRORS):  # it is closed already
+        with contextlib.suppress(*_DELETED_ERRORS):  # the panel is already closed
             if self.form is not None and follow is not None:
                 follow()
 
     def _close(self) -> None:
         form, self.form = self.form, None
-        with contextlib.suppress(*_DELETED_ERRORS):  # it is closed already
+        with contextlib.suppress(*_DELETED_ERRORS):  # the panel is already closed
             if form is not None and form.window() is not form and Gui.Control.activeDialog():
                 Gui.Control.closeDialog()
 
     def forget(self, *_: Any) -> None:
-        """The panel is closed."""
+        """Forget the closed panel."""
         self.form = None
 
 
@@ -253,7 +263,7 @@ MOST_ISSUES = 6
 
 
 def own_lines(obj: Any) -> list[str]:
-    """The status of a stage, its message and its findings."""
+    """Return the status of a stage, its message and its issues."""
     issues = summarised(issues_of(obj))
     message = [translated(message_of(obj))] if obj.Message and not issues else []
     lines = [
@@ -267,7 +277,9 @@ def own_lines(obj: Any) -> list[str]:
 
 
 def lines_of_followers(obj: Any) -> list[str]:
-    """Which of the stages that follow failed or cannot be carried out, and why; none that only waits for another one."""
+    """Return which following stages failed or are infeasible, and why; stages that only wait are
+    omitted.
+    """
     followers = set(obj.InListRecursive)
     wrong = [
         stage
@@ -286,7 +298,7 @@ def lines_of_followers(obj: Any) -> list[str]:
 
 
 def _first(lines: list[str]) -> list[str]:
-    """As many lines as there is room for, and how many more there are."""
+    """Return as many lines as fit, and the number of hidden lines."""
     hidden_count = len(lines) - MOST_ISSUES
     return (
         lines
@@ -295,7 +307,7 @@ def _first(lines: list[str]) -> list[str]:
     )
 
 
-MIN_FIELDS_TO_DIVIDE = 12  # fields of a section that are not advanced, from which on it is divided
+MIN_FIELDS_TO_DIVIDE = 12  # minimum number of basic fields for which a section is divided
 PARTS = {
     marked("Filling in detail"): (
         "spacing_range_low",
@@ -316,7 +328,9 @@ _TITLES = {key: title for title, keys in PARTS.items() for key in keys}
 
 
 def titles(rows: Sequence[Row]) -> dict[str, str]:
-    """The heading of each field of a section that is put under one, by its key; none of short sections."""
+    """Return the heading of each field that belongs under a heading, by key; empty for short
+    sections.
+    """
     section_rows = [row for row in rows if len(row.path) == 1 or not isinstance(row.path[-1], str)]
     if len([row for row in section_rows if not row.spec.advanced]) < MIN_FIELDS_TO_DIVIDE:
         return {}
@@ -328,19 +342,20 @@ def titles(rows: Sequence[Row]) -> dict[str, str]:
 
 
 def values_of(obj: Any, section: Any) -> dict[str, Any]:
-    """Inner values of a section of a stage by row key."""
+    """Return the inner values of a stage's section, by row key."""
     values = {}
     for row in rows(section.cls):
         try:
             values[row.key] = row.inner(getattr(obj, row.name), row.name)
-        except AmError:  # what cannot be read is replaced by its default
+        except AmError:  # an unreadable value is replaced by its default
             values[row.key] = row.default
     return values
 
 
 def entries(obj: Any, proxy: type[Stage], inputs: dict[str, Any]) -> dict[str, Any]:
-    """What the fields of a panel show of an object: parameters by place, in outer units or as the expression that they
-    follow, and inputs by label."""
+    """Return the field values of a panel for an object: parameters by key, in outer units or as
+    their expression, and inputs by label.
+    """
     shown_values = dict(inputs)
     for section in proxy.sections:
         values = values_of(obj, section)
@@ -373,20 +388,20 @@ def _expression_of(obj: Any, row: Row) -> str:
 
 
 ADVANCED = marked("{}: advanced")
-BUTTON_PADDING = 26  # pixels next to its text
+BUTTON_PADDING = 26  # pixels next to the button text
 CLOSED = marked(
     "The document or object in this panel was deleted; cancel and open the panel again."
 )
 
 
 class StagePanel(Noted):
-    """Inputs and parameters of a stage to create (`obj` None) or changed. Nothing happens before OK or Apply.
+    """Inputs and parameters of a stage to create (`obj` None) or change.
 
-    A problem is shown under its field, else at the top.
+    Nothing happens before OK or Apply. A problem is shown under its field, otherwise at the top.
     """
 
-    icon = function = ""  # where they are not called as the stage's kind is
-    lines = 3  # that messages have room for above the fields
+    icon = function = ""  # set where the names differ from the stage's kind
+    lines = 3  # lines reserved for messages above the fields
     draft = ""  # name of an object to be created, in errors
 
     def __init__(
@@ -406,15 +421,13 @@ class StagePanel(Noted):
         self.following = self.messages.add("following", INVALID)
         self.findings = self.messages.add(
             "findings", PLAIN
-        )  # above all fields, because some change the deposit
-        self.marked: dict[str, str] = {}  # keys with an error from OK or Apply, and their entries
+        )  # above all fields, because some findings change the deposit
+        self.marked: dict[str, str] = {}  # entries with an error from OK or Apply, by key
         self.remarks: dict[
             str, str
-        ] = {}  # those with what an expression gives or is wrong as typed, and that
+        ] = {}  # notes with the value of an expression or a typing error, by key
         self.heading: Any = None
-        self.notes: dict[
-            str, Any
-        ] = {}  # under the fields, by the label of an input or the place of a parameter
+        self.notes: dict[str, Any] = {}  # notes under the fields, by input label or parameter key
         if choices:
             self.heading = Fold(tr("Inputs"), obj is None)
             for choice in choices:
@@ -424,7 +437,7 @@ class StagePanel(Noted):
                 )
             self.column.addWidget(self.heading.widget)
         self.first_inputs = self._inputs()
-        # by the name that errors give a parameter: its field, how the panel calls it, where it is
+        # field, displayed name and section, by the parameter name in errors
         self.places: dict[str, tuple[fields.Field, str, Fold]] = {}
         for section in proxy.sections:
             self._add_section(section)
@@ -435,7 +448,7 @@ class StagePanel(Noted):
         self._watch_entries()
         self.known = (
             {} if obj is None else self._entries()
-        )  # what the document had when it was shown last
+        )  # the document's values when they were last shown
         scrolls(self.form)
         upright(self.form)
         missing = [choice.missing for choice in choices if choice.missing]
@@ -445,7 +458,7 @@ class StagePanel(Noted):
     # ---- display
 
     def _watch_entries(self) -> None:
-        """Judge the entries now and shortly after typing."""
+        """Check the entries now and shortly after typing."""
         self.later_entries = Later(self.form, self.judge_entries)
         widgets = [
             *(field.widget for field, _, _ in self.places.values()),
@@ -532,7 +545,7 @@ class StagePanel(Noted):
         return entries(self.obj, self.proxy, self._stored())
 
     def _stored(self) -> dict[str, Any]:
-        """What the object has of the inputs, by their labels."""
+        """Return the object's stored inputs by label."""
         return {choice.label: choice.stored(self.obj) for choice in self.choices}
 
     def _inputs(self) -> dict[str, str]:
@@ -541,13 +554,15 @@ class StagePanel(Noted):
     # ---- called by FreeCAD
 
     def getStandardButtons(self) -> int:
-        """OK, Apply and Cancel."""
+        """Return OK, Apply and Cancel."""
         buttons = QtGui.QDialogButtonBox
         return sum(_number(button) for button in (buttons.Ok, buttons.Apply, buttons.Cancel))
 
     def modifyStandardButtons(self, box: Any) -> None:
-        """Let three buttons be as narrow as two: the task panel would be cut off on the right."""
-        QtCore.QTimer.singleShot(0, lambda: _narrow(box))  # once they have their texts
+        """Make the three buttons as narrow as two; otherwise the task panel would be cut off on the
+        right.
+        """
+        QtCore.QTimer.singleShot(0, lambda: _narrow(box))  # after the buttons have their texts
 
     def clicked(self, button: Any) -> None:
         """Handle a clicked button; OK and Cancel have their own functions."""
@@ -555,11 +570,11 @@ class StagePanel(Noted):
             self.apply()
 
     def accept(self) -> bool:
-        """Make or change the stage; True closes the panel, an error is shown in it."""
+        """Create or change the stage; return True to close the panel, or show an error in it."""
         return self._carry_out()
 
     def apply(self) -> bool:
-        """Make or change the stage in one undo step and keep the panel open."""
+        """Create or change the stage in one undo step and keep the panel open."""
         old_names = set() if self.obj is not None else {obj.Name for obj in self.document.Objects}
         if not self._carry_out():
             return False
@@ -609,7 +624,9 @@ class StagePanel(Noted):
         return False
 
     def _changed(self) -> dict[str, str]:
-        """Return the arguments of changed fields by keyword. An InputError names the parameter, not the field."""
+        """Return the arguments of changed fields by keyword. An InputError names the parameter, not
+        the field.
+        """
         arguments = {}
         for key, (field, _, _) in self.places.items():
             try:
@@ -625,15 +642,15 @@ class StagePanel(Noted):
 
 
 def _in_group(group: str, label: str) -> str:
-    """A label that is read away from the heading of its group: 'Trigger, lead' of 'Lead'."""
+    """Return a label for use outside its group: 'Trigger, lead' for 'Lead'."""
     return tr("{}, {}").format(translated(group), label[:1].lower() + label[1:])
 
 
 def _narrow(box: Any) -> None:
-    with contextlib.suppress(RuntimeError):  # the panel is closed again
+    with contextlib.suppress(RuntimeError):  # the panel is already closed
         for button in box.buttons():
             button.setIcon(QtGui.QIcon())
-            if QtGui.QApplication.instance().styleSheet():  # which may pad them beyond their width
+            if QtGui.QApplication.instance().styleSheet():  # may pad the buttons too much
                 button.setStyleSheet("QPushButton { padding: 2px; min-width: 0px; }")
             button.setFixedWidth(
                 button.fontMetrics().boundingRect(button.text()).width() + BUTTON_PADDING
@@ -641,7 +658,7 @@ def _narrow(box: Any) -> None:
 
 
 def _number(button: Any) -> int:
-    return int(getattr(button, "value", button))  # an enumeration of Qt 6
+    return int(getattr(button, "value", button))  # an enumeration in Qt 6
 
 
 def show(panel: Any) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a toolpath: a bead model is shown by the plot of its fit."""
+"""The panel of a toolpath, with a plot of the bead model's fit."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from ..widgets.upright import scroll_areas_of
 from ..worker import Later
 from .stage import StagePanel
 
-# ---- The fit of a bead model: drawn, and in words
+# ---- Plot and description of a bead model's fit
 
 HEIGHT = 210
 
@@ -57,7 +57,7 @@ class FitPlot(Canvas):
 
 
 def fits_text(measured: Measured, model: BeadModel) -> str:
-    """The fits in words."""
+    """Describe the fits in words."""
     lines = []
     for name, curve in ((tr("Width"), model.width), (tr("Height"), model.height)):
         lines.append(
@@ -103,17 +103,20 @@ def _signed(number: float) -> str:
     return f"{'+' if number >= 0.0 else '−'} {abs(number):.4g}"
 
 
-# ---- The order of several features in the panel of a toolpath: which come after the first, and in
-# what sequence of layers
+# ---- The order of several features in a toolpath: the features after the first, and their sequence of
+# layers
 
-SHOWN = 3  # rows
-PADDING = 14  # px about the word of a button
+SHOWN = 3  # visible rows
+PADDING = 14  # px around the text of a button
 NAMES = {BY_FEATURE: marked("one after the other"), BY_HEIGHT: marked("lowest layer first")}
 
 
 class FeatureOrder(Input):
-    """The features after the first, which `first` chooses; those selected are added when the panel opens for a new toolpath,
-    and by a button. Up on the topmost one makes it the first."""
+    """The features after the first feature, which `first` selects.
+
+    For a new toolpath, the selected features are added at once, later by a button. Up on the
+    topmost feature makes it the first.
+    """
 
     def __init__(self, link: Link, first_choice: StageChoice, present: Any, sequence: str) -> None:
         self.link, self.label, self.first = link, translated(link.label), first_choice
@@ -159,7 +162,7 @@ class FeatureOrder(Input):
             button.setObjectName(name)
             button.setToolTip(tip)
             button.setAutoDefault(False)
-            # as narrow as its word: four as wide as a style likes them make the panel wider than it is
+            # as narrow as the text: four buttons at the style's width would widen the panel
             button.setMinimumWidth(button.fontMetrics().horizontalAdvance(text) + PADDING)
             button.clicked.connect(lambda *_, act=act: act())
             row.addWidget(button)
@@ -181,11 +184,11 @@ class FeatureOrder(Input):
         self._show()
 
     def names(self) -> list[str]:
-        """The names of the features after the first, in their order."""
+        """Return the names of the features after the first, in order."""
         return [self.list.item(row).data(QtCore.Qt.UserRole) for row in range(self.list.count())]
 
     def add(self) -> None:
-        """Add the features selected, else the next of the document that is not in the list."""
+        """Add the selected features, or the next feature of the document that is not in the list."""
         all_names = [self.first.widget.itemData(k) for k in range(self.first.widget.count())]
         remaining = [
             name
@@ -201,11 +204,11 @@ class FeatureOrder(Input):
         self._show()
 
     def move(self, by: int) -> None:
-        """Move the chosen feature up or down by one."""
+        """Move the selected feature up or down by one."""
         row, names = self.list.currentRow(), self.names()
         if row < 0:
             return
-        if row + by < 0:  # it becomes the first, and that the topmost
+        if row + by < 0:  # becomes the first feature, which moves to the top of the list
             former = self.first.widget.currentData()
             self.first.widget.setCurrentIndex(self.first.widget.findData(names[0]))
             names[0] = former
@@ -217,7 +220,7 @@ class FeatureOrder(Input):
         self.list.setCurrentRow(min(max(row + by, 0), len(names) - 1))
 
     def remove(self) -> None:
-        """Take the chosen feature out."""
+        """Remove the selected feature."""
         self.list.takeItem(self.list.currentRow())
         self._show()
 
@@ -243,7 +246,7 @@ class FeatureOrder(Input):
         return {self.link.key: f"[{references}]", "sequence": repr(self.sequence.currentData())}
 
     def _selected(self) -> list[Any]:
-        """Return the selected features except the first one."""
+        """Return the selected features except the first."""
         features = [
             obj
             for obj in selected(self.document.Name)
@@ -264,14 +267,16 @@ class FeatureOrder(Input):
 
 MODEL, WIDTH = "process_bead_model", "process_bead_width"
 NONE = "none"
-SCAN = "substrate_"  # prefix of the parameters of a scan
+SCAN = "substrate_"  # prefix of scan parameters
 
 
 class ToolpathPanel(StagePanel):
-    """Under the bead model: the plot of its fit, the fit in words, and the speeds that the bead width asks for."""
+    """Shows the plot of the fit, its description and the speeds for the bead width under the bead
+    model.
+    """
 
     stage = Toolpath
-    to_be_seen = False  # whether the fit is scrolled to when it is shown next
+    to_be_seen = False  # whether to scroll to the fit when it is shown next
 
     def __init__(self, obj: Any = None) -> None:
         title = tr("Toolpath") if obj is None else obj.Label
@@ -306,7 +311,7 @@ class ToolpathPanel(StagePanel):
         self._fit_to(scan)
 
     def _fit_to(self, scan: Any) -> None:
-        """Hide the parameters of a scan without a scan."""
+        """Hide the scan parameters without a scan."""
         self.leave_out(
             () if scan.value() is not None else {key for key in self.places if key.startswith(SCAN)}
         )
@@ -324,7 +329,7 @@ class ToolpathPanel(StagePanel):
             self.places[MODEL][0].widget.setEditText(path)
 
     def _soon(self, of_model: bool) -> None:
-        """Show the fit once typing stops, and scroll to it for another model."""
+        """Show the fit once typing stops; scroll to it for another model."""
         self.to_be_seen = self.to_be_seen or of_model
         self.later.ask()
 
@@ -355,7 +360,7 @@ class ToolpathPanel(StagePanel):
             QtCore.QTimer.singleShot(0, self._scroll)
 
     def _scroll(self) -> None:
-        """Bring the fit into sight, once it has its place."""
+        """Scroll to the fit after the layout is done."""
         for area in scroll_areas_of(self.form):
             if area.isVisible():
                 area.ensureWidgetVisible(self.fit)

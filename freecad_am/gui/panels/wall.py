@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a wall on an existing part: wall and substrate are picked, and the first layer is seen while it is open."""
+"""The panel of a wall on an existing part; it previews the first layer."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _ELEMENTS = {"Source": picking.FACE, "StartEdges": picking.EDGE}
 class WallPanel(PickPanel):
     """Panel that creates a wall on a part from the selection, or changes one."""
 
-    note = ""  # about the selection when the panel opened
+    note = ""  # note about the selection when the panel opened
     stage, icon, function, draft = SurfaceFeature, "wall_on_part", "make_surface_feature", "Wall"
 
     def __init__(self, obj: Any = None) -> None:
@@ -66,7 +66,10 @@ class WallPanel(PickPanel):
         return unclear
 
     def _lacking(self) -> PickField | None:
-        """A wall that starts at its own edges, or may start on the platform, needs no substrate."""
+        """Return the first missing input.
+
+        A wall that starts at its own edges, or may start on the platform, needs no substrate.
+        """
         if not self._field("Source").picks:
             return self._field("Source")
         edges = any(field.picks for field in self.picks if field.element == picking.EDGE)
@@ -79,7 +82,7 @@ class WallPanel(PickPanel):
         return self._field("Substrate")
 
     def _following(self, field: PickField) -> PickField | None:
-        """The substrate while a click on another object than the wall's can only mean it."""
+        """Return the substrate while a click on another object than the wall's can only select it."""
         substrate = self._field("Substrate")
         return (
             substrate

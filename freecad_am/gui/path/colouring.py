@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Colours of the points of a path by quantity - layer, local distance, tilt, speed, bead width,
-kind of bead, and for a joint path the margins of the machine - with their scales."""
+"""Colour the points of a path by quantity, with scales: layer, local distance, tilt, speed, bead
+width, kind of bead, and machine margins of a joint path.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +20,7 @@ from ..in_language import marked, translated
 
 Colour = tuple[float, float, float]
 
-# in English: documents store these choices; the display translates a scale's texts
+# in English, because documents store these choices; the display translates the texts of a scale
 LAYER, DISTANCE, TILT = marked("layer"), marked("local distance"), marked("tilt")
 SPEED, WIDTH, KIND = marked("speed"), marked("width"), marked("kind of bead")
 KINDS = (LAYER, DISTANCE, TILT, SPEED, WIDTH, KIND)
@@ -47,16 +48,16 @@ NO_WIDTH = (marked("no bead model"), NONE)
 FIRST_LAYER = marked("first layer")
 TICKS = 5
 _TOLERANCE = 1e-9
-_ROUNDED = 1e-9  # shares that differ by less are alike
+_ROUNDED = 1e-9  # fractions that differ by less are equal
 
 
 @dataclass(frozen=True, eq=False)
 class Scale:
-    """A colour scale: the ramp goes from low to high; `ticks` are its numbers with their labels.
+    """A colour scale; the ramp goes from low to high, and `ticks` are its numbers with labels.
 
-    `below` and `above`: texts of values outside, '' without any. `without`: text of points without
-    a value, '' if all have one, and its colour. lowest, highest: of all values. `classes`: names with
-    their colours, instead of a ramp. values: (n,) of all points, in the unit, NaN for points
+    below, above: texts for values outside, '' without such values. without: text for points without
+    a value, '' if all have one, and its colour. lowest, highest: range of all values. classes:
+    names with colours, instead of a ramp. values: (n,) of all points, in the unit, NaN for points
     without a value; None without values to show.
     """
 
@@ -75,7 +76,7 @@ class Scale:
     values: Array | None = field(default=None, compare=False, repr=False)
 
     def text_at(self, row: int) -> str:
-        """Return the value of a point as text; '' without one."""
+        """Return the value of a point as text; '' without a value."""
         if self.values is None:
             return ""
         value = float(self.values[row])
@@ -83,14 +84,16 @@ class Scale:
         return f"{translated(self.title)} {text}".rstrip()
 
     def share(self, values: Array) -> Array:
-        """Places of values on the ramp, 0..1; the middle where low is high."""
+        """Return positions of values on the ramp, 0..1; 0.5 if the ramp has no range."""
         span = self.high - self.low
         return (values - self.low) / span if span > 0.0 else np.full(values.shape, 0.5)
 
 
 def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
-    """Return colours (n, 3) of the points in the order of deposit, and their scale. band: share of
-    the layer height."""
+    """Return colours (n, 3) of the points in the order of deposit, and their scale.
+
+    band: fraction of the layer height.
+    """
     if kind == DISTANCE:
         return _by_distance(toolpath, band)
     beads = [bead for _, _, bead in toolpath]
@@ -121,7 +124,7 @@ def coloured(toolpath: Toolpath, kind: str, band: float) -> tuple[Array, Scale]:
 
 
 def class_of(bead: Bead) -> tuple[str, Colour]:
-    """Return the class of a bead and its colour: its kind in a fill, else open or closed."""
+    """Return the class of a bead and its colour: its kind in a fill, otherwise open or closed."""
     if bead.role.closing:
         return CLOSING
     return _CLASSES.get(bead.role.kind, CLOSED_BEAD if bead.closed else OPEN_BEAD)
@@ -138,7 +141,7 @@ def numbered(toolpath: Toolpath) -> list[int]:
 def _classed(
     beads: list[Bead], classes: list[tuple[str, Colour]], title: str
 ) -> tuple[Array, Scale]:
-    """Each bead in the colour of its class."""
+    """Colour each bead by its class."""
     colours = np.repeat(
         np.array([colour for _, colour in classes]), [len(bead) for bead in beads], axis=0
     )
@@ -183,7 +186,7 @@ def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
         return np.tile(np.array(NONE), (len(values), 1)), scale
     low, high = height * (1.0 - band), height * (1.0 + band)
     finite_values = values[finite]
-    within = 1e-9 * height  # of rounding
+    within = 1e-9 * height  # tolerance for rounding
     below, above = finite & (values < low - within), finite & (values > high + within)
     ticks = _texts(np.linspace(low, high, TICKS if high > low else 1))
     scale = Scale(
@@ -206,12 +209,11 @@ def _by_distance(toolpath: Toolpath, band: float) -> tuple[Array, Scale]:
 
 
 def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
-    """Return colours (n, 3) of a machine quantity, one of MARGIN, RATIO, CONDITION, and their
-    scale.
+    """Return colours (n, 3) of a machine quantity (MARGIN, RATIO or CONDITION) and their scale.
 
-    values: (n,) shares, NaN where the machine does not reach the point. Margins and speeds are in
-    percent; violated limits and speeds have separate colours. Without any valid value the scale has
-    no ramp.
+    values: (n,) fractions, NaN where the machine does not reach the point. Margins and speeds are
+    in percent; violated limits and speeds have separate colours. Without any valid value, the scale
+    has no ramp.
     """
     finite = np.isfinite(values)
     without = "" if finite.all() else marked("unreachable")
@@ -246,7 +248,7 @@ def by_machine(values: Array, kind: str) -> tuple[Array, Scale]:
 
 
 def unknown(count: int, kind: str, why: str) -> tuple[Array, Scale]:
-    """Grey (count, 3), and the scale that says why."""
+    """Return grey (count, 3), and a scale with the reason."""
     return np.tile(np.array(NONE), (count, 1)), Scale(
         kind, "", 0.0, 0.0, (), 0.0, 0.0, classes=((why, NONE),)
     )
@@ -255,11 +257,11 @@ def unknown(count: int, kind: str, why: str) -> tuple[Array, Scale]:
 def round_numbers(low: float, high: float, min_step: float) -> Array:
     """Return about TICKS round numbers from low to high.
 
-    Their step is one, two or five times a power of ten, and at least `min_step`.
+    The step is one, two or five times a power of ten, and at least `min_step`.
     """
     step = max(min_step, round_step((high - low) / TICKS, (1.0, 2.0, 5.0, 10.0)))
     numbers = np.arange(np.ceil(low / step - _TOLERANCE), np.floor(high / step + _TOLERANCE) + 1.0)
-    rounded: Array = numbers * step + 0.0  # no minus before zero
+    rounded: Array = numbers * step + 0.0  # avoids -0
     return rounded
 
 

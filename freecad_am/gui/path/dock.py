@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The dock that shows a path layer by layer and point by point in the 3D view, with the facts of
-the last bead."""
+"""The dock that shows a path layer by layer and point by point in the 3D view, with the data of the
+last bead.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +28,8 @@ from .pieces import Rows
 
 class Row:
     """A slider with arrows at its ends and a number field; `moved` is called after the user moves
-    it."""
+    it.
+    """
 
     def __init__(self, name: str, text: str, help: str, page: int) -> None:
         self.label, self.slider, self.box = (
@@ -57,13 +59,13 @@ class Row:
         self.box.valueChanged.connect(lambda *_: self.moved(self))
 
     def add_to(self, grid: Any, row: int) -> None:
-        """Put it into a row of a grid of five columns."""
+        """Add the widgets to a row of a grid with five columns."""
         for column, widget in enumerate((self.label, self.back, self.slider, self.on, self.box)):
             grid.addWidget(widget, row, column)
         grid.setColumnStretch(2, 1)
 
     def enable(self, is_enabled: bool) -> None:
-        """Whether it can be moved."""
+        """Enable or disable the widgets."""
         for widget in (self.label, self.back, self.slider, self.on, self.box):
             widget.setEnabled(is_enabled)
 
@@ -78,24 +80,24 @@ class Row:
             widget.setRange(lowest, highest)
             widget.setValue(value)
             widget.blockSignals(blocked)
-        hold(self.box)  # keeps the width of its widest number
+        hold(self.box)  # keeps the width of the widest number
 
     def value(self) -> int:
-        """The entered value."""
+        """Return the entered value."""
         return int(self.box.value())
 
     def most(self) -> int:
-        """The upper bound."""
+        """Return the upper bound."""
         return int(self.box.maximum())
 
 
-LINES = 3  # maximum lines of a point's facts
+LINES = 3  # maximum number of lines for a point's data
 LABEL = 14  # minimum number of visible letters of a choice
 _LAYER_PAGE, _POINT_PAGE = 10, 100
 
 
 class PathForm(QtGui.QWidget):
-    """In the language of the window of now."""
+    """The widgets in the window's language."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -135,7 +137,7 @@ class PathForm(QtGui.QWidget):
         column.addStretch(1)
 
     def enable(self, is_enabled: bool) -> None:
-        """Whether there is a path to choose something of."""
+        """Enable or disable the choices."""
         for widget in (
             self.controls,
             self.colouring,
@@ -167,7 +169,7 @@ class PathForm(QtGui.QWidget):
 
 
 def offer(combo: Any, names: list[str], current: int, label: Callable[[str], str] = str) -> None:
-    """Choices of a combo box, changed only where they differ."""
+    """Set the choices of a combo box if they changed."""
     if [combo.itemData(index) for index in range(combo.count())] != list(names):
         combo.clear()
         for name in names:
@@ -187,10 +189,10 @@ def make_combo(name: str, help: str) -> Any:
 
 
 def facts(rows: Rows, row: int) -> str:
-    """Describe the bead of a row: its layer, number, kind, speed, width, length and time; and the
-    row's position.
+    """Describe the bead of a row (layer, number, kind, speed, width, length and time) and the row's
+    position.
 
-    Numbers count from 0, as in messages, programs and `waypoints.csv`; layers of several beads also
+    Numbers count from 0, as in messages, programs and `waypoints.csv`. Layers of several beads also
     show the number in the layer, as the dock does.
     """
     index = rows.bead_of(row)
@@ -240,11 +242,11 @@ NAME = "RoboticAM_PathDock"
 VISIBILITY, GROUP_TOUCHED = (
     "Visibility",
     "_GroupTouched",
-)  # a group has the latter changed with its members
+)  # a group's GroupTouched changes with its members
 
 
 class PathDock(Follower):
-    """One dock for all documents; it shows the path selected last, or else a visible one."""
+    """One dock for all documents. It shows the last selected path, or else a visible path."""
 
     def __init__(self) -> None:
         self.target: tuple[str, str] | None = None  # names of document and object
@@ -261,13 +263,13 @@ class PathDock(Follower):
     # ---- the fields
 
     def _build(self) -> None:
-        """The fields, in the language of the window."""
+        """Build the fields in the window's language."""
         self.form = PathForm()
         self._connect()
         self.dock.hold(tr("Path"), Scrolled(self.form))
 
     def _speak(self) -> None:
-        """The window has another language."""
+        """Rebuild in the window's new language."""
         single = self.form.single.isChecked()
         self._build()
         self.form.single.setChecked(single)
@@ -290,19 +292,19 @@ class PathDock(Follower):
     # ---- selected path
 
     def open(self, obj: Any = None) -> None:
-        """Show the dock, and in it this path."""
+        """Open the dock and show a path in it."""
         if obj is not None:
             self._take(obj)
         self.dock.come()
         self.fill()
 
     def follow(self, obj: Any) -> None:
-        """Show this path if the dock is open; keep the order of the docks."""
+        """Show a path if the dock is open; keep the order of the docks."""
         self._take(obj)
         self.fill()
 
     def view(self) -> PathView | None:
-        """The view of the selected path, None without one."""
+        """Return the view of the selected path, None without one."""
         obj = self._object()
         return None if obj is None else obj.ViewObject.Proxy
 
@@ -318,7 +320,7 @@ class PathDock(Follower):
         return path
 
     def _take(self, obj: Any) -> None:
-        """Select a path: show it, and hide the path at the same place."""
+        """Select and show a path, and hide the path at the same position."""
         self.target = (obj.Document.Name, obj.Name)
         if not obj.ViewObject.Visibility:
             _show(obj, True)
@@ -336,7 +338,7 @@ class PathDock(Follower):
     # ---- visible range
 
     def fill(self) -> None:
-        """Show the state of the path; nothing while the dock is closed."""
+        """Show the state of the path; do nothing while the dock is closed."""
         if self.filling or not self.dock.isVisible():
             return
         self.filling = True
@@ -406,7 +408,7 @@ class PathDock(Follower):
             self._show(view, None)
 
     def _closed(self) -> None:
-        """Show all paths completely: without the dock nothing indicates a hidden stretch."""
+        """Show all paths completely, because without the dock nothing indicates a hidden stretch."""
         self.form.single.setChecked(False)
         for document in App.listDocuments().values():
             for view in (obj.ViewObject.Proxy for obj in _paths(document)):
@@ -414,7 +416,7 @@ class PathDock(Follower):
                     view.show(None)
 
     def _follow_click(self, view: PathView, row: int) -> None:
-        """A point of a path was clicked in the 3D view: all up to it is shown."""
+        """Show the path up to a point clicked in the 3D view."""
         rows, obj = view.rows, view.obj
         if rows is None or row >= len(rows):
             return
@@ -425,8 +427,10 @@ class PathDock(Follower):
         self._show(view, (start, layer, row + 1 - rows.layer_rows(layer, layer)[0]))
 
     def go_to(self, obj: Any, layer: int, bead: int | None, point: int | None) -> None:
-        """Open, and show a path up to a point of a bead of a layer, counted from 0; the whole layer
-        if they are None."""
+        """Open the dock and show a path up to a point of a bead in a layer, counted from 0.
+
+        None for bead and point shows the whole layer.
+        """
         self.open(obj)
         rows = obj.ViewObject.Proxy.rows
         if rows is None or not 0 <= layer < rows.layer_count:
@@ -447,7 +451,7 @@ class PathDock(Follower):
     # ---- called by FreeCAD
 
     def addSelection(self, document: str, name: str, *_: Any) -> None:
-        """Something was selected."""
+        """Show a selected path."""
         obj = App.getDocument(document).getObject(name) if document in App.listDocuments() else None
         if _is_path(obj) and obj.ViewObject.Visibility:
             self.target = (document, name)
@@ -481,11 +485,12 @@ only = OnlyDock(PathDock)
 
 
 def show(obj: Any = None) -> None:
-    """Open the dock for a path; by default the selected one, the path of the selected job or stage,
-    or a visible path."""
+    """Open the dock for a path. The default is the selected path, the path of the selected job or
+    stage, or a visible path.
+    """
     only.provide().open(obj or next(filter(_is_path, job_selection()), None))
 
 
 def go_to(obj: Any, layer: int, bead: int | None, point: int | None) -> None:
-    """Open the dock, and show a path up to a place, counted from 0."""
+    """Open the dock and show a path up to a point, counted from 0."""
     only.provide().go_to(obj, layer, bead, point)

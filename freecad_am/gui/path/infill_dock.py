@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The dock of infill: the section of a layer of a toolpath in the 3D view, with voids and double deposit and their shares."""
+"""The infill dock: the section of a toolpath layer in the 3D view, with voids, double deposit and
+their fractions.
+"""
 
 from __future__ import annotations
 
@@ -38,12 +40,12 @@ VOID, OVER, OUTSIDE = "void", "over", "outside"
 SINGLE = "single"
 COLOURS = {SINGLE: "#b8b8b8", VOID: VOID_COLOUR, OVER: DOUBLE_COLOUR}
 KEYS = {VOID: VOID_COLOUR, OVER: DOUBLE_COLOUR}
-LIFT = 1.02  # layer heights above the plane of a layer, over its beads
+LIFT = 1.02  # in layer heights; offset of the section above the layer plane, over its beads
 PAGE = 10
 
 
 class SectionNodes:
-    """A section in the 3D view: where beads lie once, voids and double deposit. Clicks go through it."""
+    """A section in the 3D view: single deposit, voids and double deposit. Transparent to clicks."""
 
     def __init__(self) -> None:
         self.node = coin.SoSeparator()
@@ -70,7 +72,9 @@ class SectionNodes:
 
 
 def quadrangles(picture: Picture, mask: Mask) -> tuple[Array, Index]:
-    """Runs of pixels of a mask as rectangles: corners (4 n, 2) mm and triangles (2 n, 3) of them."""
+    """Convert runs of mask pixels to rectangles: corners (4 n, 2), mm, and their triangles (2 n,
+    3).
+    """
     steps = np.diff(np.pad(mask, ((0, 0), (1, 1))).astype(np.int8), axis=1)
     rows, starts = np.nonzero(steps > 0)
     ends = np.nonzero(steps < 0)[1]
@@ -85,7 +89,7 @@ def quadrangles(picture: Picture, mask: Mask) -> tuple[Array, Index]:
 
 
 class InfillForm(QtGui.QWidget):
-    """The widgets of the dock, in the language of the window."""
+    """The widgets of the dock in the window's language."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -128,13 +132,13 @@ class InfillForm(QtGui.QWidget):
         column.addStretch(1)
 
     def enable(self, is_enabled: bool) -> None:
-        """Whether there is a layer to show."""
+        """Enable or disable the widgets."""
         self.layer.enable(is_enabled)
         for widget in (self.voids, *self.worst.values()):
             widget.setEnabled(is_enabled)
 
     def tell(self, coverage: Coverage | None, max_void: float) -> None:
-        """Show the shares and places of a layer; nothing for None."""
+        """Show the fractions and positions of a layer; nothing for None."""
         for name, text in self.shares.items():
             text.show_text("" if coverage is None else _share_text(coverage, name))
         over_limit = coverage is not None and coverage.void > max_void
@@ -149,13 +153,13 @@ def _button(name: str, text: str, help: str) -> Any:
 
 
 def _share_text(coverage: Coverage, name: str) -> str:
-    """A share of a layer, with the largest place where it is known."""
+    """Describe a fraction of a layer with its colour key, and the largest region if known."""
     key = f'<span style="color: {KEYS[name]}">■</span> ' if name in KEYS else ""
     return key + _share_words(coverage, name)
 
 
 def _share_words(coverage: Coverage, name: str) -> str:
-    """The words of a share."""
+    """Describe a fraction in words."""
     share = getattr(coverage, name)
     if math.isnan(share):
         return tr("Void: left open on purpose")
@@ -173,15 +177,17 @@ def _share_words(coverage: Coverage, name: str) -> str:
 
 
 class InfillDock(Follower):
-    """One dock for all documents. It shows the toolpath that was selected last, else the latest, and draws only while it is
-    open."""
+    """One dock for all documents.
+
+    It shows the last selected toolpath, or else the latest, and draws only while open.
+    """
 
     def __init__(self) -> None:
         self.target: tuple[str, str] | None = None  # names of document and object
         self.filling = False
         self.nodes = SectionNodes()
-        self.root: Any = None  # that the nodes are in
-        self.drawn: tuple[Any, ...] = ()  # what is drawn, or is to be
+        self.root: Any = None  # scene that contains the nodes
+        self.drawn: tuple[Any, ...] = ()  # key of the current or pending drawing
         self.dock = dock_area.dock(NAME, dock_area.BELOW)
         self._build()
         self.drawing = Background(self.dock)
@@ -200,7 +206,7 @@ class InfillDock(Follower):
         self.dock.hold(tr("Infill"), Scrolled(self.form))
 
     def _speak(self) -> None:
-        """The window has another language; entries stay."""
+        """Rebuild in the window's new language; keep the entries."""
         layer, is_drawn = self.form.layer.value(), self.form.voids.isChecked()
         self._build()
         self.form.voids.setChecked(is_drawn)
@@ -210,14 +216,14 @@ class InfillDock(Follower):
     # ---- the toolpath
 
     def open(self, obj: Any = None) -> None:
-        """Show the dock, and in it a toolpath, from its first layer."""
+        """Open the dock and show a toolpath from its first layer."""
         if obj is not None:
             self.target = (obj.Document.Name, obj.Name)
         self.dock.come()
         self.fill()
 
     def object(self) -> Any:
-        """The chosen toolpath, else the latest of the document; None without any."""
+        """Return the selected toolpath, or else the latest of the document; None without any."""
         if self.target is not None and self.target[0] in App.listDocuments():
             obj = App.getDocument(self.target[0]).getObject(self.target[1])
             if is_toolpath(obj):
@@ -242,10 +248,10 @@ class InfillDock(Follower):
         if shares:
             self.form.layer.box.setValue(max(shares, key=lambda number: shares[number]))
 
-    # ---- what is shown
+    # ---- display
 
     def fill(self) -> None:
-        """Show the state of the toolpath; nothing while the dock is closed."""
+        """Show the state of the toolpath; do nothing while the dock is closed."""
         if self.filling or not self.dock.isVisible():
             return
         self.filling = True
@@ -275,7 +281,7 @@ class InfillDock(Follower):
         self._show_layer(obj, toolpath, number)
 
     def _show_layer(self, obj: Any, toolpath: Toolpath, number: int) -> None:
-        """Tell the shares of a layer, and draw its section in the background."""
+        """Show the fractions of a layer, and draw its section in the background."""
         layer: Layer = toolpath.layers[number]
         if layer.coverage is None:
             self.form.note.show_text(tr("This layer is not measured."))
@@ -291,7 +297,7 @@ class InfillDock(Follower):
         )
 
     def _take(self, worker: Worker, obj: Any, number: int) -> None:
-        """Draw a section, and tell its places."""
+        """Draw a section and show its positions."""
         picture: Picture | None = worker.result()
         toolpath: Toolpath = obj.Proxy.value(obj)
         layer = toolpath.layers[number]
@@ -307,7 +313,7 @@ class InfillDock(Follower):
             self.nodes.clear()
 
     def _attach(self, obj: Any) -> None:
-        """Put the nodes into the scene of a toolpath."""
+        """Add the nodes to the scene of a toolpath."""
         root = obj.ViewObject.RootNode
         if self.root is not None and self.root[0] == (obj.Document.Name, obj.Name):
             return
@@ -317,7 +323,7 @@ class InfillDock(Follower):
 
     def _detach(self) -> None:
         if self.root is not None:
-            with contextlib.suppress(RuntimeError, ReferenceError):  # its document is closed
+            with contextlib.suppress(RuntimeError, ReferenceError):  # the document is closed
                 self.root[1].removeChild(self.nodes.node)
         self.root = None
 
@@ -330,14 +336,14 @@ class InfillDock(Follower):
 
     @staticmethod
     def _show_stretch(obj: Any, number: int | None) -> None:
-        """Hide the layers above one in the paths of a toolpath; None: show all."""
+        """Hide the layers above `number` in the paths of a toolpath; None shows all."""
         for path in (obj, *obj.InList):
             view = getattr(getattr(path, "ViewObject", None), "Proxy", None)
             if getattr(view, "rows", None) is not None:
                 view.show(None if number is None else (0, number, None))
 
     def _closed(self) -> None:
-        """Leave the views as they were."""
+        """Restore the views."""
         self._clear()
         obj = self.object()
         if obj is not None:
@@ -346,7 +352,7 @@ class InfillDock(Follower):
     # ---- called by FreeCAD
 
     def slotChangedObject(self, obj: Any, name: str) -> None:
-        """A property of an object has changed."""
+        """Update after a property has changed."""
         if name in ("Key", "Label") and self.dock.isVisible() and is_toolpath(obj):
             self.fill()
 
@@ -360,26 +366,26 @@ def _lacking(obj: Any) -> str:
 
 
 def _max_void(obj: Any, number: int) -> float:
-    """The share of void that a feature of a toolpath may have without a warning."""
+    """Return the maximum void fraction of a feature without a warning."""
     feature = features_of(obj)[number]
     parameters = feature.Proxy.parameters(feature, strategy_of(feature.Proxy))
     return float(getattr(parameters, "max_void", 1.0))
 
 
 def is_toolpath(obj: Any) -> bool:
-    """Whether an object is a toolpath that has been computed."""
+    """Whether an object is a computed toolpath."""
     stage = None if obj is None else stage_of(obj)
     return stage is not None and stage.kind == "toolpath" and bool(obj.Key)
 
 
 def toolpaths() -> list[Any]:
-    """The toolpaths of the document, the latest last."""
+    """Return the toolpaths of the document, latest last."""
     document = App.ActiveDocument
     return [] if document is None else [obj for obj in document.Objects if is_toolpath(obj)]
 
 
 def _toolpath_of(obj: Any) -> Any:
-    """The toolpath that an object is or is made from; None for other objects."""
+    """Return the toolpath that an object is or is derived from; None for other objects."""
     for name in ("JointPath", "Toolpath"):
         obj = getattr(obj, name, None) or obj
     return obj if is_toolpath(obj) else None

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Legends in the upper left corner of the 3D views and of pictures saved from them: a colour bar
+"""Draw legends in the upper left corner of 3D views and of images saved from them: a colour bar
 with numbers for each visible path.
 
-A legend is an image in the scene of its path, drawn last and through a camera of its own, so that
-it stays fixed and sharp under camera moves, and appears and disappears with its path. Several
-visible legends are placed side by side.
+A legend is an image in the scene of its path, drawn last and through its own camera. It therefore
+stays fixed and sharp under camera moves, and appears and disappears with its path. Several visible
+legends are placed side by side.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ from ..in_language import tr, translated
 from ..nodes.lines import unshaded
 from .colouring import ABOVE_COLOUR, BELOW_COLOUR, DISTANCE, Scale
 
-_FINE = 0.01  # mm; smaller differences of distances show 1e-5 mm
+_FINE = 0.01  # mm; smaller differences of distances are shown to 1e-5 mm
 _MARGIN, _PAD, _BAR_WIDTH, _BAR_HEIGHT, _STEPS = 10, 9, 16, 150, 150
-# ground, edge and texts by whether the theme is dark
+# background, edge and text colours, by whether the theme is dark
 _COLOURS = {
     False: (
         QtGui.QColor(255, 255, 255, 225),
@@ -36,17 +36,17 @@ _COLOURS = {
     ),
     True: (QtGui.QColor(26, 32, 43, 235), QtGui.QColor(98, 106, 122), QtGui.QColor(230, 233, 239)),
 }
-Entry = tuple[tuple[str, ...], Scale]  # the lines above, and the scale
+Entry = tuple[tuple[str, ...], Scale]  # lines above the scale, and the scale
 
 
 class Legend:
-    """The legend of one path, hidden until `show`."""
+    """The legend of a path, hidden until `show`."""
 
     def __init__(self) -> None:
         self.entry: Entry | None = None
         self.left = 0  # px from the edge
         self.look = ("", "", False)  # ramp, language, and whether the theme is dark
-        # all of the view is from -1 to 1
+        # the view ranges from -1 to 1
         self.camera = coin.SoOrthographicCamera()
         self.camera.viewportMapping = coin.SoCamera.LEAVE_ALONE
         self.camera.height, self.camera.position = 2.0, (0.0, 0.0, 1.0)
@@ -56,10 +56,8 @@ class Legend:
         corner, pick, callback = coin.SoTranslation(), coin.SoPickStyle(), coin.SoCallback()
         corner.translation = (-1.0, 1.0, 0.0)
         pick.style = coin.SoPickStyle.UNPICKABLE
-        callback.setCallback(
-            _look, weakref.ref(self)
-        )  # pivy never gives back what it is handed here
-        bounds = coin.SoResetTransform()  # it counts in no bounding box
+        callback.setCallback(_look, weakref.ref(self))  # pivy never releases the object passed here
+        bounds = coin.SoResetTransform()  # excludes the legend from bounding boxes
         bounds.whatToReset = coin.SoResetTransform.BBOX
         on_top = coin.SoAnnotation()
         for child in (
@@ -80,7 +78,7 @@ class Legend:
         return self.switch
 
     def show(self, entry: Entry, left: int) -> int:
-        """Show this, `left` px from the edge; its width with the margin, px."""
+        """Show an entry `left` px from the edge; return its width including the margin, px."""
         width = _width(*entry)
         look = preferences.ramp(), tr("en"), colours.is_dark()
         if (entry, left, look) != (self.entry, self.left, self.look):
@@ -93,21 +91,22 @@ class Legend:
         return width + _MARGIN
 
     def hide(self) -> None:
-        """Show nothing."""
+        """Hide the legend."""
         self.entry = None
         self.switch.whichChild = coin.SO_SWITCH_NONE
 
 
 def _look(legend: weakref.ref[Legend], action: Any) -> None:
     target = legend()
-    # the camera is not a node of the scene: rays of the mouse must not go through it
+    # the camera is not a node of the scene, because mouse rays must not use it
     if target is not None and action.isOfType(coin.SoGLRenderAction.getClassTypeId()):
         target.camera.doAction(action)
 
 
 def _picture(entry: Entry, left: int) -> Any:
-    """The pixels (rows from below, columns, 4) of a legend at this distance from the corner of the
-    view."""
+    """Return the pixels (rows from below, columns, 4) of a legend `left` px from the corner of the
+    view.
+    """
     ratio = float(Gui.getMainWindow().devicePixelRatio())
     wide, high = left + _MARGIN + _width(*entry), _MARGIN + _height(*entry)
     image = QtGui.QImage(round(ratio * wide), round(ratio * high), QtGui.QImage.Format_RGBA8888)
@@ -223,11 +222,11 @@ def _colour(colour: Any) -> Any:
     return QtGui.QColor.fromRgbF(*(float(channel) for channel in colour))
 
 
-# ---- which paths show theirs
+# ---- visible legends
 
 
 class _Renewal:
-    """Updates all legends once after an event that asks for it, and watches what changes them."""
+    """Updates all legends once after an event that requests it, and watches for changes."""
 
     def __init__(self) -> None:
         self.observer: _Observer | None = None

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the views of toolpaths and joint paths share: colours and legend, lines or tubes, and what stretch is shown."""
+"""Common code of the views of toolpaths and joint paths: colours, legend, lines or tubes, and the
+visible stretch.
+"""
 
 from __future__ import annotations
 
@@ -23,16 +25,19 @@ from . import legend
 from .colouring import Scale
 from .pieces import PathNodes, Rows
 
-REACH_PX = 8.0  # px from the mouse
-STILL = 3  # px the mouse may move while the button is down
-LOOK_EVERY = 15  # ms, whether the button has been let go
-DEEP = 1.5  # in bead widths: depth tolerance of points behind the foremost
+REACH_PX = 8.0  # px; maximum distance of a clicked point from the mouse
+STILL = 3  # px; maximum mouse motion during a click
+LOOK_EVERY = 15  # ms; interval of checks whether the button is released
+DEEP = 1.5  # in bead widths: depth tolerance of points behind the foremost point
 
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """How a view shows a path. to_world, to_screen: (4, 4) for row vectors, the latter to -1..1. size: (2,) px of the view.
-    toward: (3,) where its camera looks."""
+    """The projection of a view.
+
+    to_world, to_screen: (4, 4) for row vectors, the latter to -1..1. size: (2,) px of the view.
+    toward: (3,) viewing direction of the camera.
+    """
 
     to_world: Array
     to_screen: Array
@@ -41,12 +46,14 @@ class Sight:
 
 
 class ClickNode:
-    """A node in the scene of a path. `is_active` returns whether a listener is active; `visible_points` gives
-    points (n, 3) that are visible, the reach of their drawing, and the bead width, mm; `clicked` is
-    called with the number of the clicked point.
+    """A node in the scene of a path that reports clicked points.
+
+    `is_active` returns whether a listener is active. `visible_points` returns the visible points
+    (n, 3), the radius of their drawing and the bead width, mm. `clicked` is called with the index
+    of the clicked point.
 
     The scene receives button presses, but FreeCAD's selection may consume the releases. The caller
-    must keep a reference to this object: the scene does not.
+    must keep a reference to this object, because the scene does not.
     """
 
     def __init__(
@@ -63,7 +70,7 @@ class ClickNode:
         )
 
     def event(self, node: Any) -> None:
-        """The scene has heard of a button of the mouse."""
+        """Handle a mouse button event of the scene."""
         event = node.getEvent()
         if (
             coin.SoMouseButtonEvent.isButtonPressEvent(event, coin.SoMouseButtonEvent.BUTTON1)
@@ -72,7 +79,9 @@ class ClickNode:
             self._wait(_sight(node.getAction()), _pair(event.getPosition()), QtGui.QCursor.pos())
 
     def _wait(self, sight: Sight, position: Array, start: Any) -> None:
-        """Until the button is let go; a mouse that has moved by then has turned the view, or drawn a frame."""
+        """Wait until the button is released. A mouse that has moved by then rotated the view or
+        drew a frame.
+        """
         if (QtGui.QCursor.pos() - start).manhattanLength() > STILL:
             return
         if QtGui.QApplication.mouseButtons() & QtCore.Qt.LeftButton:
@@ -90,9 +99,9 @@ def _event(listener: weakref.ref[ClickNode], node: Any) -> None:
 
 
 def _sight(action: Any) -> Sight:
-    """Return the projection of the view at the action's place in the scene graph."""
+    """Return the projection of the view at the action's position in the scene graph."""
     region, volume = action.getViewportRegion(), coin.SoViewVolumeElement.get(action.getState())
-    placed = coin.SoGetMatrixAction(region)  # an action for events knows no transformations
+    placed = coin.SoGetMatrixAction(region)  # an event action knows no transformations
     placed.apply(action.getCurPath())
     # keep references: pivy frees their sources
     model, screen, toward = placed.getMatrix(), volume.getMatrix(), volume.getProjectionDirection()
@@ -103,13 +112,13 @@ def _sight(action: Any) -> Sight:
 
 
 def _pair(short: Any) -> Array:
-    """(2,) of an SbVec2s, for versions of pivy without direct access to its values."""
+    """Convert an SbVec2s to (2,), for versions of pivy without direct access to its values."""
     return np.array([short[0], short[1]], float)
 
 
 def nearest(points: Array, reach: float, width: float, sight: Sight, position: Array) -> int | None:
-    """Return the number of the point at a screen position (2,), px from the lower left; None
-    without a point nearby.
+    """Return the index of the point at a screen position (2,), px from the lower left; None without
+    a point nearby.
 
     points: (n, 3). reach: mm, radius of their drawing. width: mm, bead width, for the depth
     tolerance behind the foremost point.
@@ -162,37 +171,38 @@ class PathView(StageView):
     """Draws beads coloured from blue (lowest value) to yellow (highest value).
 
     A hidden path is drawn when first shown, so that opening a document reads no unneeded result.
-    `shown`: first and last layer, and how many points of the last one, None for all; None for the
-    whole path.
+    shown: first and last layer, and the number of visible points of the last layer (None for all);
+    None for the whole path.
     """
 
     options: ClassVar[dict[str, tuple[str, Any, str]]] = OPTIONS
     rows: Rows | None = None
-    scale: Scale | None = None  # of the colours that are shown
+    scale: Scale | None = None  # scale of the visible colours
     shown: tuple[int, int, int | None] | None = None
-    coloured_by: tuple[Any, ...] | None = None  # what the colours are of
+    coloured_by: tuple[Any, ...] | None = None  # inputs of the current colours
     waiting = False
 
     def __init__(self, vobj: Any) -> None:
         super().__init__(vobj)
-        vobj.SelectionStyle = "BoundBox"  # a selection that lights up would give tubes other colours than the legend's
+        # selection highlighting would give tubes other colours than the legend
+        vobj.SelectionStyle = "BoundBox"
 
-    # ---- what a view defines
+    # ---- to be defined by a view
 
     def rows_of(self, obj: Any, value: Any) -> Rows:
-        """The path to draw."""
+        """Return the path to draw."""
         raise NotImplementedError
 
     def coloured(self, obj: Any, kind: str) -> tuple[Array, Scale]:
         """Return the colours of all points. Raises InputError while undo restores a result in
-        parts."""
+        parts.
+        """
         raise NotImplementedError
 
     def limited(self, start: int, end: int) -> None:
-        """Rows from `start` to before `end` are visible: show the matching range of other
-        drawings."""
+        """Adapt other drawings to the visible rows from `start` to before `end`."""
 
-    # ---- of the stage's view
+    # ---- overrides of the stage's view
 
     def scene(self, root: Any) -> None:
         self.path, self.legend = PathNodes(), legend.Legend()
@@ -206,8 +216,10 @@ class PathView(StageView):
         root.addChild(self.legend.node)
 
     def refresh(self) -> None:
-        """Draw the stored result; while a document opens, wait until it is open and the path is
-        visible."""
+        """Draw the stored result.
+
+        While a document opens, wait until it is open and the path is visible.
+        """
         if self.obj is None:
             return
         opening = self.obj.Document.Restoring
@@ -246,7 +258,7 @@ class PathView(StageView):
         notify(self)
 
     def onChanged(self, vobj: Any, name: str) -> None:
-        """A view property has changed."""
+        """Handle a changed view property."""
         super().onChanged(vobj, name)
         if name == "Visibility":
             if self.waiting and vobj.Visibility and not vobj.Object.Document.Restoring:
@@ -255,13 +267,13 @@ class PathView(StageView):
             notify(self)
 
     def _colour(self, vobj: Any) -> None:
-        """Colour the beads again if the colours changed."""
+        """Recolour the beads if their colours changed."""
         preferred = preferences.ramp(), preferences.speed_unit(), scale_of(ORDINARY["mm"], "mm")
         key = (self.drawn, vobj.Colouring, *preferred, *self.colours_depend_on(vobj.Object))
         if self.rows is not None and len(self.rows) and key != self.coloured_by:
             try:
                 colours, self.scale = self.coloured(vobj.Object, vobj.Colouring)
-            except InputError:  # during an undo; it is drawn when the undo is complete
+            except InputError:  # during undo; drawn when the undo is complete
                 return
             self.path.paint(colours)
             self.coloured_by = key
@@ -270,13 +282,13 @@ class PathView(StageView):
         self.style(self.obj.ViewObject)
 
     def colours_depend_on(self, obj: Any) -> tuple[Any, ...]:
-        """Inputs of the colours in addition to the result."""
+        """Return inputs of the colours in addition to the result."""
         return ()
 
-    # ---- the stretch that is shown
+    # ---- visible stretch
 
     def stretch(self) -> tuple[int, int]:
-        """The first row that is shown, and the row after the last."""
+        """Return the first visible row, and the row after the last visible row."""
         if self.rows is None:
             return 0, 0
         if self.shown is None:
@@ -287,7 +299,7 @@ class PathView(StageView):
         return start, end
 
     def show(self, stretch: tuple[int, int, int | None] | None) -> None:
-        """Show some layers, and of the last one some points; None for all."""
+        """Show some layers, with only some points of the last layer; None for all."""
         rows = self.rows
         if rows is None:
             return
@@ -303,7 +315,8 @@ class PathView(StageView):
 
     def last_point(self) -> tuple[Array, Array] | None:
         """Return the last visible point (3,) of a stretch and its tool axis (3,); None if the whole
-        path or nothing is visible."""
+        path or nothing is visible.
+        """
         start, end = self.stretch()
         if self.rows is None or self.shown is None or end <= start:
             return None
@@ -314,7 +327,9 @@ class PathView(StageView):
     # ---- clicks
 
     def _visible_points(self) -> tuple[Array, float, float]:
-        """The points that are shown, of tubes in their middle; how far these reach about them, and the width of beads."""
+        """Return the visible points (for tubes, their centrelines), the radius of their drawing and
+        the bead width.
+        """
         start, end = self.stretch()
         if self.rows is None or end <= start:
             return np.zeros((0, 3)), 0.0, 0.0
@@ -331,7 +346,7 @@ class PathView(StageView):
                 choose(self, self.stretch()[0] + number)
 
 
-# ---- who wants to know of clicks and changes
+# ---- listeners for clicks and changes
 
 _choosers: list[tuple[Callable[[], bool], Callable[[PathView, int], None]]] = []
 
@@ -343,21 +358,21 @@ _followers: list[Callable[[PathView], None]] = []
 def listen_to_clicks(
     is_active: Callable[[], bool], choose: Callable[[PathView, int], None]
 ) -> None:
-    """Call `choose` with a row of a path when that is clicked in a 3D view, as long as `is_active`."""
+    """Call `choose` with the row of a clicked path point while `is_active`."""
     _choosers.append((is_active, choose))
 
 
 def listen(listener: Callable[[PathView], None]) -> None:
-    """Call this whenever a path is drawn, changed, shown or hidden."""
+    """Call `listener` whenever a path is drawn, changed, shown or hidden."""
     _listeners.append(listener)
 
 
 def listen_to_stretches(follower: Callable[[PathView], None]) -> None:
-    """Call this whenever another stretch of a path is shown."""
+    """Call `follower` whenever the visible stretch of a path changes."""
     _followers.append(follower)
 
 
 def notify(view: PathView) -> None:
-    """A path was drawn, changed, shown or hidden."""
+    """Report that a path was drawn, changed, shown or hidden."""
     for listener in _listeners:
         listener(view)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Coin nodes of a path that can show any stretch quickly.
 
-A path is cut into pieces of a few thousand points. Pieces are made when they are first seen and
-switched on and off; the piece in which a stretch ends only changes its count of primitives. The
-rows before the first piece of a stretch are rebuilt when the stretch begins elsewhere.
+A path is split into pieces of a few thousand points. Pieces are built when first visible, and then
+switched on and off. The piece at the end of a stretch only changes its number of primitives. The
+rows before the first piece of a stretch are rebuilt when the start changes.
 """
 
 from __future__ import annotations
@@ -21,17 +21,21 @@ from ...core.toolpath import Bead
 from ...core.types import Array, Index
 from ..nodes.lines import fill, unshaded
 
-# sections of tubes in all, and their sides by the number of sections: what a computer draws in software without stutter
+# maximum number of tube sections, and limits for 6 and 8 sides: software rendering draws these
+# without stutter
 SECTIONS, FINE, FINER = 50_000, 30_000, 12_000
-PIECE = 4096  # rows of a piece, about
+PIECE = 4096  # approximate number of rows in a piece
 
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """n points (n, 3) mm of m beads in order. starts: (m + 1,) first row of each bead, and n. layers: (m,) of each bead,
-    rising. width: (n,) mm. read: returns the beads, called when more than lines is needed.
-    layer_height: mm of beads without a height, called for tubes. read_bead: returns one bead, if
-    that is fast."""
+    """n points (n, 3), mm, of m beads in order.
+
+    starts: (m + 1,) first row of each bead, and n. layers: (m,) layer of each bead, ascending.
+    width: (n,) mm. read: returns the beads; called when more than lines is needed. layer_height:
+    returns the height, mm, of beads without a height; called for tubes. read_bead: returns a single
+    bead, if that is fast.
+    """
 
     points: Array
     starts: Index
@@ -49,7 +53,7 @@ class Rows:
         width: float,
         layer_height: Callable[[], float],
     ) -> Rows:
-        """`width` (mm) applies to beads without a width."""
+        """Collect the rows of beads; `width` (mm) applies to beads without a width."""
         points = np.concatenate([*(bead.points for bead in beads), np.zeros((0, 3))])
         starts = np.concatenate([[0], np.cumsum([len(bead) for bead in beads], dtype=np.intp)])
         columns = [
@@ -73,7 +77,7 @@ class Rows:
         return tuple(self.read())
 
     def bead(self, index: int) -> Bead:
-        """Return a bead. The first request reads a single bead; a second one reads all beads."""
+        """Return a bead. The first request reads a single bead; a second request reads all beads."""
         if self.read_bead is None or "beads" in vars(self):
             return self.beads[index]
         alone = self._bead_cache
@@ -92,16 +96,16 @@ class Rows:
 
     @property
     def layer_count(self) -> int:
-        """Number of layers; there may be some without beads."""
+        """Number of layers, including layers without beads."""
         return int(self.layers[-1]) + 1 if len(self.layers) else 0
 
     def layer_rows(self, from_layer: int, to_layer: int) -> tuple[int, int]:
-        """First row of a layer, and the row after the last of another."""
+        """Return the first row of a layer, and the row after the last row of another layer."""
         low, high = np.searchsorted(self.layers, [from_layer, to_layer + 1])
         return int(self.starts[low]), int(self.starts[high])
 
     def bead_of(self, row: int) -> int:
-        """The bead that a row belongs to."""
+        """Return the bead of a row."""
         return min(int(np.searchsorted(self.starts, row, side="right")) - 1, len(self.layers) - 1)
 
     def counts(self, start: int, end: int) -> Index:
@@ -111,7 +115,7 @@ class Rows:
 
     @cached_property
     def cuts(self) -> Index:
-        """Rows at which the path is cut into pieces: where beads begin, and within long ones."""
+        """Rows at which the path is split into pieces: at bead starts, and within long beads."""
         cuts = [0]
         for start, end in zip(self.starts, self.starts[1:], strict=False):
             if end - cuts[-1] > PIECE and start > cuts[-1]:
@@ -123,7 +127,7 @@ class Rows:
 
     @cached_property
     def height(self) -> Array:
-        """(n,) mm, as predicted, else the layer height."""
+        """(n,) mm; the predicted height, or the layer height."""
         height = self.layer_height()
         columns = [
             np.full(len(bead), height) if bead.height is None else bead.height
@@ -133,25 +137,25 @@ class Rows:
 
     @cached_property
     def frames(self) -> tubes.Frames:
-        """Across each point."""
+        """Cross-section frames at each point."""
         closed = np.array([bead.closed for bead in self.beads], dtype=bool)
         return tubes.frames(self.points, self.build, self.starts, closed)
 
     @cached_property
     def sections(self) -> Index:
-        """The rows that get a section of a tube."""
+        """Rows with a tube section."""
         return np.flatnonzero(
             tubes.select_sections(self.frames.turn, self.starts, -(-len(self) // SECTIONS))
         )
 
     @property
     def sides(self) -> int:
-        """Sides of the tubes, fewer for long paths."""
+        """Number of sides of the tubes; fewer for long paths."""
         count = len(self.sections)
         return 8 if count <= FINER else 6 if count <= FINE else 4
 
     def tube(self, start: int, end: int) -> tuple[tubes.Mesh, Index]:
-        """Tubes from row `start` to before `end`, and the row of each of their sections."""
+        """Return the tubes from row `start` to before `end`, and the row of each tube section."""
         low, high = np.searchsorted(self.sections, [start, end])
         rows = np.unique(np.concatenate([[start], self.sections[low:high], [end - 1]]))
         bead = np.searchsorted(self.starts, rows, side="right")
@@ -163,17 +167,20 @@ class Rows:
 
 
 BLOCK = (
-    128  # sections by which a piece of tubes grows: Coin reads the whole piece again at each step
+    128  # sections by which a piece of tubes grows; Coin reads the whole piece again at each step
 )
 _SHININESS = 0.2
-# as texts, which Coin reads in a fifth of the time that pivy takes to find a field; there are many pieces
+# as text, which Coin parses in a fifth of the time that pivy takes to find a field; pieces are many
 ALL, BY_VERTEX = f"whichChild {coin.SO_SWITCH_ALL}", "materialBinding PER_VERTEX"
 
 
 @dataclass(frozen=True)
 class Piece:
-    """The node of a stretch of rows. cut: draws the rows before a row, and returns the row from
-    which the rest must be drawn separately (the row itself if all are drawn)."""
+    """The node of a stretch of rows.
+
+    cut: draws the rows before a row, and returns the row from which the rest must be drawn
+    separately (the row itself if all rows are drawn).
+    """
 
     node: Any
     cut: Callable[[int], int]
@@ -183,7 +190,7 @@ Make = Callable[[int, int], Piece]
 
 
 class Look:
-    """One way to draw a path; `style` are the nodes before its pieces."""
+    """A way to draw a path; `style` are the nodes before its pieces."""
 
     def __init__(self, *style: Any) -> None:
         self.node, self.pieces, self.ends = coin.SoSwitch(), coin.SoSeparator(), coin.SoSeparator()
@@ -203,7 +210,7 @@ class Look:
         self.made: dict[int, Piece] = {}
         self.drawn: dict[
             int, tuple[int, int]
-        ] = {}  # of pieces switched on: up to which row, and the rest from which
+        ] = {}  # pieces switched on: the last row, and the row from which the rest is drawn separately
         self.before: tuple[tuple[int, int] | None, Any] = (
             None,
             None,
@@ -212,14 +219,14 @@ class Look:
         self.ends.removeAllChildren()
 
     def reset(self, cuts: Index, make: Make, joined: Callable[[int], int]) -> None:
-        """Draw another path: cut it at `cuts`, and build nodes with `make`.
+        """Draw another path: split it at `cuts`, and build nodes with `make`.
 
-        `joined` returns the row after those that a piece draws.
+        `joined` returns the row after the last row that a piece draws.
         """
         self.forget(cuts)
         self.make, self.joined = make, joined
         for _ in range(len(cuts) - 1):
-            self.pieces.addChild(coin.SoSwitch())  # which shows none of its children
+            self.pieces.addChild(coin.SoSwitch())  # shows none of its children by default
 
     def hide(self) -> None:
         """Draw nothing."""
@@ -250,7 +257,9 @@ class Look:
                 self.ends.addChild(node)
 
     def _draw_piece(self, index: int, row: int) -> tuple[int, int]:
-        """Switch a piece on, drawn up to a row; the row, and from which row on the rest is to be drawn apart."""
+        """Switch a piece on and draw it up to a row. Return the row, and the row from which the
+        rest must be drawn separately.
+        """
         if self.drawn.get(index, (None,))[0] == row:
             return self.drawn[index]
         switch, end = self.pieces.getChild(index), self.joined(int(self.cuts[index + 1]))
@@ -307,7 +316,7 @@ class PathNodes:
             self.draw_directions(*self.drawn_directions)
 
     def paint(self, colours: Array) -> None:
-        """colours (n, 3) 0..1 of the points."""
+        """Colour the points with colours (n, 3) in 0..1."""
         channels = np.rint(255.0 * colours).astype(np.uint32)
         self.colours = channels[:, 0] << 24 | channels[:, 1] << 16 | channels[:, 2] << 8 | 255
         self.lines.reset(self.rows.cuts, self._lines, self._join)
@@ -327,7 +336,7 @@ class PathNodes:
             self.directions.show(start, end)
 
     def look(self, as_tubes: bool) -> None:
-        """Draw tubes, or lines."""
+        """Switch between tubes and lines."""
         if as_tubes != self.as_tubes:
             self.as_tubes = as_tubes
             self.show(self.first, self.end)
@@ -335,7 +344,7 @@ class PathNodes:
                 self.draw_directions(*self.drawn_directions)
 
     def draw_directions(self, step: int, length: float) -> None:
-        """Show the build direction of every `step`-th point by a line of this length, mm."""
+        """Show the build direction of every `step`-th point as a line of this length, mm."""
         self.drawn_directions = (step, length)
         foot = (
             self.rows.points
@@ -352,7 +361,7 @@ class PathNodes:
         self.show(self.first, self.end)
 
     def hide_directions(self) -> None:
-        """Show no build directions."""
+        """Hide the build directions."""
         self.drawn_directions = None
         self.directions.hide()
 
@@ -371,7 +380,8 @@ class PathNodes:
 
     def _tubes(self, begin: int, end: int) -> Piece:
         mesh, rows = self.rows.tube(begin, end)
-        # sort the triangles by their last section, so that a prefix of the triangles is a part of the tubes
+        # sort the triangles by their last section, so that a prefix of the triangles is a part of
+        # the tubes
         section = mesh.triangles.max(axis=1) // self.rows.sides
         corners = np.full((len(section), 4), -1, dtype=np.int32)
         corners[:, :3] = mesh.triangles[np.argsort(section, kind="stable")]
@@ -405,7 +415,7 @@ class PathNodes:
 
 
 def _line_set(points: Any, counts: Callable[[int], Any], end: int, colours: Any = None) -> Piece:
-    """Polylines of these points; `counts` per line that are before a row."""
+    """Build polylines of points; `counts` returns the number of points per line before a row."""
     values, shape = coin.SoVertexProperty(), coin.SoLineSet()
     fill(values.vertex, points)
     if colours is not None:
@@ -422,7 +432,7 @@ def _line_set(points: Any, counts: Callable[[int], Any], end: int, colours: Any 
 
 
 def _separate(shape: Any) -> Any:
-    """In a node of its own, which Coin may cache and leave out where it is not in sight."""
+    """Wrap a shape in its own node, which Coin may cache and cull."""
     node = coin.SoSeparator()
     node.addChild(shape)
     return node

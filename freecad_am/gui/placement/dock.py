@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The tool that opens the dock of placements."""
+"""The placement dock, and the tool that opens it."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ from ..worker import Work
 from . import figures
 from .figures import Coloured
 
-# ---- A placement in the 3D view: the machine at rest about the part, as it is drawn in the
-# document, and places about it
+# ---- A placement in the 3D view: the machine at rest around the part, as in the document, and the
+# candidate positions around it
 
 _CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], dtype=float)
 _SIDES = np.array(
@@ -59,7 +59,7 @@ DOT = 7.0  # pixels
 
 
 class Cubes:
-    """Cubes of one size, each in its colour; clicks go through them. One may be framed."""
+    """Coloured cubes of one size, transparent to clicks; one cube may be framed."""
 
     def __init__(self) -> None:
         self.node = coin.SoSeparator()
@@ -80,7 +80,7 @@ class Cubes:
         self.set(np.zeros((0, 3)), np.zeros((0, 3)), 1.0)
 
     def set(self, centres: Array, colours: Array, size: float) -> None:
-        """places (n, 3) mm, colours (n, 3) 0..1; size: mm, of an edge."""
+        """Draw cubes of edge length `size` mm at centres (n, 3), mm, with colours (n, 3) in 0..1."""
         corners = centres[:, None] + 0.5 * size * _CORNERS
         offsets = 8 * np.arange(len(centres))[:, None, None]
         sides = np.concatenate([offsets + _SIDES, np.full((len(centres), 6, 1), -1)], axis=2)
@@ -90,7 +90,7 @@ class Cubes:
         self.choose(None, size)
 
     def choose(self, centre: Array | None, size: float) -> None:
-        """Frame the cube at a place (3,), or none."""
+        """Frame the cube at a centre (3,); None removes the frame."""
         if centre is None:
             self.frame.set([], [])
             return
@@ -99,7 +99,7 @@ class Cubes:
 
 
 class Cloud:
-    """Points, each in its colour; clicks go through them."""
+    """Coloured points, transparent to clicks."""
 
     def __init__(self) -> None:
         self.node = coin.SoSeparator()
@@ -124,17 +124,18 @@ class Cloud:
         self.set(np.zeros((0, 3)), np.zeros((0, 3)))
 
     def set(self, points: Array, colours: Any) -> None:
-        """places (n, 3) mm, colours (n, 3) 0..1."""
+        """Draw points (n, 3), mm, with colours (n, 3) in 0..1."""
         fill(self.coordinates.point, points)
         fill(self.colour.diffuseColor, colours)
         self.points.numPoints = len(points)
 
 
-_MAX_EDGE_MM, _SHARE = 120.0, 0.35  # of a cube: mm, and share of the step between places
+# maximum cube edge, mm, and cube edge as a fraction of the step between positions
+_MAX_EDGE_MM, _SHARE = 120.0, 0.35
 
 
 class Scene:
-    """Nodes in a 3D view from when it is made until `remove`."""
+    """Nodes in a 3D view, from construction until `remove`."""
 
     def __init__(self, view: Any) -> None:
         self.view, self.machine, self.cubes, self.cloud = (
@@ -152,7 +153,7 @@ class Scene:
         self.graph.addChild(self.root)
 
     def stand(self, settings: CellParameters, toolpath: Toolpath) -> None:
-        """Draw the machine of a cell about the part; places are seen from it."""
+        """Draw the machine of a cell around the part, which stays fixed."""
         folders = user_machines.folders()
         cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
         joints = at_rest(cell, resting_point(toolpath, cell.poses.mount))
@@ -162,7 +163,7 @@ class Scene:
         self.machine.set(machine_scenery(settings, toolpath, folders))
 
     def positions_of(self, moves: str, poses: Array) -> Array:
-        """Return the positions (n, 3) in the view of poses (n, 6) of the moved object."""
+        """Return the positions (n, 3) in the view for poses (n, 6) of the moved object."""
         if moves == POSITIONER:
             links = self.cell.links(self.joints)
             base = frames.inverse(links[0]) @ self.cell.world(self.joints[None])[0]
@@ -185,7 +186,7 @@ class Scene:
         self.cubes.choose(None if number is None else self.places[number], self.size)
 
     def show_reach(self, reach: Reach | None) -> None:
-        """Draw the reach of the robot, or none."""
+        """Draw the robot's reach; None removes it."""
         if reach is None:
             self.cloud.set(np.zeros((0, 3)), np.zeros((0, 3)))
             return
@@ -197,7 +198,9 @@ class Scene:
         self.view.fitAll()
 
     def remove(self, document_goes: bool = False) -> None:
-        """Restore the view and its camera. The view may be gone, as when its document closes."""
+        """Restore the view and its camera. The view may already be deleted, for example with its
+        document.
+        """
         with contextlib.suppress(RuntimeError, ReferenceError):
             if self.graph.findChild(self.root) >= 0:
                 self.graph.removeChild(self.root)
@@ -207,26 +210,27 @@ class Scene:
             camera = self.view.getCameraNode()
             if camera.getTypeId() == self.camera.getTypeId():
                 camera.copyFieldValues(self.camera)
-            else:  # from perspective to orthographic meanwhile, or the other way
+            else:  # switched between perspective and orthographic meanwhile
                 self.view.setCamera(self.camera_text)
 
 
 def _size(positions: Array) -> float:
-    """mm, of cubes that leave room between places."""
+    """Return the cube edge length, mm, that leaves gaps between positions."""
     steps = [np.diff(np.unique(np.round(column, 6))) for column in positions.T]
     smallest = min((float(step.min()) for step in steps if len(step)), default=_MAX_EDGE_MM)
     return min(_MAX_EDGE_MM, _SHARE * smallest)
 
 
-# ---- The dock of a placement: it tries poses in the background, draws them as a map, and enters
-# the best by a click
+# ---- The placement dock: tries poses in the background, draws them as a map, and enters the
+# selected pose
 
-SECTION, HIGH = "place", 160  # pixels of the table at least
+SECTION, HIGH = "place", 160  # section name; minimum height of the table, pixels
 
 
 class Form(QtGui.QWidget):
-    """The widgets of the dock; the caller connects their signals. values: of the fields, in the
-    form of a macro."""
+    """The widgets of the dock; the caller connects their signals. values: field values in macro
+    form.
+    """
 
     def __init__(self, values: dict[str, Any]) -> None:
         super().__init__()
@@ -259,7 +263,7 @@ class Form(QtGui.QWidget):
         for label, lines in (
             (self.key, 1),
             (self.summary, 2),
-        ):  # lines; a fixed height keeps the widgets below in place
+        ):  # number of lines; a fixed height keeps the widgets below in place
             label.setWordWrap(True)
             label.setMinimumHeight(lines * label.fontMetrics().lineSpacing())
             label.setAlignment(QtCore.Qt.AlignLeft | QtCore.Qt.AlignTop)
@@ -273,7 +277,7 @@ class Form(QtGui.QWidget):
         column.addStretch(1)
 
     def values(self) -> dict[str, Any]:
-        """Return the entered values in the form of a macro. Raises InputError for unreadable input."""
+        """Return the entered values in macro form. Raises InputError for unreadable input."""
         return {key: field.value for key, field in self.fields.items()}
 
     def tell(self, text: str, wrong: bool = False) -> None:
@@ -282,7 +286,7 @@ class Form(QtGui.QWidget):
         set_role(self.summary, INVALID if wrong else PLAIN)
 
     def tell_colours(self, coloured: figures.Coloured | None) -> None:
-        """What the colours mean."""
+        """Explain the colours."""
         if coloured is None or coloured.lowest != coloured.lowest:
             self.key.setText("")
             return
@@ -293,7 +297,7 @@ class Form(QtGui.QWidget):
         )
 
     def fill(self, placed: Placed | None, numbers: list[int]) -> None:
-        """The rows of the table."""
+        """Fill the table."""
         self.table.setRowCount(0 if placed is None else len(numbers))
         for row, number in enumerate(numbers if placed is not None else ()):
             assert placed is not None
@@ -318,7 +322,7 @@ def _reach() -> Any:
     box.setObjectName("reach")
     box.setSizePolicy(
         QtGui.QSizePolicy.Fixed, QtGui.QSizePolicy.Fixed
-    )  # Qt only accepts clicks on its text
+    )  # Qt accepts clicks only on the text of the box
     box.setToolTip(
         tr("Show the workspace of the robot: blue for few directions, yellow for all directions")
     )
@@ -338,13 +342,13 @@ def _table() -> Any:
 
 
 NAME = "RoboticAM_Placement"
-MIN_WIDTH = 380  # pixels, at least
+MIN_WIDTH = 380  # pixels; minimum width
 REACH_STEP = 150.0  # mm
 FIT = 150  # ms
 
 
 class PlacementDock:
-    """Tries poses of one joint path or toolpath until the dock closes or its object is deleted."""
+    """Tries poses of a joint path or toolpath until the dock closes or the object is deleted."""
 
     def __init__(self, obj: Any, view: Any) -> None:
         self.obj, self.gone, self.entering = obj, False, False
@@ -374,7 +378,7 @@ class PlacementDock:
         self.dock.come()
         QtCore.QTimer.singleShot(
             FIT, self._fit
-        )  # once the dock has its place and the view the rest
+        )  # after the dock and the view have their final sizes
         self.lookout = Lookout(lambda: _Shown(self.placing), self._changed_object, self.end)
         preferences_watch.listen(self._paint)
         preferences_watch.listen_to_language(self._speak)
@@ -388,11 +392,11 @@ class PlacementDock:
         self.form.reach.clicked.connect(lambda *_: self._reach())
         self.form.colour.activated.connect(lambda *_: self._paint())
         self.form.table.itemSelectionChanged.connect(self._paint)
-        self.scroll.setWidget(self.form)  # remove the old widget
+        self.scroll.setWidget(self.form)  # removes the old widget
         self._name_buttons()
 
     def _speak(self) -> None:
-        """Rebuild in the window's new language; entries and results stay."""
+        """Rebuild in the window's new language; keep entries and results."""
         values, has_reach = {}, self.form.reach.isChecked()
         with contextlib.suppress(AmError):
             values = self.form.values()
@@ -412,7 +416,7 @@ class PlacementDock:
     # ---- computation
 
     def _compute(self) -> None:
-        """Try the poses, or stop that."""
+        """Start trying the poses, or cancel."""
         if self.work.runs:
             self.work.cancel()
             self.form.tell(tr("Cancelled."))
@@ -437,7 +441,7 @@ class PlacementDock:
         self._name_buttons()
 
     def _reach(self) -> None:
-        """Show the reach of the robot, or no more."""
+        """Show or hide the robot's reach."""
         self.reaching.cancel()
         if not self.form.reach.isChecked():
             self.volume = None
@@ -479,7 +483,7 @@ class PlacementDock:
         self._name_buttons()
 
     def chosen(self) -> int | None:
-        """The number of the pose that is chosen in the table."""
+        """Return the index of the pose selected in the table; None without a selection."""
         row = self.form.table.currentRow()
         return self.numbers[row] if 0 <= row < len(self.numbers) else None
 
@@ -510,10 +514,10 @@ class PlacementDock:
             return
         self.form.tell_colours(coloured)
 
-    # ---- making it the choice
+    # ---- applying the selected pose
 
     def _use(self) -> None:
-        """Enter the chosen pose into the cell and renew the dependent stages."""
+        """Enter the selected pose into the cell and recompute the dependent stages."""
         number = self.chosen()
         if self.found is None or number is None:
             return
@@ -532,7 +536,7 @@ class PlacementDock:
         self.form.tell(tr("The pose was entered into {}.").format(self.placing.cell.Label))
         self._stand()
 
-    # ---- the end
+    # ---- closing
 
     def _changed_object(self, obj: Any, name: str) -> None:
         """Discard results of outdated inputs."""
@@ -569,18 +573,20 @@ class PlacementDock:
 
 
 class _Shown:
-    """Return the objects for a lookout to watch."""
+    """The objects for a lookout to watch."""
 
     def __init__(self, placing: Placing) -> None:
         self.document, self.objects = placing.document, placing.names
 
 
-_open: list[PlacementDock] = []  # Python must keep it as long as it is open; there is one
+_open: list[PlacementDock] = []  # keeps the open dock alive; at most one
 
 
 def show(obj: Any) -> PlacementDock | None:
-    """Open the dock for a joint path or toolpath in a 3D view of its document and close the open
-    one. Raises InputError without anything to place."""
+    """Close the open dock and open it for a joint path or toolpath in a 3D view of its document.
+
+    Raises InputError if there is nothing to place.
+    """
     placing_of(obj)
     document = Gui.getDocument(obj.Document.Name)
     views = document.mdiViewsOfType("Gui::View3DInventor")
@@ -596,12 +602,14 @@ def show(obj: Any) -> PlacementDock | None:
     return opened
 
 
-KINDS = ("joint path", "toolpath")  # kinds of placed objects, the most complete first
+KINDS = ("joint path", "toolpath")  # kinds of objects that can be placed, most complete first
 
 
 def placement() -> None:
-    """Place the selected joint path, toolpath with a cell, or the path of the selected program;
-    without such a selection, the last one of the document."""
+    """Place the selected joint path, toolpath with a cell, or path of the selected program.
+
+    Without such a selection, use the last candidate of the document.
+    """
     selected = [path for path in map(_path, job_selection()) if path is not None]
     if not selected and job_named():
         _say(
@@ -628,7 +636,9 @@ def _kind(obj: Any) -> str:
 
 
 def _path(obj: Any) -> Any:
-    """The joint path or toolpath that an object is or belongs to, with a cell; None without one."""
+    """Return the joint path, or toolpath with a cell, that an object is or belongs to; None without
+    one.
+    """
     kind = _kind(obj)
     if kind == "program":
         return obj.JointPath

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the poses of a placement came to, as colours and as rows of a table."""
+"""Format the results of a placement's poses as colours and table rows."""
 
 from __future__ import annotations
 
@@ -28,8 +28,9 @@ ROWS = 200
 
 @dataclass(frozen=True, eq=False)
 class Coloured:
-    """numbers: (m,) numbers of the drawn poses, the best of each position. colours: (m, 3). lowest,
-    highest: range of the coloured figures, NaN without any."""
+    """numbers: (m,) indices of the drawn poses, the best pose at each position. colours: (m, 3).
+    lowest, highest: range of the coloured result, NaN without values.
+    """
 
     numbers: Integers
     colours: Array
@@ -38,7 +39,7 @@ class Coloured:
 
 
 def heading(name: str) -> str:
-    """Return the label of a figure with its unit."""
+    """Return the label of a result with its unit."""
     text = translated(NAMES[name])
     return f"{text}, {_length_unit()[1]}" if name == CLEARANCE else text
 
@@ -49,7 +50,7 @@ def _length_unit() -> tuple[float, str]:
 
 
 def figure(placed: Placed, number: int, name: str) -> float:
-    """Return one figure of a pose in its displayed unit."""
+    """Return one result of a pose in its displayed unit."""
     result = placed.result_of(number)
     return {
         SHARE: 100.0 * result.share,
@@ -60,9 +61,12 @@ def figure(placed: Placed, number: int, name: str) -> float:
 
 
 def coloured(placed: Placed, name: str) -> Coloured:
-    """Colour the poses by a figure: feasible poses from lowest to highest, others grey; by their
-    share, all poses. At each position the best pose is shown, or the pose with the largest
-    share."""
+    """Colour the poses by a result.
+
+    Feasible poses are coloured from lowest to highest, infeasible poses are grey. The reachable
+    fraction colours all poses. Each position shows its best pose, or the pose with the largest
+    fraction.
+    """
     rank = {number: k for k, number in enumerate(ranked(placed, MARGIN))}
     order = sorted(
         range(len(placed.poses)), key=lambda k: (rank.get(k, len(rank)), -placed.judged[k].share, k)
@@ -90,13 +94,17 @@ def coloured(placed: Placed, name: str) -> Coloured:
 
 
 def rows(placed: Placed, best: str) -> list[int]:
-    """The poses of the table: the best one, those planned with all points, then the others that serve, the best first."""
+    """Return the poses of the table: the best pose, poses planned with all points, then other
+    feasible poses, best first.
+    """
     leading = [placed.best] if placed.best is not None else []
     return list(dict.fromkeys([*leading, *placed.proven, *ranked(placed, best)]))[:ROWS]
 
 
 def texts(placed: Placed, number: int) -> list[str]:
-    """The cells of a row: the pose, its figures, and with how many points it was planned or why it fails."""
+    """Return the cells of a row: pose, results, and the number of planned points or the reason of
+    failure.
+    """
     factors = [_length_unit()[0]] * 3 + [1.0] * 3
     pose = [
         significant(factor * float(value), 6)
@@ -125,7 +133,7 @@ def heads() -> list[str]:
 
 
 def summed(placed: Placed) -> str:
-    """How many poses serve, in a sentence."""
+    """Summarise in a sentence how many poses are feasible."""
     serve = sum(result.feasible for result in placed.judged)
     text = tr("{} of {} poses are feasible at {} of {} points.").format(
         serve, len(placed.poses), placed.points, placed.of

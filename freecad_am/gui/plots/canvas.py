@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A picture in the window, or a text in its place; matplotlib is imported for the first picture."""
+"""A widget that shows a picture or a text; matplotlib is imported for the first picture."""
 
 from __future__ import annotations
 
@@ -87,8 +87,10 @@ WORDS = (
 
 
 def in_words(picture: Picture, user_units: bool = True) -> Picture:
-    """Translate a picture to the language of the window; names, such as axis names, stay.
-    user_units: whether quantities in its texts are in the user's units."""
+    """Translate a picture to the window's language; names, such as axis names, stay.
+
+    user_units: whether quantities in the texts are in the user's units.
+    """
 
     def translate_chart(chart: Chart) -> Chart:
         return replace(
@@ -111,12 +113,14 @@ def in_words(picture: Picture, user_units: bool = True) -> Picture:
     )
 
 
-PER_CHART = 92  # pixels
+PER_CHART = 92  # pixels; minimum height of a chart
 
 
 class Canvas(QtGui.QWidget):
-    """Shows charts in a `view.View`, or a text. interactive: whether the mouse zooms and reads; it
-    also gives each chart a minimum height."""
+    """Shows charts in a `view.View`, or a text.
+
+    interactive: whether the mouse zooms and reads values; also gives each chart a minimum height.
+    """
 
     def __init__(self, interactive: bool = True) -> None:
         super().__init__()
@@ -139,14 +143,14 @@ class Canvas(QtGui.QWidget):
         self.picture, self.text = picture if has_charts else None, text
         self.label.setText(text)
         charts = self.picture.charts if self.picture is not None else ()
-        if self.interactive:  # without charts the text is in the middle of what is in sight
+        if self.interactive:  # without charts, the text is centred in the visible area
             self.setMinimumHeight(PER_CHART * len(charts))
         if self.view is not None:
             self.view.show_charts(charts, keep)
         self.pages.setCurrentIndex(1 if charts else 0)
 
     def provide_view(self) -> View | None:
-        """Return the view of the charts, made at the first call; None without matplotlib."""
+        """Return the view of the charts, created at the first call; None without matplotlib."""
         if self.view is None:
             try:
                 from .view import View
@@ -162,7 +166,7 @@ class Canvas(QtGui.QWidget):
         return self.picture is None or (self.view is not None and bool(self.view.places))
 
     def ranges(self) -> tuple[dict[int, Range], dict[int, Range]]:
-        """Return the ranges of x and y that the user has chosen, by the number of a chart."""
+        """Return the x and y ranges that the user has chosen, by chart index."""
         return ({}, {}) if self.view is None else (dict(self.view.across), dict(self.view.up))
 
     def changeEvent(self, event: Any) -> None:

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The dock of plots: a picture of a toolpath, joint path or program, of some of its layers, over time or path."""
+"""The plots dock: a picture of a toolpath, joint path or program, or of some of its layers, over
+time or path.
+"""
 
 from __future__ import annotations
 
@@ -33,7 +35,7 @@ def in_units(picture: Picture) -> Picture:
 
 
 NAME = "RoboticAM_Plots"
-HEIGHT, LEAST_HEIGHT = 330, 80  # pixels of the dock, and of a picture
+HEIGHT, LEAST_HEIGHT = 330, 80  # pixels; height of the dock, and minimum height of a picture
 LABEL_LETTERS, MIN_LETTERS, MAX_LETTERS = (
     9,
     14,
@@ -47,15 +49,13 @@ class PlotsDock(Follower):
     """One dock for all documents; it follows the last selection and its changes."""
 
     def __init__(self) -> None:
-        self.target: tuple[str, str] | None = (
-            None  # names of document and object that were asked for
-        )
-        self.source: tuple[Any, Source] | None = None  # its key and its data
+        self.target: tuple[str, str] | None = None  # names of the requested document and object
+        self.source: tuple[Any, Source] | None = None  # key and data of the source
         self.picture: Picture | None = None
-        self.metric: Picture | None = None  # the same in mm, for values in a file
+        self.metric: Picture | None = None  # the picture in mm, for values in a file
         self.shown: tuple[Any, ...] = ()  # object, picture and axis of the display
         self.layers_of: tuple[str, str] | None = (
-            None  # object of the chosen layers; names repeat in other documents
+            None  # object of the chosen layers, with its document, because names repeat in other documents
         )
         self.dock = dock_area.dock(NAME, dock_area.BELOW, high=HEIGHT)
         self.canvas = Canvas()
@@ -79,23 +79,23 @@ class PlotsDock(Follower):
     # ---- the fields
 
     def _make_toolbar(self) -> Any:
-        """matplotlib's toolbar; None without matplotlib."""
+        """Create matplotlib's toolbar; None without matplotlib."""
         shown = self.canvas.provide_view()
         if shown is None:
             return None
-        from .view import Toolbar  # with matplotlib, whose import takes some time
+        from .view import Toolbar  # imports matplotlib, which takes some time
 
         return Toolbar(shown, self._save, self._show_reading)
 
     def _build(self) -> None:
-        """The fields, in the language of the window, about the canvas."""
+        """Build the fields around the canvas in the window's language."""
         form = QtGui.QWidget()
         self.choice = self._combo(
             "plotted", tr("The toolpath, joint path or program to plot"), LABEL_LETTERS
         )
         self.choice.setMaximumWidth(
             MAX_LETTERS * self.choice.fontMetrics().averageCharWidth()
-        )  # leave room for the rest
+        )  # leave space for the other widgets
         self.which = self._combo("picture", tr("Quantity to plot"))
         self.over = self._combo("over", tr("Along the time of the job, or along its path"))
         self.first, self.last = (
@@ -118,7 +118,7 @@ class PlotsDock(Follower):
         self.dock.hold(tr("Plots"), Scrolled(form))
 
     def _speak(self) -> None:
-        """Rebuild in the window's new language; choices stay."""
+        """Rebuild in the window's new language; keep the choices."""
         indices = [(name, getattr(self, name).currentIndex()) for name in ("which", "over")]
         layers = [
             (name, getattr(self, name).maximum(), getattr(self, name).value())
@@ -146,7 +146,7 @@ class PlotsDock(Follower):
         combo.setMinimumContentsLength(letters)
         combo.setMinimumWidth(
             MIN_LETTERS * combo.fontMetrics().averageCharWidth()
-        )  # long names widen no window
+        )  # long names must not widen the window
         return combo
 
     def _layer(self, name: str, help: str) -> Any:
@@ -173,7 +173,8 @@ class PlotsDock(Follower):
         line.addStretch(1)
         if self.toolbar is not None:
             self.toolbar.speak()
-            self.toolbar.setParent(form)  # or PySide takes it for deleted with its earlier parent
+            # otherwise PySide treats the toolbar as deleted with its earlier parent
+            self.toolbar.setParent(form)
             line.addWidget(self.toolbar)
         below = QtGui.QHBoxLayout()
         below.addWidget(self.reading, 1)
@@ -185,14 +186,14 @@ class PlotsDock(Follower):
     # ---- selection
 
     def open(self, obj: Any = None) -> None:
-        """Show the dock, and in it the pictures of an object."""
+        """Open the dock and show the pictures of an object."""
         if obj is not None:
             self.target = (obj.Document.Name, obj.Name)
         self.dock.come()
         self.fill()
 
     def object(self) -> Any:
-        """The selected object, else the latest of the document; None without any."""
+        """Return the selected object, or else the latest of the document; None without any."""
         if self.target is not None and self.target[0] in App.listDocuments():
             found = App.getDocument(self.target[0]).getObject(self.target[1])
             if plottable(found):
@@ -200,7 +201,7 @@ class PlotsDock(Follower):
         candidates = _plottable()
         return (
             max(candidates, key=lambda obj: kind_of(obj) == JOINT_PATH) if candidates else None
-        )  # not stored: a later stage may follow
+        )  # not stored, because a later stage may follow
 
     def _chosen(self, index: int) -> None:
         candidates = _plottable()
@@ -209,7 +210,7 @@ class PlotsDock(Follower):
         self.fill()
 
     def fill(self) -> None:
-        """Make the picture that is chosen; nothing while the dock is closed."""
+        """Create the chosen picture; do nothing while the dock is closed."""
         if not self.dock.isVisible():
             return
         self.building.cancel()
@@ -253,7 +254,7 @@ class PlotsDock(Follower):
             name,
             over,
             layers,
-        )  # read now: the object may be deleted later
+        )  # read now, because the object may be deleted later
         self.building.start(work, lambda worker: self._built(worker, key, identity))
 
     def _layers(self, obj: Any) -> None:
@@ -292,7 +293,7 @@ class PlotsDock(Follower):
         self._show_reading("")
         self.canvas.show_picture(self.picture, text, keep)
 
-    # ---- what the user does
+    # ---- user actions
 
     def _show_reading(self, text: str) -> None:
         self.reading.setText(text)
@@ -305,14 +306,14 @@ class PlotsDock(Follower):
     # ---- called by FreeCAD
 
     def addSelection(self, document: str, name: str, *_: Any) -> None:
-        """Something was selected."""
+        """Show the plots of a selected object."""
         obj = App.getDocument(document).getObject(name) if document in App.listDocuments() else None
         if obj is not None and plottable(obj) and self.target != (document, name):
             self.target = (document, name)
             QtCore.QTimer.singleShot(0, self.fill)
 
     def slotChangedObject(self, obj: Any, name: str) -> None:
-        """A property of an object has changed."""
+        """Update after a property has changed."""
         if name in CHANGES and self.dock.isVisible() and kind_of(obj) in KINDS:
             self.changed.ask()
 
@@ -330,5 +331,5 @@ only = OnlyDock(PlotsDock)
 
 
 def show(obj: Any = None) -> None:
-    """Open the dock, of an object, of one that is selected, or of the latest."""
+    """Open the dock for an object, the selected object, or the latest."""
     only.provide().open(obj or next(filter(plottable, job_selection()), None))

@@ -13,8 +13,9 @@ from ..in_language import tr
 
 
 def text_at(chart: Chart, x: float) -> str:
-    """Return x and the values at x: of the nearest point of a curve, of the segment of a step
-    curve."""
+    """Return x and the values at x: of the nearest point of a curve, or of the segment of a step
+    curve.
+    """
     texts = [f"{chart.x.name} {x:.5g} {chart.x.unit}".rstrip()]
     if chart.bars is not None:
         bin = int(np.searchsorted(chart.bars.edges, x, side="right")) - 1
@@ -33,7 +34,7 @@ def text_at(chart: Chart, x: float) -> str:
 
 
 def _nearest(curve: Curve, x: float) -> int:
-    """The value of a curve at x."""
+    """Return the index of a curve's point for x."""
     index = min(int(np.searchsorted(curve.x, x)), len(curve.x) - 1)
     if curve.kind == STEP or index == 0:
         return index
@@ -51,5 +52,5 @@ def frame_words() -> Words:
 
 
 def look_of() -> Look:
-    """The look of plots in the present theme of the window, and in its language."""
+    """Return the look of plots in the current theme and language of the window."""
     return replace(DARK if colours.is_dark() else LIGHT, words=frame_words())

@@ -43,21 +43,22 @@ TOOLPATH, JOINT_PATH, PROGRAM = "toolpath", "joint path", "program"
 
 
 def plottable(obj: Any) -> bool:
-    """Whether an object is a toolpath, joint path or program that has been computed."""
+    """Whether an object is a computed toolpath, joint path or program."""
     return kind_of(obj) in (TOOLPATH, JOINT_PATH, PROGRAM) and all(
         stage is not None and bool(stage.Key) for stage in made_from(obj)
     )
 
 
 def kind_of(obj: Any) -> str:
-    """The kind of stage an object is, '' if it is none."""
+    """Return the stage kind of an object; '' if it is not a stage."""
     stage = stage_of(obj) if obj is not None else None
     return "" if stage is None else str(stage.kind)
 
 
 def made_from(obj: Any) -> list[Any]:
-    """Return the source objects of pictures of a toolpath, joint path or program, None for missing
-    ones."""
+    """Return the source objects for pictures of a toolpath, joint path or program; None for missing
+    objects.
+    """
     if kind_of(obj) == PROGRAM:
         return [obj.JointPath] if kind_of(obj.JointPath) != JOINT_PATH else made_from(obj.JointPath)
     if kind_of(obj) == JOINT_PATH:
@@ -74,7 +75,9 @@ def key_of(obj: Any) -> tuple[Any, ...]:
 
 
 def maker_of(obj: Any) -> Callable[[], Source]:
-    """What makes the source of an object's pictures; it touches no document and may take a moment."""
+    """Return a function that builds the source of an object's pictures; it touches no document and
+    may take a moment.
+    """
     path, toolpath_object = made_from(obj)[0], made_from(obj)[min(1, len(made_from(obj)) - 1)]
     toolpath = toolpath_object.Proxy.value(toolpath_object)
     process = toolpath_object.Proxy.parameters(toolpath_object, ProcessParameters)
@@ -116,8 +119,9 @@ def maker_of(obj: Any) -> Callable[[], Source]:
 
 
 def _filled(feature: Any) -> dict[str, Any]:
-    """Return what `Source` has of a feature with stacked layers: its solids in plane layers, where
-    layers are cut, and the limit of void; nothing for other features."""
+    """Return the `Source` fields of a feature with stacked layers: its solids in plane layers, the
+    position of the cuts, and the void limit. Return nothing for other features.
+    """
     stage = stage_of(feature)
     family = None if stage is None else stage_family(stage)
     if stage is None or family is None or not family.stacks_layers or not feature.Key:
@@ -130,12 +134,14 @@ def _filled(feature: Any) -> dict[str, Any]:
     }
 
 
-_writing: list[Background] = []  # Python must keep them as long as they write
+_writing: list[Background] = []  # keeps running work alive
 
 
 def save(picture: Picture, metric: Picture, obj: Any, canvas: Canvas) -> None:
-    """Ask for a file, and write to it the picture of an object as the canvas shows it, or its values, which are `metric`
-    whatever the window's units are."""
+    """Ask for a file, and write an object's picture as the canvas shows it, or its values.
+
+    metric: the picture in mm; its values are written whatever the window's units are.
+    """
     size, (across, up) = (canvas.width(), canvas.height()), canvas.ranges()
 
     def plot_content(ending: str) -> bytes:
@@ -146,8 +152,11 @@ def save(picture: Picture, metric: Picture, obj: Any, canvas: Canvas) -> None:
 
 
 def ask(title: str, obj: Any, name: str, content: Callable[[str], bytes]) -> None:
-    """Ask for a file and write in the background what `content` gives for its ending, png, svg, pdf
-    or csv. Show an error if the object is out of date."""
+    """Ask for a file and write in the background what `content` returns for its extension (png,
+    svg, pdf, csv).
+
+    Show an error if the object is out of date.
+    """
     stale = next((stage for stage in made_from(obj) if stage is not None and is_stale(stage)), None)
     if stale is not None:
         text = tr("{} is out of date; recompute the document, then save.").format(stale.Label)
@@ -189,7 +198,7 @@ def _say(text: str, console: Any) -> None:
     Gui.getMainWindow().statusBar().showMessage(text, 8000)
 
 
-# ---- Pictures saved as images and as comma separated values
+# ---- Save pictures as images and as comma-separated values
 
 Ranges = Mapping[int, Range]
 CSV = "csv"
@@ -199,8 +208,11 @@ ENDINGS = (*KINDS, CSV)
 def file_content(
     picture: Picture, ending: str, size: tuple[int, int], across: Ranges, up: Ranges
 ) -> bytes:
-    """The file for an ending, one of ENDINGS: an image on white of the visible range
-    (`draw.Window`), or all values of the picture."""
+    """Return the file for an extension, one of ENDINGS.
+
+    Images have a white background and the visible range (`draw.Window`); csv has all values of the
+    picture.
+    """
     if ending == CSV:
         return "".join(values(picture)).encode()
     return image(
@@ -210,7 +222,7 @@ def file_content(
 
 
 def write_file(content: bytes, path: str) -> None:
-    """Write a file, which appears whole or not at all. OSError where it cannot be written."""
+    """Write a file completely or not at all. Raises OSError if it cannot be written."""
     unfinished = f"{path}.unfinished"
     try:
         with open(unfinished, "wb") as stream:
@@ -221,15 +233,17 @@ def write_file(content: bytes, path: str) -> None:
             os.remove(unfinished)
 
 
-# ---- The map of the free rotation as an image, or its cells as comma separated values
+# ---- Save the Redundancy Map as an image, or its cells as comma-separated values
 
-STEPS = 64  # of the ramp
+STEPS = 64  # steps of the ramp
 TICKS = np.arange(-180, 181, 60)  # deg
 
 
 def save_map(board: Any, branch: int, canvas: Any, obj: Any) -> None:
-    """Ask for a file, and write to it the map of a joint path as the canvas shows it, or its cells; board: its
-    `redundancy_map.board.Board`."""
+    """Ask for a file, and write the map of a joint path as the canvas shows it, or its cells.
+
+    board: the map's `redundancy_map.board.Board`.
+    """
     if canvas.painted is None:
         return
     picture, painted, curves = board.pictures[branch], canvas.painted, list(canvas.curves)
@@ -246,10 +260,10 @@ def save_map(board: Any, branch: int, canvas: Any, obj: Any) -> None:
 
 
 def map_values(board: Any, picture: MapPicture) -> Iterator[str]:
-    """A header and a row for each cell, column by column, in the units of machine files; '' for a
-    cell out of reach.
+    """Yield a header and a row for each cell, column by column, in the units of machine files; ''
+    out of reach.
 
-    `state`: the objection to a cell, '' without one.
+    `state` is the reason why a cell is infeasible, '' for feasible cells.
     """
     names, across = _across(board)
     up_name, up = _up(board)
@@ -305,14 +319,14 @@ def _up(board: Any) -> tuple[str, Array]:
 
 
 def _axis(board: Any, number: int, inside: Array) -> tuple[str, Array]:
-    """An external axis: name and values as a machine file has them."""
+    """Return name and values of an external axis in the units of machine files."""
     machine, index = board.source.cell.machine, board.source.cell.robot.chain.axes + number
     unit = "mm" if machine.chain.sliding[index] else "deg"
     return f"{machine.axes[index]}_{unit}", inside / machine.unit_values[index]
 
 
 def _phi(board: Any, picture: MapPicture) -> Array:
-    """(R, C) the rotation about the tool axis of each cell."""
+    """Return the rotation (R, C) about the tool axis of each cell."""
     if board.pair is not None:
         return np.full(picture.margin.shape, board.pair.phi)
     assert board.map is not None
@@ -320,7 +334,7 @@ def _phi(board: Any, picture: MapPicture) -> Array:
 
 
 def _cells(board: Any, painted: Any, curves: list[Any], factory: Any) -> Any:
-    """The map for a figure."""
+    """Return the map in the form of a figure."""
     count = len(painted.hatched)
 
     def row(value: Any) -> Any:

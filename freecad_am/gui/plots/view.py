@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""matplotlib's canvas and toolbar for Qt: charts are drawn, zoomed, moved and read.
+"""matplotlib's canvas and toolbar for Qt: draw, zoom, pan and read charts.
 
 matplotlib uses the Qt binding that FreeCAD has imported, PySide2 or PySide6.
 """
@@ -22,9 +22,9 @@ from .. import colours
 from ..in_language import marked, tr
 from .reading import look_of, text_at
 
-WHEEL_STEP = 1.25  # factor of one step of the wheel
+WHEEL_STEP = 1.25  # zoom factor per wheel step
 ICON_SIZE = 18  # pixels
-# name, tooltip, matplotlib's icon, method, and the name of its button
+# name, tooltip, matplotlib's icon, method, and object name of the button
 TOOLS = (
     ("Home", marked("Show everything, also with a double click"), "home", "home", "whole"),
     ("Back", marked("Show the previous view"), "back", "back", "back"),
@@ -48,18 +48,22 @@ TOOLS = (
 
 
 class View(FigureCanvasQTAgg):
-    """Charts one below the other. `across` and `up` hold the ranges of x and y that the user has
-    chosen, by the number of a chart; `places` where the frames were drawn."""
+    """Charts in a column.
+
+    across, up: x and y ranges that the user has chosen, by chart index. places: positions of the
+    drawn frames.
+    """
 
     def __init__(self, interactive: bool) -> None:
         super().__init__(Figure(dpi=DPI))
-        self.setAttribute(QtCore.Qt.WA_OpaquePaintEvent, False)  # the canvas around it is visible
+        # the canvas shows the background around the charts
+        self.setAttribute(QtCore.Qt.WA_OpaquePaintEvent, False)
         self.charts: tuple[Chart, ...] = ()
         self.places: tuple[Place, ...] = ()
         self.across: dict[int, Range] = {}
         self.up: dict[int, Range] = {}
         self.toolbar: Toolbar | None = None
-        self._limits: list[tuple[Range, Range]] = []  # of the axes as they were drawn
+        self._limits: list[tuple[Range, Range]] = []  # limits of the axes when last drawn
         self._pointer: tuple[int, float] | None = None  # chart, pixels from the left
         if interactive:
             self.mpl_connect("scroll_event", self._turn_wheel)
@@ -80,12 +84,12 @@ class View(FigureCanvasQTAgg):
         self.draw_idle()
 
     def show_all(self) -> None:
-        """Show the whole of all charts."""
+        """Show the full range of all charts."""
         self.across, self.up, self._limits = {}, {}, []
         self.draw_idle()
 
     def draw(self) -> None:
-        """Called by matplotlib: draw the charts for the present ranges and size."""
+        """Draw the charts for the current ranges and size; called by matplotlib."""
         if self.charts and min(self.width(), self.height()) > 0:
             self._note_ranges()
             is_new = not self.figure.axes
@@ -108,7 +112,7 @@ class View(FigureCanvasQTAgg):
             self.toolbar.push_current()
 
     def _note_ranges(self) -> None:
-        """Take over the limits that toolbar and wheel have changed since the last drawing."""
+        """Store the limits that toolbar and wheel have changed since the last drawing."""
         for number, (axes, (across, up)) in enumerate(
             zip(self.figure.axes, self._limits, strict=False)
         ):
@@ -118,7 +122,7 @@ class View(FigureCanvasQTAgg):
                 self.up[number] = axes.get_ylim()
 
     def _turn_wheel(self, event: Any) -> None:
-        """Zoom about the pointer: across, or up and down with Ctrl."""
+        """Zoom about the pointer: horizontally, or vertically with Ctrl."""
         axes = event.inaxes
         if axes is None:
             return
@@ -154,7 +158,7 @@ class View(FigureCanvasQTAgg):
         self.update()
 
     def paintEvent(self, event: Any) -> None:
-        """Called by Qt: also draw a line at the pointer through all charts with the same x."""
+        """Called by Qt; also draw a line at the pointer through all charts with the same x."""
         super().paintEvent(event)
         if self._pointer is None:
             return
@@ -171,8 +175,10 @@ class View(FigureCanvasQTAgg):
 
 
 class Toolbar(NavigationToolbar2QT):
-    """matplotlib's toolbar of a view, in the language and colours of the window. save: called for
-    the button that saves; show_reading: called with the text for the pointer's place."""
+    """matplotlib's toolbar of a view, in the window's language and colours.
+
+    save: called by the save button. show_reading: called with the text for the pointer position.
+    """
 
     def __init__(
         self, view: View, save: Callable[[], None], show_reading: Callable[[str], None]
@@ -181,14 +187,14 @@ class Toolbar(NavigationToolbar2QT):
         self._save, self._show_reading = save, show_reading
         super().__init__(view, None, coordinates=False)
         view.toolbar = self
-        # a frame around the active tool: on the theme's background its icon is hardly visible
+        # frame around the active tool, whose icon is hardly visible on the theme's background
         self.setStyleSheet("QToolButton:checked { background: transparent; border: 1px solid; }")
         self.setIconSize(QtCore.QSize(ICON_SIZE, ICON_SIZE))
         for action, (name, *_, button) in zip(self.actions(), TOOLS, strict=False):
             action.setText("")
             self.widgetForAction(action).setAccessibleName(name)
             self.widgetForAction(action).setObjectName(button)
-        self.pan()  # dragging moves the picture unless another tool is chosen
+        self.pan()  # dragging pans the picture unless another tool is chosen
 
     def speak(self) -> None:
         """Show the tooltips in the window's language."""
@@ -196,17 +202,18 @@ class Toolbar(NavigationToolbar2QT):
             action.setToolTip(tr(help))
 
     def minimumSizeHint(self) -> Any:
-        """Called by Qt: no button hides behind an arrow."""
+        """Called by Qt; prevents buttons from hiding behind an arrow."""
         return self.sizeHint()
 
     def home(self, *_: Any) -> None:
-        """Show the whole of all charts."""
+        """Show the full range of all charts."""
         super().home()
         self.canvas.show_all()
 
     def set_message(self, s: str) -> None:
         """Called by matplotlib, whose own signal PySide2 does not find on Python 3.13."""
-        self._show_reading("" if s == self.mode else s)  # it also sends the name of the tool
+        # matplotlib also sends the name of the tool
+        self._show_reading("" if s == self.mode else s)
 
     def save_figure(self, *_: Any) -> None:
         """Ask for a file and save to it."""
@@ -220,7 +227,7 @@ class Toolbar(NavigationToolbar2QT):
                 action.setIcon(self._icon(f"{icon}.png"))
 
     def _icon(self, name: str) -> Any:
-        """Called by matplotlib: one of its icons, which are black, in the colour of texts."""
+        """Called by matplotlib; recolour its black icons in the text colour."""
         file = Path(matplotlib.get_data_path(), "images", name.replace(".png", "_large.png"))
         pixmap = QtGui.QPixmap(str(file))
         mask = pixmap.createMaskFromColor(QtGui.QColor("black"), QtCore.Qt.MaskOutColor)

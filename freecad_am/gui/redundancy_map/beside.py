@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What stands next to the map: its display, the numbers of the curve, and its figures."""
+"""The widgets next to the map: display options, curve coefficients and statistics."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from .board import COLOURS, OWN_CURVE, PLANNED_CURVE, Board, Cell
 from .draft import CONSTANT, POLYNOMIALS, Draft
 from .painting import KINDS
 
-# ---- The fields: display of the map, and numbers of the curve
+# ---- Fields: display of the map, and coefficients of the curve
 
-STEP = 1.0  # deg of an arrow of a coefficient
+STEP = 1.0  # deg; spin-box step of a coefficient
 MAX_VALUE = 1e6
 AXES, CURVES = (RZ, ROTATION), (POLYNOMIALS, CONSTANT)
 
 
 class Controls(QtGui.QWidget):
-    """Functions are called with what the user chose; `fill` shows a state without calling any."""
+    """Call functions with the user's choices; `fill` shows a state without calling any."""
 
     def __init__(
         self,
@@ -138,8 +138,9 @@ class Controls(QtGui.QWidget):
             self.set_value(number, value)
 
     def selection(self) -> tuple[int | None, str, int | None, int | None]:
-        """Which layer, None for all; the rotation upwards; which external axis across, None for the path; and which external
-        axis upwards, None for the rotation."""
+        """Return layer (None for all), vertical rotation, horizontal external axis (None for the
+        path), and vertical external axis (None for the rotation).
+        """
         layer, across, axis = (
             self.layer.value(),
             self.across.currentIndex() - 1,
@@ -220,19 +221,18 @@ class Controls(QtGui.QWidget):
 
 
 def _coefficient(number: int) -> str:
-    """What the panel calls a coefficient of a polynomial over the turns of a bead."""
+    """Return the label of a coefficient of a polynomial over the turns of a bead."""
     words = {0: tr("RZ at the start"), 1: tr("Linear"), 2: tr("Quadratic"), 3: tr("Cubic")}
     return words.get(number) or tr("Degree {}").format(number)
 
 
-# ---- Figures of the edited curve: at once for a sample of its points, a little later for all
-# points
+# ---- Statistics of the edited curve: at once for a sample of its points, shortly after for all points
 
 COLUMNS = 6
 
 
 class Figures(QtGui.QTableWidget):
-    """Rows are called by name; `changed` is called when a box was clicked."""
+    """Table with one row per curve name; `changed` is called when a box was clicked."""
 
     def __init__(self, changed: Callable[[], None]) -> None:
         super().__init__(0, COLUMNS)
@@ -271,7 +271,7 @@ class Figures(QtGui.QTableWidget):
         about: bool = False,
         help: str = "",
     ) -> None:
-        """Fill a row, which is made when it is new. about: the figures are of some of the points."""
+        """Fill a row; a new name adds a row. about: the statistics cover only some of the points."""
         self.filling = True
         new = name not in self.rows
         if new:
@@ -321,11 +321,11 @@ class Figures(QtGui.QTableWidget):
         return name in self.rows and self.item(self.rows[name], 0).checkState() == QtCore.Qt.Checked
 
     def hide_curve(self, name: str) -> None:
-        """Take a curve from the map, as its box does."""
+        """Hide a curve on the map, as its box does."""
         self.item(self.rows[name], 0).setCheckState(QtCore.Qt.Unchecked)
 
     def clear_all(self) -> None:
-        """No rows."""
+        """Remove all rows."""
         self.filling = True
         self.setRowCount(0)
         self.rows.clear()
@@ -336,7 +336,7 @@ class Figures(QtGui.QTableWidget):
             self.changed()
 
 
-MIN_WIDTH = 190  # pixels of the controls
+MIN_WIDTH = 190  # pixels; minimum width of the controls
 
 
 class Form(QtGui.QWidget):
@@ -407,7 +407,7 @@ class Form(QtGui.QWidget):
         set_role(self.verdict, INVALID if wrong else PLAIN)
 
     def show_joints(self, ranges: list[tuple[str, bool]]) -> None:
-        """What each joint does, and whether it goes past a limit."""
+        """Show the range of each joint, and whether it exceeds a limit."""
         texts = [(text.replace(" ", "&nbsp;"), wrong) for text, wrong in ranges]
         coloured = [
             f'<font color="{of(INVALID).name()}">{text}</font>' if wrong else text
@@ -423,11 +423,11 @@ def _button(name: str, text: str, help: str) -> Any:
     return button
 
 
-PAST = 1e-9  # rad, of rounding
+PAST = 1e-9  # rad; tolerance for rounding
 
 
 def readout(cell: Cell, machine: Machine) -> str:
-    """Two lines: place and rotation, margins; and the joints."""
+    """Return two lines: position, rotation and margins; and the joints."""
     layer, bead, point = cell.place
     where = tr("Layer {} bead {} point {}").format(layer, bead, point)
     turned = f"RZ {np.degrees(cell.rz):.1f}°   " + tr("rotation") + f" {np.degrees(cell.phi):.1f}°"
@@ -474,7 +474,9 @@ def certified(optimality: Mapping[str, Any] | None) -> str:
 
 
 def joint_ranges(joints: Array, station: Station) -> list[tuple[str, bool]]:
-    """For each axis from where to where joints (T, axes) go, deg, and whether that is past a limit of its own."""
+    """Return the range of each axis of joints (T, axes), deg, and whether it exceeds the axis
+    limits.
+    """
     reached = joints[np.isfinite(joints).all(axis=1)]
     if not len(reached):
         return []
@@ -495,13 +497,16 @@ def joint_ranges(joints: Array, station: Station) -> list[tuple[str, bool]]:
 
 
 def _units(machine: Machine) -> list[str]:
-    """The units of the axes."""
+    """Return the units of the axes."""
     return [" mm" if unit == "mm" else "°" for unit in machine.units]
 
 
 class Consequences:
-    """`status` returns the state of the joint path, and whether it is an error. followed: the curve
-    evaluated at the sample points of a drag."""
+    """Update status and statistics after changes of the curve.
+
+    `status` returns the state of the joint path, and whether it is an error. followed: the curve
+    evaluated at the sample points of a drag.
+    """
 
     followed: Followed
 
@@ -516,22 +521,22 @@ class Consequences:
         self.planned_exact: Sums | None = None
 
     def planned_sums(self) -> Sums:
-        """Return the figures of the plan, of all points if computed."""
+        """Return the statistics of the plan, of all points if computed."""
         return self.planned_exact or self.planned
 
     def cancel(self) -> None:
-        """End what is being computed."""
+        """Cancel the running computation."""
         self.background.cancel()
 
     def now(self) -> None:
-        """Show the figures of the edited curve at once."""
+        """Show the statistics of the edited curve at once."""
         draft = self.draft
         self.followed = draft.evaluate()
         self._show_sums(rotation_curve.sums(self.followed), self.planned, draft.thinned)
         self.form.show_joints(joint_ranges(self.followed.joints, draft.source.cell))
 
     def exactly(self) -> None:
-        """Compute the figures at all points if the draft is sampled."""
+        """Compute the statistics at all points if the draft is sampled."""
         draft, planned = self.draft, self.planned_exact
         if not draft.thinned:
             return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a map shows at a moment: its columns and cells, and curves brought onto them. Knows neither window nor document."""
+"""The columns, cells and curves that a map shows. Independent of window and document."""
 
 from __future__ import annotations
 
@@ -21,12 +21,14 @@ from ..in_language import tr
 from .draft import CONSTANT, Draft, Pair, Source, pair_of
 
 MOST_LABELS = 14
-ACROSS = 121  # columns of the values of an external axis
+ACROSS = 121  # number of columns for the values of an external axis
 
 
 @dataclass(frozen=True, eq=False)
 class Cell:
-    """One cell under the mouse. place: (layer, bead, point). joints: (axes,) rad, NaN out of reach. nearest: which limit."""
+    """The cell under the mouse. place: (layer, bead, point). joints: (axes,) rad, NaN out of reach.
+    nearest: the nearest limit.
+    """
 
     place: tuple[int, int, int]
     rz: float
@@ -42,9 +44,12 @@ class Cell:
 
 
 class Board:
-    """The columns of a job, or of one layer of it, or the values of an external axis (`across`) at
-    a point (bead, point) (default: the middle of the bead), with the computed cells; `up`: another
-    external axis upwards."""
+    """The columns of a map with their computed cells.
+
+    Columns are the points of a job or of one layer, or the values of an external axis (`across`) at
+    a point (bead, point), by default the midpoint of the bead. up: a second, vertical external
+    axis.
+    """
 
     def __init__(
         self,
@@ -80,10 +85,10 @@ class Board:
         self.looked: dict[int, int] = {}  # row stride of the link check by branch
         self.curves: dict[int, tuple[tuple[BeadPath, ...], Array]] = {}
 
-    # ---- computing, in another thread
+    # ---- computation, in another thread
 
     def compute(self, branch: int) -> tuple[RedundancyMap, Picture]:
-        """Compute the cells of all branches, if missing, and the picture of one branch."""
+        """Compute missing cells of all branches, and the picture of one branch."""
         if self.pair is not None:
             return self.pair.compute(branch, self.map)
         task = self.source.task(branch)
@@ -99,12 +104,14 @@ class Board:
 
     @property
     def moment(self) -> Integers:
-        """(C,) how many points of the job are deposited before each column."""
+        """(C,) number of points of the job that are deposited before each column."""
         return np.asarray(self.source.starts[self.columns.bead] + self.columns.point)
 
     def arm(self, branch: int, stride: int) -> Mask:
-        """Return a mask (R, C) of cells in which a robot link touches something; every `stride`-th
-        row is checked."""
+        """Return a mask (R, C) of cells in which a robot link touches something.
+
+        Only every `stride`-th row is checked.
+        """
         assert self.map is not None
         if self.pair is not None:
             return self.pair.arm(branch, self.map)
@@ -118,12 +125,12 @@ class Board:
         self.pictures[branch] = dataclasses.replace(self.pictures[branch], arm=touched)
 
     def shows(self, bead: int) -> bool:
-        """Whether a bead is among the columns; false if the columns are values of an axis."""
+        """Whether a bead is among the columns; False if the columns are values of an axis."""
         return self.offsets is None and bool((self.columns.bead == bead).any())
 
     @property
     def title(self) -> str:
-        """What the columns are."""
+        """Description of the columns."""
         if self.offsets is not None:
             layer, bead, point = self.place(0)
             if self.pair is not None:
@@ -143,11 +150,11 @@ class Board:
         )
 
     def reachable_shares(self) -> Array:
-        """(8,) the share of cells that each branch reaches within its limits."""
+        """Return the fraction (8,) of cells that each branch reaches within its limits."""
         assert self.map is not None
         return np.asarray((self.map.margin >= 0.0).mean(axis=(1, 2)))
 
-    # ---- places
+    # ---- positions
 
     @property
     def seams(self) -> Integers:
@@ -156,8 +163,9 @@ class Board:
 
     @property
     def marks(self) -> Integers:
-        """Columns with a line before them, except the first: starts of beads, or the planned value
-        of the external axis."""
+        """Columns with a line before them, except the first column: bead starts, or the planned
+        value of the external axis.
+        """
         if self.offsets is None:
             return self.seams
         planned = self.source.beads[int(self.columns.bead[0])].external
@@ -199,7 +207,7 @@ class Board:
         return float(np.interp(sign * parameter, sign * parameters, columns))
 
     def place(self, column: int) -> tuple[int, int, int]:
-        """Layer, bead and point of a column."""
+        """Return layer, bead and point of a column."""
         layer, index = self.source.places[int(self.columns.bead[column])]
         return layer, index, int(self.columns.point[column])
 
@@ -207,7 +215,8 @@ class Board:
 
     def values(self, phi: Array) -> Array:
         """Return the axis values (C,) of rotations at the columns, unwrapped along each bead, with
-        the mean within half a turn of 0."""
+        the bead's mean within half a turn of 0.
+        """
         value = self._unwrapped(phi)
         return value - self._turns(value)
 
@@ -223,16 +232,17 @@ class Board:
         return value
 
     def _turns(self, value: Array) -> Array:
-        """(C,) the whole turns, rad, that the mean of each bead is away from 0."""
+        """Return the whole turns (C,), rad, between the mean of each bead and 0."""
         starts = self.seams
         mean = np.add.reduceat(value, starts) / np.diff(np.append(starts, len(value)))
-        # rounded, so that a curve half a turn away does not hop with its last digit
+        # rounded, so that a mean at half a turn does not flip with its last digit
         turns = TURN * np.round(np.round(mean / TURN, 9))
         return np.asarray(np.repeat(turns, np.diff(np.append(starts, len(value)))))
 
     def draft_values(self, draft: Draft) -> Array:
         """Return the edited curve (C,) in the turns of the plan, so that it does not jump during a
-        drag."""
+        drag.
+        """
         value = self._unwrapped(draft.phi(self.columns.points, self.columns.bead))
         planned = self.source.planned.beads
         like = (
@@ -243,7 +253,7 @@ class Board:
         return value - self._turns(like)
 
     def path_values(self, draft: Draft, paths: tuple[BeadPath, ...]) -> Array:
-        """(C,) a curve that was planned."""
+        """Return the values (C,) of a planned curve."""
         cached = self.curves.get(id(paths))
         if cached is None or cached[0] is not paths:
             cached = self.curves[id(paths)] = (
@@ -253,7 +263,7 @@ class Board:
         return cached[1]
 
     def bad(self, draft: Draft, followed: Followed, values: Array) -> Array:
-        """(k, 2) columns and values of the points of the curve that the planner objects to."""
+        """Return columns and values (k, 2) of the curve's infeasible points."""
         if self.offsets is not None:
             return np.zeros((0, 2))
         row = draft.live.row[~followed.good]
@@ -263,7 +273,9 @@ class Board:
         return np.stack([column, np.interp(column, np.arange(len(rows)), values)], axis=1)
 
     def change(self, draft: Draft, column: int, old: float, new: float) -> float:
-        """By how much what the draft varies changes when the curve goes from one value to another at a column, rad."""
+        """Return the change of the draft's variable, rad, when the curve goes from `old` to `new`
+        at a column.
+        """
         of_rz = draft.kind == CONSTANT or self.source.parameters.parameter == RZ
         if of_rz == (self.axis == RZ):
             return new - old
@@ -280,7 +292,7 @@ class Board:
         return by - TURN * round((by - side * (new - old)) / TURN)
 
     def cell(self, branch: int, column: int, value: float) -> Cell:
-        """Return the figures of a cell of the map."""
+        """Return the values of a cell of the map."""
         points, task = self.columns.points, self.source.task(branch)
         sample = points.select_points(np.array([column]))
         phi = redundancy_map.rotation_of(task.cell, sample.tool, np.array([value]), self.axis)
@@ -315,7 +327,8 @@ class Board:
 
     def _arm_at(self, branch: int, column: int, joints: Array) -> tuple[str, str] | None:
         """Return the first touching link at a column and the touched object; None before the link
-        check."""
+        check.
+        """
         if branch not in self.looked:
             return None
         arm = self.source.arm
@@ -337,7 +350,9 @@ COLOURS = {
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A line over the map: values (C,) rad, counted on along each bead; bold: the one that can be dragged."""
+    """A line over the map. values: (C,) rad, unwrapped along each bead. bold: whether it can be
+    dragged.
+    """
 
     values: Array
     colour: tuple[int, int, int]
@@ -347,7 +362,7 @@ class Curve:
 
 @dataclass(frozen=True)
 class Handle:
-    """What the curve is taken hold of by: bead, number among its handles, place."""
+    """A handle of the curve: bead, index among the bead's handles, position."""
 
     bead: int
     number: int
@@ -375,10 +390,10 @@ def build_curves(
     shows: Callable[[str], bool],
 ) -> tuple[list[Curve], list[Handle], Array]:
     """Build the curves, the handles of the edited curve at a bead, and its infeasible points (n,
-    2), column and value.
+    2).
 
-    planned: beads of the joint path; compared: other methods; followed: the evaluated edited curve;
-    shows: whether the curve of a name is visible.
+    planned: beads of the joint path. compared: other methods. followed: the evaluated edited curve.
+    shows: whether the curve of a name is visible. Infeasible points are column and value.
     """
     if board.pair is not None:
         return [], [], np.zeros((0, 2))  # the rotation is the planned one

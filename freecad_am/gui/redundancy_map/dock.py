@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The dock of a map of the free rotation: cells, curves, figures; the edited curve can replace the
-curve of the joint path."""
+"""The Redundancy Map dock: cells, curves and statistics; the edited curve can replace the joint
+path's curve.
+"""
 
 from __future__ import annotations
 
@@ -36,26 +37,28 @@ from .board import COLOURS, Board, Dragged, build_curves
 from .draft import Draft, Source, source_of, status_of
 from .painting import KINDS, Canvas, painted
 
-# ---- The work that plans a toolpath by all methods
+# ---- Planning a toolpath by all methods
 
 
 def comparison_work(source: Source, task: Task) -> Callable[[], tuple[Compared, ...]]:
     """Return work that plans the beads of the toolpath, from their own seams, by all methods.
 
-    With external axes it plans the beads of the joint path, which hold their positions.
+    With external axes, the work plans the beads of the joint path, which hold their positions.
     """
     beads = source.beads if source.cell.external else tuple(bead for _, _, bead in source.toolpath)
     return lambda: rotation_curve.compared(task, beads, source.places, progress.report)
 
 
-# ---- Compute the cells of a map in the background and show them: first without the robot's links,
-# then with a coarse link check, then with every row checked
+# ---- Compute the cells of a map in the background: first without the robot's links, then with a coarse
+# link check, then with every row checked
 
 ROUGH_STRIDE, FINE_STRIDE = 6, 1  # row stride of the link checks
 
 
 class Cells:
-    """`known` is called when more is known of a board, `drawn` when its cells are shown."""
+    """Computes and shows cells. Calls `known` when more of a board is computed, and `drawn` when
+    its cells are shown.
+    """
 
     def __init__(
         self, form: Any, canvas: Canvas, on_known: Callable[[], None], drawn: Callable[[], None]
@@ -68,7 +71,7 @@ class Cells:
         self.background.cancel()
 
     def show(self, board: Board, branch: int, kind: str) -> None:
-        """Show a branch by margin or condition; its cells are computed first where they are not known."""
+        """Show a branch by margin or condition, after computing missing cells."""
         self.board, self.branch, self.kind = board, branch, kind
         if branch in board.pictures:
             self._draw()
@@ -113,7 +116,10 @@ class Cells:
 
 
 def jump(obj: Any, layer: int, position: Array) -> bool:
-    """To the point of a layer of a joint path that is nearest to a position (3,), mm; whether anything followed."""
+    """Go to the point in a layer of a joint path that is nearest to a position (3,), mm.
+
+    Return whether the simulation or the path view followed.
+    """
     simulated, followed = _simulation(obj, layer, position), _path(obj, layer, position)
     return simulated or followed
 
@@ -133,7 +139,7 @@ def _simulation(obj: Any, layer: int, position: Array) -> bool:
 
 
 def _path(obj: Any, layer: int, position: Array) -> bool:
-    """The view of the joint path shows the layer up to the point, where the path dock is open."""
+    """Show the layer up to the point in the joint path's view, if the path dock is open."""
     opened, view = path_dock.only.dock, obj.ViewObject.Proxy
     if (
         opened is None
@@ -153,11 +159,11 @@ def _path(obj: Any, layer: int, position: Array) -> bool:
 
 
 NAME = "RoboticAM_SpinMap"
-WIDTH_SHARE, HEIGHT = 0.85, 380  # of the window's width; pixels
+WIDTH_SHARE, HEIGHT = 0.85, 380  # fraction of the window's width; pixels
 
 
 class RedundancyMapDock:
-    """Shows the map of one joint path until the dock is closed or the joint path is deleted."""
+    """Shows the map of a joint path until the dock is closed or the joint path is deleted."""
 
     def __init__(self, obj: Any, closed: Callable[[RedundancyMapDock], None]) -> None:
         """closed: called when the dock closes."""
@@ -190,7 +196,7 @@ class RedundancyMapDock:
     # ---- the fields
 
     def _build(self) -> None:
-        """The fields, in the language of the window, about the canvas."""
+        """Build the fields around the canvas in the window's language."""
         self.controls = Controls(self._chosen, self._curve_chosen, self._entered)
         self.figures = Figures(self._show_curves)
         self.form = Form(self.canvas, self.controls, self.figures)
@@ -212,7 +218,7 @@ class RedundancyMapDock:
             old_form.deleteLater()
 
     def _speak(self) -> None:
-        """Rebuild in the window's new language; choices stay."""
+        """Rebuild in the window's new language; keep the choices."""
         old_controls, hidden = (
             self.controls,
             [name for name in self.figures.rows if not self.figures.shows(name)],
@@ -232,7 +238,7 @@ class RedundancyMapDock:
         self.dock.setWindowTitle(tr("Free rotation of {title}").format(title=self.source.title))
 
     def _name_compare(self) -> None:
-        """What the button does now."""
+        """Label the button with its current action."""
         self.form.buttons["compare"].setText(
             tr("Cancel") if self.comparison.runs else tr("Compare methods")
         )
@@ -240,14 +246,14 @@ class RedundancyMapDock:
     # ---- the joint path
 
     def _take(self, source: Source, board: Board | None = None) -> None:
-        """Show a joint path as it is planned now, at the layer and on the axis of another board."""
+        """Show the current plan of a joint path, at the layer and axis of another board."""
         self.source, self.draft = source, Draft(source)
         self._say_title()
         layers = {layer for layer, _ in source.places}
         layer = board.layer if board is not None and board.layer in layers else None
         self.board = Board(source, layer, AXES[0] if board is None else board.axis)
         self.bead = self.board.beads[0]
-        self.clicked: dict[int, int] = {}  # the point of a bead that was clicked last
+        self.clicked: dict[int, int] = {}  # last clicked point of each bead
         self.compared: tuple[Compared, ...] = ()
         self.comparison.cancel()
         self._name_compare()
@@ -257,7 +263,7 @@ class RedundancyMapDock:
         self._renew_cells()
 
     def renew(self) -> None:
-        """Show the current joint path; close if it has no result any more."""
+        """Show the current joint path; close the map if it no longer has a result."""
         if self.gone:
             return
         try:
@@ -268,7 +274,7 @@ class RedundancyMapDock:
     # ---- the cells
 
     def _renew_cells(self) -> None:
-        """Show the picture of the branch, computed first where it is not known."""
+        """Show the picture of the branch, after computing it if missing."""
         self._fill_controls()
         self.cells.show(
             self.board, self.draft.branch, KINDS[max(self.controls.kind.currentIndex(), 0)]
@@ -278,7 +284,7 @@ class RedundancyMapDock:
         self.controls.fill(self.board, self.draft, self.bead)
 
     def _chosen(self) -> None:
-        """Another layer, branch, axis, or other colours."""
+        """Show another layer, branch or axis, or other colours."""
         layer, axis, across, up = selection = self.controls.selection()
         branch = self.controls.branch.currentIndex()
         if selection != (self.board.layer, self.board.axis, self.board.across, self.board.up):
@@ -305,7 +311,7 @@ class RedundancyMapDock:
         )
 
     def _curve_chosen(self) -> None:
-        """Another kind of curve, bead or degree."""
+        """Switch the kind of curve, the bead or the degree."""
         self.draft.kind = CURVES[self.controls.type.currentIndex()]
         self.bead = self.controls.bead.value()
         if self.controls.degree.value() != self.draft.degree:
@@ -313,12 +319,12 @@ class RedundancyMapDock:
         self._changed_for_good()
 
     def _entered(self, number: int, value: float) -> None:
-        """A coefficient was entered, deg and deg per turn."""
+        """Apply an entered coefficient, deg and deg per turn."""
         self.draft.enter(number, np.radians(value), self.bead, self._together())
         self._changed_for_good()
 
     def _dragged(self, drag: Dragged, by: float) -> None:
-        """The mouse has moved the curve, or one of its handles."""
+        """Apply a drag of the curve or of a handle."""
         draft, board = self.draft, self.board
         changed = board.change(draft, drag.column, drag.value - by, drag.value)
         if drag.handle is not None:
@@ -328,21 +334,21 @@ class RedundancyMapDock:
             draft.shift(changed, self._together())
         self._changed()
 
-    # ---- consequences
+    # ---- statistics
 
     def _changed(self) -> None:
-        """Show the figures of the edited curve at once."""
+        """Show the statistics of the edited curve at once."""
         self.consequences.now()
         self._fill_controls()
         self._show_curves()
 
     def _changed_for_good(self) -> None:
-        """Show the figures of all points a little later."""
+        """Show the statistics of all points shortly after."""
         self._changed()
         self.consequences.exactly()
 
     def _show_curves(self) -> None:
-        """Draw the curves that are to be seen."""
+        """Draw the visible curves."""
         self.canvas.set_curves(
             *build_curves(
                 self.board,
@@ -355,10 +361,10 @@ class RedundancyMapDock:
             )
         )
 
-    # ---- side by side
+    # ---- comparison of methods
 
     def _compare(self) -> None:
-        """Plan all methods in the background, or stop that."""
+        """Plan all methods in the background, or cancel."""
         if self.comparison.runs:
             self.comparison.cancel()
             self._changed()
@@ -368,7 +374,7 @@ class RedundancyMapDock:
         self._name_compare()
 
     def _show_compared(self, compared: tuple[Compared, ...] | None) -> None:
-        """Another comparison has ended; None: without a result."""
+        """Show an ended comparison; None: without a result."""
         self._name_compare()
         if compared:
             self.compared = compared
@@ -388,7 +394,7 @@ class RedundancyMapDock:
             )
         self._show_curves()
 
-    # ---- what the mouse is over
+    # ---- the mouse position
 
     def _hovered(self, column: int, value: float) -> None:
         self.form.readout.setText(
@@ -403,7 +409,7 @@ class RedundancyMapDock:
         with contextlib.suppress(ReferenceError, RuntimeError):  # the view is closed
             jump(self.obj, self.board.place(column)[0], self.board.columns.points.position[column])
 
-    # ---- making it the choice
+    # ---- applying the curve
 
     def _use(self) -> None:
         self._change(self.draft.arguments())
@@ -427,7 +433,7 @@ class RedundancyMapDock:
         self.renewing.timer.stop()
         self.renew()
 
-    # ---- the end
+    # ---- closing
 
     def close(self) -> None:
         """Close the map."""
@@ -456,14 +462,15 @@ class RedundancyMapDock:
             self.renewing.ask()
 
 
-# ---- The tool that opens the map of the free rotation
+# ---- The tool that opens the Redundancy Map
 
-_open: list[RedundancyMapDock] = []  # Python must keep it as long as it is open; there is one
+_open: list[RedundancyMapDock] = []  # keeps the open dock alive; at most one
 
 
 def show(obj: Any) -> RedundancyMapDock:
-    """Open the map of a joint path and close the open one. Raises InputError if the path has no
-    map."""
+    """Close the open map and open the map of a joint path. Raises InputError if the path has no
+    map.
+    """
     source_of(obj)
     while _open:
         _open[0].close()
@@ -472,8 +479,10 @@ def show(obj: Any) -> RedundancyMapDock:
 
 
 def redundancy_map() -> None:
-    """Open the map of the selected joint path, program or job; without such a selection, of the
-    last joint path with a result."""
+    """Open the map of the selected joint path, program or job.
+
+    Without such a selection, use the last joint path with a result.
+    """
     selected = [path for path in map(_joint_path, job_selection()) if path is not None]
     if not selected and job_named():
         _say(

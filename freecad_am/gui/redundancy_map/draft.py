@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The curve that the user works on: one polynomial per bead, or one RZ for all. Knows neither window nor document."""
+"""The edited curve: one polynomial per bead, or one RZ for all. Independent of window and document."""
 
 from __future__ import annotations
 
@@ -47,9 +47,12 @@ from ..in_language import tr, translated
 
 @dataclass(frozen=True)
 class Source:
-    """Inputs read from the document. objects: names of the objects read. beads: of the toolpath,
-    with their keys (layer, index), starting at the seams of the plan. width: mm of beads without a
-    width. shapes: meshes of the robot's links from the user."""
+    """Inputs read from the document.
+
+    objects: names of the objects read. beads: beads of the toolpath with their keys (layer, index),
+    starting at the seams of the plan. width: mm; for beads without a width. shapes: user's meshes
+    of the robot's links.
+    """
 
     document: str
     name: str
@@ -66,20 +69,21 @@ class Source:
 
     @cached_property
     def starts(self) -> Array:
-        """(beads + 1,) how many points there are before each bead, and in all."""
+        """(beads + 1,) number of points before each bead, and in total."""
         return np.concatenate([[0], np.cumsum([len(bead) for bead in self.beads])])
 
     @cached_property
     def arm(self) -> ArmContact:
         """The robot with its obstacles and the deposit in the order of the beads; built in the
-        background."""
+        background.
+        """
         deposited = Beads.of(self.beads, self.width, self.toolpath.layer_height).solid(LINK_GRAIN)
         cylinders = external_links.robot_cylinders(self.cell.robot.chain, self.shapes)
         return ArmContact(self.cell, cylinders, self.toolpath.surroundings, deposited)
 
     @property
     def branch(self) -> int:
-        """The branch that was planned."""
+        """The planned branch."""
         return spherical_wrist.branch_index(self.planned.branch)
 
     def task(self, branch: int) -> Task:
@@ -88,7 +92,7 @@ class Source:
 
 
 def source_of(obj: Any) -> Source:
-    """Read the inputs for a joint path. Raises InputError with the remedy if it has no map."""
+    """Read the inputs for a joint path. Raises InputError with the remedy if the path has no map."""
     stage = stage_of(obj)
     if stage is None or stage.kind != "joint path":
         raise InputError("NO_MAP", getattr(obj, "Label", "?"), "it is not a joint path; select one")
@@ -117,8 +121,9 @@ def source_of(obj: Any) -> Source:
 
 
 def status_of(obj: Any) -> tuple[str, bool]:
-    """Return the state of a joint path in the window's language, and whether it is an error; '' for
-    a deleted one."""
+    """Return the state of a joint path in the window's language, and whether it is an error; '' if
+    deleted.
+    """
     with contextlib.suppress(ReferenceError, RuntimeError):
         message = first_message(issues_of(obj))
         wrong, status = obj.Status != UP_TO_DATE, translated(obj.Status)
@@ -135,9 +140,12 @@ def _places(toolpath: Toolpath, planned: JointPath, cell: Cell) -> tuple[tuple[i
 
 
 def _as_run(toolpath: Toolpath, planned: JointPath, cell: Cell) -> tuple[Bead, ...]:
-    """Return the beads of a toolpath from the seams of the plan, which may move the seam of a
-    closed bead to keep an axis within its limits. Layers with split beads stay unchanged. With
-    external axes: the beads of the plan, which hold their positions."""
+    """Return the beads of a toolpath, starting at the seams of the plan.
+
+    The plan may move the seam of a closed bead to keep an axis within its limits. Layers with split
+    beads stay unchanged. With external axes, return the beads of the plan, which hold their
+    positions.
+    """
     if cell.external is not None:
         return tuple(path.bead for path in planned.beads)
     run = {(path.layer, path.index): path.bead for path in planned.beads}
@@ -155,14 +163,17 @@ def _as_run(toolpath: Toolpath, planned: JointPath, cell: Cell) -> tuple[Bead, .
     return tuple(run_beads)
 
 
-ROWS = 61  # values of the axis that goes upwards
+ROWS = 61  # number of values of the vertical axis
 LABELS = 6
 
 
 @dataclass(frozen=True, eq=False)
 class Pair:
-    """cells: all pairs, row after row. values: (R,) rad or mm of the axis `up`, which is planned
-    `here`. phi: the planned rotation, rad. count: number of columns."""
+    """The map of one external axis against another at a point.
+
+    cells: all pairs, row by row. values: (R,) rad or mm of the axis `up`, whose planned value is
+    `here`. phi: planned rotation, rad. count: number of columns.
+    """
 
     source: Source
     up: int
@@ -173,7 +184,7 @@ class Pair:
     count: int
 
     def compute(self, branch: int, existing: RedundancyMap | None) -> tuple[RedundancyMap, Picture]:
-        """All branches, cells in one row, where they are not known yet, and the picture (R, C) of one."""
+        """Compute missing cells of all branches in one row, and the picture (R, C) of one branch."""
         task = self.source.task(branch)
         result = existing or redundancy_map.redundancy_map(
             task,
@@ -185,7 +196,7 @@ class Pair:
         return result, map.in_rows(redundancy_map.picture(task, result, branch), len(self.values))
 
     def arm(self, branch: int, redundancy: RedundancyMap) -> Mask:
-        """(R, C) where links of the robot touch something."""
+        """Return a mask (R, C) of cells in which a robot link touches something."""
         source = self.source
         moment = source.starts[self.cells.bead] + self.cells.point
         touched = redundancy_map.arm_touched(
@@ -194,7 +205,7 @@ class Pair:
         return touched.reshape(len(self.values), self.count)
 
     def number(self, column: int, value: float) -> int:
-        """Which of `cells` is at a column and a height of the map, which goes from -pi to pi."""
+        """Return the index in `cells` of a column and a height on the map, from -pi to pi."""
         row = round((value + np.pi) / TURN * (len(self.values) - 1))
         return int(np.clip(row, 0, len(self.values) - 1)) * self.count + column
 
@@ -217,7 +228,7 @@ class Pair:
 
     @property
     def planned(self) -> float:
-        """The height at which the axis is planned."""
+        """Height of the planned axis value."""
         return float(
             np.interp(self.here, self.values, np.linspace(-np.pi, np.pi, len(self.values)))
         )
@@ -227,7 +238,8 @@ def pair_of(
     source: Source, position: tuple[int, int], axes: tuple[int, int], offsets: Array
 ) -> Pair:
     """Build the map at a point (bead, point): values (C,) of the first of two external axes against
-    the second over its range."""
+    the range of the second axis.
+    """
     bead, point = position
     values = map.span(source.task(source.branch), source.beads[bead], point, axes[1], ROWS)
     cells = map.across_two_axes(source.beads, source.cell, position, axes, (offsets, values))
@@ -250,8 +262,11 @@ TOLERANCE = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class Sampled:
-    """Points of all beads at which curves are evaluated. kept: indices per bead. lasts: (T,) s.
-    planned: (T,) rotation of the plan. row: (T,) numbers of the points among all."""
+    """Points of all beads at which curves are evaluated.
+
+    kept: point indices of each bead. lasts: (T,) s. planned: (T,) planned rotation. row: (T,)
+    indices of the points among all points.
+    """
 
     points: Points
     kept: tuple[Integers, ...]
@@ -261,8 +276,10 @@ class Sampled:
 
 
 class Draft:
-    """The edited curve, which starts as the planned one. coefficients: (B, degree + 1) of the
-    variable of the job, the constant first, rad."""
+    """The edited curve, which starts as the planned curve.
+
+    coefficients: (B, degree + 1), of the job's variable, constant first, rad.
+    """
 
     def __init__(self, source: Source) -> None:
         self.source, self.branch = source, source.branch
@@ -278,7 +295,7 @@ class Draft:
         return self._sampled(int(self.starts[-1])) if self.thinned else self.live
 
     def copied(self) -> Draft:
-        """The curve as it is now, for another thread."""
+        """Return a copy of the current curve for another thread."""
         duplicate = copy.copy(self)
         duplicate.coefficients, duplicate.thresholds = (
             self.coefficients.copy(),
@@ -287,7 +304,7 @@ class Draft:
         return duplicate
 
     def learn(self, duplicate: Draft) -> None:
-        """Keep what a copy had to compute of the points."""
+        """Store the results of a copy about the points."""
         self.__dict__["full"] = duplicate.full
         self.thresholds.update(duplicate.thresholds)
 
@@ -326,7 +343,7 @@ class Draft:
 
     @property
     def changed(self) -> list[int]:
-        """Beads whose polynomial is no longer the planned one."""
+        """Beads whose polynomial differs from the plan."""
         planned = np.zeros_like(self.coefficients)
         width = min(planned.shape[1], self.first.shape[1])
         planned[:, :width] = self.first[:, :width]
@@ -351,7 +368,7 @@ class Draft:
     # ---- the curve
 
     def phi(self, points: Points, bead: Integers) -> Array:
-        """The rotation (T,) of the curve at points of beads (T,)."""
+        """Return the rotation (T,) of the curve at points of beads (T,)."""
         task = self.source.task(self.branch)
         if self.kind == CONSTANT:
             phi, _ = self.source.cell.poses.phi_of_rz(points.tool, np.full(len(points), self.rz))
@@ -375,7 +392,7 @@ class Draft:
         return rotation_curve.follow(task, sampled.points, self.thresholds[key], sampled.lasts, phi)
 
     def rotation_at(self, paths: Sequence[BeadPath], columns: Columns) -> Array:
-        """(C,) the rotation of planned paths, at columns of a map."""
+        """Return the rotation (C,) of planned paths at columns of a map."""
         parameters = {
             int(k): columns.points.parameter[columns.bead == k] for k in np.unique(columns.bead)
         }
@@ -383,17 +400,20 @@ class Draft:
             list(rotation_along(paths, self.source.beads, self.source.places, parameters).values())
         )
 
-    # ---- changing it
+    # ---- editing
 
     def shift(self, by: float, beads: list[int]) -> None:
-        """Move the polynomials of beads, or the one RZ, by an angle."""
+        """Shift the polynomials of beads, or the constant RZ, by an angle."""
         if self.kind == CONSTANT:
             self.rz = float((self.rz + by + np.pi) % (2.0 * np.pi) - np.pi)
         else:
             self.coefficients[beads, 0] += by
 
     def enter(self, number: int, value: float, bead: int, beads: list[int]) -> None:
-        """Coefficient of a bead, rad and rad per turn to its power, by which others move along; the RZ of a constant one."""
+        """Set a coefficient of a bead, rad and rad per turn to its power, or the constant RZ.
+
+        The same coefficient of the other beads shifts by the same amount.
+        """
         if self.kind == CONSTANT:
             self.rz = float(value)
         else:
@@ -402,13 +422,13 @@ class Draft:
             )
 
     def handles(self, bead: int) -> Array:
-        """(n,) parameters at which the polynomial of a bead is taken hold of."""
+        """Return the parameters (n,) of the handles of a bead's polynomial."""
         return rotation_curve.handles(
             self.source.task(self.branch), self.live.points, bead, self.degree
         )
 
     def pull(self, bead: int, handle: int, by: float, beads: list[int]) -> None:
-        """Move one handle of a bead by an angle, and the same of further beads."""
+        """Move a handle of a bead, and the same handle of further beads, by an angle."""
         task, points = self.source.task(self.branch), self.live.points
         low, high = points.ends
         changes: dict[
@@ -422,8 +442,9 @@ class Draft:
             self.coefficients[k] += by * changes[key]
 
     def set_degree(self, degree: int) -> None:
-        """Change the degree of the polynomials: a higher degree keeps the curve, a lower one
-        approximates it."""
+        """Change the degree of the polynomials. A higher degree keeps the curve, a lower degree
+        approximates it.
+        """
         if degree > self.degree:
             zeros = np.zeros((len(self.coefficients), degree - self.degree))
             self.coefficients = np.concatenate([self.coefficients, zeros], axis=1)
@@ -433,7 +454,7 @@ class Draft:
                 points, points.polynomial(self.coefficients), degree
             )
 
-    # ---- making it the choice
+    # ---- applying the curve
 
     def arguments(self) -> dict[str, str]:
         """Return the arguments of `api.change`, as Python source, that make the planner use this
@@ -451,7 +472,7 @@ class Draft:
         return {"method": repr(METHOD), "given": repr(self.polynomial_texts()), **shared}
 
     def polynomial_texts(self) -> tuple[str, ...]:
-        """The polynomials of the beads, as the job file has them; one for all where they are alike."""
+        """Return the polynomials of the beads in job file form; a single one if all are equal."""
         same = np.abs(self.coefficients - self.coefficients[0]).max() <= TOLERANCE
         rows = (
             [(None, self.coefficients[0])]
@@ -516,7 +537,7 @@ class Draft:
         )
 
     def _variable(self, points: Points, phi: Array) -> Array:
-        """The variable of the job's polynomials at rotations phi (T,), counted on along the beads."""
+        """Return the job's variable at rotations phi (T,), unwrapped along the beads."""
         if self.source.parameters.parameter == "rotation":
             return phi
         return in_turns(self.source.cell.poses.rz_of_phi(points.tool, phi), points.starts)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a map is drawn: cells, seams, curves and handles, axes, legend."""
+"""Draw a map: cells, seams, curves and handles, axes, legend."""
 
 from __future__ import annotations
 
@@ -26,7 +26,9 @@ Pixels = NDArray[np.uint8]
 
 @dataclass(frozen=True, eq=False)
 class Painted:
-    """Colours (R, C, 3) 0..255 of cells, hatched (R, C) ones, the scale of the ramp, and classes that there are."""
+    """Colours (R, C, 3) 0..255 and hatching (R, C) of cells, the scale of the ramp, and the classes
+    present.
+    """
 
     colours: Pixels
     hatched: Mask
@@ -35,7 +37,9 @@ class Painted:
 
 
 def painted(picture: Picture, kind: str) -> Painted:
-    """A picture by margin (percent of half a range) or by condition; what cannot be is in colours of its own."""
+    """Colour a picture by margin (percent of half a range) or by condition; infeasible cells have
+    their own colours.
+    """
     reachable, beyond = picture.reachable, picture.past_limit
     singular = picture.singular & ~beyond
     good = reachable & ~beyond & ~singular
@@ -62,8 +66,11 @@ def painted(picture: Picture, kind: str) -> Painted:
 def enlarged(
     picture: Painted, width: int, height: int, low: float, high: float, lines: int
 ) -> Pixels:
-    """The picture (height, width, 4) as Qt has it, blue first, from the value `high` at the top to `low`, which may be more
-    than a turn apart; hatched by lines that many pixels apart."""
+    """Scale the picture to pixels (height, width, 4) in Qt order (blue first).
+
+    The value goes from `high` at the top to `low`; they may differ by more than a turn. Hatching
+    lines are `lines` pixels apart.
+    """
     rows, columns = picture.hatched.shape
     value = high - (np.arange(height) + 0.5) / height * (high - low)
     row = np.round((value + np.pi) % (2.0 * np.pi) / (2.0 * np.pi) * (rows - 1)).astype(int)
@@ -76,16 +83,17 @@ def enlarged(
     return pixels
 
 
-LEFT_MARGIN, RIGHT_MARGIN, TOP_MARGIN, BOTTOM_MARGIN = 52, 12, 30, 34  # pixels about the map
-HATCH = 7  # pixels between lines
+# pixels; margins around the map
+LEFT_MARGIN, RIGHT_MARGIN, TOP_MARGIN, BOTTOM_MARGIN = 52, 12, 30, 34
+HATCH = 7  # pixels; spacing of hatching lines
 HANDLE = 5.0
 MOST_SEAMS = 120
 TO_TICKS, LEAST_TICKS = 6, 2
-ROW = 14.0  # pixels from one row of the legend to the next
+ROW = 14.0  # pixels; spacing of legend rows
 
 
 class Painting:
-    """Draws what a canvas shows, where the canvas says."""
+    """Draws the content of a canvas."""
 
     def __init__(self, canvas: Any) -> None:
         self.canvas = canvas
@@ -114,7 +122,7 @@ class Painting:
         self._draw_legend(painter)
 
     def _cells(self) -> Any:
-        """The cells as large as they are shown, made once for each picture and size."""
+        """Return the cells at display size, computed once per picture and size."""
         canvas, area = self.canvas, self.canvas.area()
         size = int(area.width()), int(area.height()), canvas.low, canvas.high
         if self._made_of is not canvas.painted or self._size != size:
@@ -224,7 +232,7 @@ class Painting:
         painter.drawText(box, QtCore.Qt.AlignCenter, self.canvas.title)
 
     def _heights(self, count: float) -> list[tuple[float, str]]:
-        """Return the tick heights of the map with their labels, at most about `count`."""
+        """Return at most about `count` tick heights of the map with their labels."""
         if self.canvas.heights is not None:
             return list(self.canvas.heights[0])
         low, high = np.degrees(self.canvas.low), np.degrees(self.canvas.high)
@@ -235,7 +243,7 @@ class Painting:
         return [(float(np.radians(number * step)), f"{number * step}°") for number in numbers]
 
     def _draw_legend(self, painter: Any) -> None:
-        """The ramp with round numbers, then the classes, above the map."""
+        """Draw the ramp with round numbers, then the classes, above the map."""
         assert self.canvas.painted is not None
         scale, ink = (
             self.canvas.painted.scale,
@@ -276,7 +284,7 @@ class Painting:
         self._draw_classes(painter, classes, bar.right() + 14.0)
 
     def _draw_classes(self, painter: Any, classes: list[tuple[str, Any]], left: float) -> None:
-        """Draw swatches with their names, in two rows next to the ramp if one row is too narrow."""
+        """Draw swatches with their names; use two rows next to the ramp if one row is too narrow."""
         across, down = left, 0.0
         for text, fill in classes:
             if (
@@ -302,11 +310,11 @@ class Painting:
 
 
 NEAR_CURVE, NEAR_HANDLE = 7.0, 10.0
-MOST_TURNS = 3.0  # that are shown at once
+MOST_TURNS = 3.0  # maximum number of turns shown at once
 
 
 class Canvas(QtGui.QWidget):
-    """Columns from left to right, values upwards. The functions are called with what the user does."""
+    """Shows columns from left to right and values upwards. Calls the functions for user actions."""
 
     hovered: Callable[[int, float], None]
     clicked: Callable[[int, float], None]
@@ -322,12 +330,12 @@ class Canvas(QtGui.QWidget):
         self.painted: Painted | None = None
         self.count = 1
         self.seams: Array = np.zeros(0, dtype=int)  # columns at which beads begin
-        self.layers: list[tuple[float, str]] = []  # columns with a text below
+        self.layers: list[tuple[float, str]] = []  # columns with a label below
         self.curves: list[Curve] = []
         self.handles: list[Handle] = []
-        self.bad: Array = np.zeros((0, 2))  # column, value of points that do not serve
+        self.bad: Array = np.zeros((0, 2))  # column and value of infeasible points
         self.title = ""
-        # for heights that are not angles: their labels, and the planned height
+        # for heights other than angles: labels and planned height
         self.heights: tuple[list[tuple[float, str]], float] | None = None
         self.low, self.high = -np.pi, np.pi
         self.drag: Dragged | None = None
@@ -344,14 +352,14 @@ class Canvas(QtGui.QWidget):
     def set_map(
         self, painted: Painted | None, seams: Array, layers: list[tuple[float, str]]
     ) -> None:
-        """Other cells; None while they are computed."""
+        """Show other cells; None while they are computed."""
         self.painted, self.seams, self.layers = painted, seams, layers
         if painted is not None:
             self.count = painted.hatched.shape[1]
         self.update()
 
     def set_curves(self, curves: list[Curve], handles: list[Handle], bad: Array) -> None:
-        """Other curves; the range shown follows them unless one is being dragged."""
+        """Show other curves; the visible range follows them unless a curve is being dragged."""
         self.curves, self.handles, self.bad = curves, handles, bad
         if self.drag is None:
             values = np.concatenate([curve.values for curve in curves]) if curves else np.zeros(1)
@@ -362,10 +370,10 @@ class Canvas(QtGui.QWidget):
             self.low, self.high = low - margin, high + margin
         self.update()
 
-    # ---- places
+    # ---- positions
 
     def area(self) -> Any:
-        """Where the map is drawn."""
+        """Return the area of the map."""
         return QtCore.QRectF(
             LEFT_MARGIN,
             TOP_MARGIN,
@@ -374,17 +382,17 @@ class Canvas(QtGui.QWidget):
         )
 
     def x_of(self, column: Any) -> Any:
-        """Pixels from the left of columns."""
+        """Return the pixels from the left of columns."""
         area = self.area()
         return area.left() + (np.asarray(column) + 0.5) / self.count * area.width()
 
     def y_of(self, value: Any) -> Any:
-        """Pixels from the top of values."""
+        """Return the pixels from the top of values."""
         area = self.area()
         return area.top() + (self.high - np.asarray(value)) / (self.high - self.low) * area.height()
 
     def cell_at(self, x: float, y: float) -> tuple[int, float]:
-        """Column and value at a place."""
+        """Return column and value at a position in pixels."""
         area = self.area()
         column = int(np.clip((x - area.left()) / area.width() * self.count, 0, self.count - 1))
         return column, float(self.high - (y - area.top()) / area.height() * (self.high - self.low))
@@ -457,7 +465,7 @@ class Canvas(QtGui.QWidget):
         return bool(len(down)) and bool(down.min() - NEAR_CURVE <= y <= down.max() + NEAR_CURVE)
 
     def wrap_values(self, values: Array) -> Array:
-        """Values where they are drawn: as they are, or brought into the turn that is shown."""
+        """Wrap values into the visible turn, if needed."""
         if self.high - self.low > TURN + 1e-9 or (
             values.min() >= self.low and values.max() <= self.high
         ):
@@ -478,6 +486,6 @@ class Canvas(QtGui.QWidget):
 
 
 def _place(event: Any) -> tuple[float, float]:
-    """Where a mouse event is, in Qt 5 and 6."""
+    """Return the position of a mouse event, in Qt 5 and 6."""
     position = event.position() if hasattr(event, "position") else event.localPos()
     return float(position.x()), float(position.y())

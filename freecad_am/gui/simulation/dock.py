@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The tool and the dock of a simulation: it plays a run and ends when an object of the run
-changes or is deleted."""
+"""The dock of a simulation, and its tool. The dock plays a run and ends when an object of the run
+changes or is deleted.
+"""
 
 from __future__ import annotations
 
@@ -46,8 +47,8 @@ from ..widgets.shape_inputs import job_named, job_selection
 from .fields import Fields
 from .player import Player, Run, prepared
 
-# ---- The pictures of a simulation: the whole document moves with the part, surrounded by machine
-# and nozzle
+# ---- The scene of a simulation: the whole document moves with the part, surrounded by machine and
+# nozzle
 
 METAL_COLOUR, SLOW_COLOUR, WRONG_COLOUR = (0.62, 0.66, 0.72), (0.96, 0.55, 0.05), (0.86, 0.1, 0.12)
 TO_COME = (0.5, 0.52, 0.56)
@@ -55,7 +56,7 @@ OURS = ("toolpath", "joint path", "cell")
 
 
 class Scene:
-    """Nodes in one 3D view from when it is made until `remove`."""
+    """Nodes in a 3D view, from construction until `remove`."""
 
     def __init__(self, run: Run, view: Any) -> None:
         self.run, self.view = run, view
@@ -74,7 +75,7 @@ class Scene:
         self.last, self.growing = (
             Lines(3.0, METAL_COLOUR),
             False,
-        )  # the segment that is under way, and whether one is
+        )  # the current segment, and whether there is one
         self.last.set(np.zeros((2, 3)), [2])
         self.last.show(False)
         self.last_points = self.last.coordinates.point
@@ -96,7 +97,7 @@ class Scene:
             part_node.addChild(child)
         for child in (self.machine.node, self.external_links.node, nozzle, part_node):
             self.root.addChild(child)
-        self._place(resting)  # where the machine stays as long as no point is reached
+        self._place(resting)  # pose of the machine until a point is reached
         self._fill()
         self.camera, self.camera_text = view.getCameraNode().copy(), view.getCamera()
         self.graph = view.getSceneGraph()
@@ -105,8 +106,10 @@ class Scene:
         self.hidden = _hide_ours(run.document)
 
     def _fill(self) -> None:
-        """The deposit, one row for each deposit row of the motion: metal, orange where the speed is not kept, red where
-        something is wrong."""
+        """Fill the deposit, with one row for each deposit row of the motion.
+
+        Metal colour by default, orange where the speed is not kept, red where something is wrong.
+        """
         motion = self.run.motion
         deposit = motion.deposit
         self.rows_before = np.concatenate([[0], np.cumsum(deposit)])
@@ -125,10 +128,12 @@ class Scene:
         plain[slowed], plain[wrong] = SLOW_COLOUR, WRONG_COLOUR
         self.to_come.paint(plain)
 
-    # ---- each frame
+    # ---- frames
 
     def show(self, row: int, joints: Array, position: Array, running: bool, bad: Mask) -> None:
-        """Everything as it is on the way to a row, or at it. joints: (axes,), NaN leaves the machine where it is."""
+        """Show the state on the way to a row, or at the row. joints: (axes,), NaN keeps the
+        machine's pose.
+        """
         if np.isfinite(joints).all():
             self._place(placing(self.run.cell, joints))
         robot_links = len(self.machine.bad)
@@ -138,7 +143,7 @@ class Scene:
         if row_count != self.deposit.end:
             self.deposit.show(0, row_count)
             rows = self.deposit.rows
-            # from the last point, unless there the bead has ended
+            # from the last point, unless the bead has ended there
             self.to_come.show(
                 max(row_count - 1, int(rows.starts[rows.bead_of(row_count)])), len(rows)
             )
@@ -156,12 +161,10 @@ class Scene:
         move(self.part_matrix, self.to_view @ pose.part)
         move(self.nozzle_matrix, self.to_view @ pose.nozzle)
 
-    # ---- the end
+    # ---- closing
 
     def remove(self, document_goes: bool = False) -> None:
-        """Restore the view. The view may be gone; in a closing document there is nothing to
-        restore.
-        """
+        """Restore the view. The view may already be deleted; a closing document needs no restoring."""
         with contextlib.suppress(RuntimeError, ReferenceError):
             for node in (self.root, self.part):
                 if self.graph.findChild(node) >= 0:
@@ -173,12 +176,14 @@ class Scene:
             camera = self.view.getCameraNode()
             if camera.getTypeId() == self.camera.getTypeId():
                 camera.copyFieldValues(self.camera)
-            else:  # from perspective to orthographic meanwhile, or the other way
+            else:  # switched between perspective and orthographic meanwhile
                 self.view.setCamera(self.camera_text)
 
 
 def _wrong(run: Run) -> Mask:
-    """(n,) rows that are past a limit, near a singularity or out of reach, or at which a link touches something."""
+    """Return the rows (n,) beyond a limit, near a singularity, out of reach, or with a touching
+    link.
+    """
     wrong: Mask = (
         run.watch.past | run.watch.singular | (run.watch.touching != NONE) | ~run.motion.reachable
     )
@@ -186,8 +191,11 @@ def _wrong(run: Run) -> Mask:
 
 
 def _beads(run: Run) -> list[Bead]:
-    """The beads as they are run, a bead for every stretch of deposit rows; their points are those rows. As high as they are
-    predicted to end, where that is known."""
+    """Return the beads of the run, one for every stretch of deposit rows, with these rows as
+    points.
+
+    The beads have their predicted height if it is known.
+    """
     motion = run.motion
     height = None if run.deposit is None else heights(run.deposit, motion.position, motion.layer)
     rows = np.flatnonzero(motion.deposit)
@@ -214,7 +222,10 @@ def _layers(run: Run) -> Sequence[int]:
 
 
 def _hide_ours(document: str) -> dict[str, int]:
-    """Switch off what the simulation draws itself; what each switch was, by object name. Properties stay as they are."""
+    """Hide the objects that the simulation draws itself, without changing properties.
+
+    Return the previous switch states by object name.
+    """
     hidden = {}
     for obj in App.getDocument(document).Objects:
         stage = stage_of(obj)
@@ -237,12 +248,13 @@ def _show_again(document: str, hidden: dict[str, int]) -> None:
 NAME = "RoboticAM_Simulation"
 FRAME = 30  # ms
 FIT = 150  # ms
-MIN_WIDTH = 350  # pixels, at least
+MIN_WIDTH = 350  # pixels; minimum width
 
 
 class Simulation:
-    """Plays a run in a 3D view until the dock closes or an object of the run is deleted or
-    recomputed."""
+    """Plays a run in a 3D view until the dock closes, or an object of the run is deleted or
+    recomputed.
+    """
 
     def __init__(self, run: Run, view: Any) -> None:
         self.run, self.player = run, Player(run)
@@ -266,7 +278,7 @@ class Simulation:
         self.show()
         QtCore.QTimer.singleShot(
             FIT, self._fit
-        )  # once the dock has its place and the view the rest
+        )  # after the dock and the view have their final sizes
 
     # ---- the dock
 
@@ -280,19 +292,19 @@ class Simulation:
         return tr("Simulation of {title}").format(title=title)
 
     def _speak(self) -> None:
-        """The window has another language."""
+        """Rebuild in the window's new language."""
         self._build()
         self.dock.setWindowTitle(self._title())
         self.fields.mark_play()
         self._preferences_changed()
 
     def _follow_theme(self) -> None:
-        """The window is light or dark now."""
+        """Adapt to a light or dark theme."""
         self.fields.show_icons()
         self.fields.update()
 
     def _build(self) -> None:
-        """The fields, in the language of the window."""
+        """Build the fields in the window's language."""
         acts = {
             "layer_back": lambda: self._step_layer(-1),
             "point_back": lambda: self._step(-1),
@@ -302,7 +314,7 @@ class Simulation:
             "next_finding": self._next_finding,
         }
         self.fields = Fields(self.run, self.player, self._slid, acts)
-        self.scroll.setWidget(self.fields)  # remove the old widget
+        self.scroll.setWidget(self.fields)  # removes the old widget
         self._reserve_width()
         self.fields.tell_finding(None)
 
@@ -311,10 +323,10 @@ class Simulation:
         bar = self.scroll.verticalScrollBar().sizeHint().width()
         self.scroll.setMinimumWidth(max(MIN_WIDTH, self.fields.minimumSizeHint().width() + bar))
 
-    # ---- what the user does
+    # ---- user actions
 
     def play(self, on: bool) -> None:
-        """Play, from the start when it is at the end, or pause."""
+        """Play, from the start if at the end, or pause."""
         if on and self.player.time >= self.run.times.total:
             self.player.go(0.0)
         self.player.playing = on
@@ -358,7 +370,7 @@ class Simulation:
     # ---- display
 
     def show(self) -> None:
-        """Show the present moment."""
+        """Show the current moment."""
         if self.scene is None:
             return
         moment = self.player.moment()
@@ -374,7 +386,7 @@ class Simulation:
         self.fields.tell(moment)
 
     def _preferences_changed(self) -> None:
-        """Units of speeds, and the colour of the machine."""
+        """Update speed units and machine colour."""
         if self.scene is not None:
             self.scene.machine.renew_colours()
             self.show()
@@ -384,7 +396,7 @@ class Simulation:
                 None if self.player.finding is None else findings[self.player.finding]
             )
 
-    # ---- the end
+    # ---- closing
 
     def close(self, document_goes: bool = False) -> None:
         """End the simulation and restore the view."""
@@ -416,11 +428,11 @@ class Simulation:
             QtCore.QTimer.singleShot(0, lambda: self.end(text))
 
 
-_open: list[Simulation] = []  # Python must keep it as long as it runs; there is one
+_open: list[Simulation] = []  # keeps the running simulation alive; at most one
 
 
 def show(run: Run, view: Any) -> Simulation:
-    """Play a run in a view, in place of the one that is played."""
+    """Play a run in a view; end a running simulation."""
     while _open:
         _open[0].close()
     simulation = Simulation(run, view)
@@ -434,8 +446,10 @@ SIMULATED_KINDS = ("program", "joint path")
 
 
 def simulate() -> None:
-    """Simulate the selected joint path, program or job; without such a selection, the document's
-    last joint path with a result."""
+    """Simulate the selected joint path, program or job.
+
+    Without such a selection, use the document's last joint path with a result.
+    """
     selected = [obj for obj in job_selection() if _kind(obj) in SIMULATED_KINDS]
     if not selected and job_named():
         _say(

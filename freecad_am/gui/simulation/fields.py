@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The fields of a simulation: its time, its buttons, and the texts of the moment, of issues and of
-the whole job."""
+"""The fields of a simulation: time, buttons, and texts of the moment, of issues and of the whole
+job.
+"""
 
 from __future__ import annotations
 
@@ -18,7 +19,7 @@ from ..widgets.steady import SteadyLabel
 from . import wording
 from .player import Moment, Player, Run
 
-GROOVE = 60  # of 255, how strong the ground of a bar is
+GROOVE = 60  # of 255; opacity of a bar's background
 GOOD, BAD = QtGui.QColor(59, 111, 212), QtGui.QColor(206, 34, 44)
 _PAD, _GAP = 4, 6
 
@@ -26,8 +27,8 @@ _PAD, _GAP = 4, 6
 class JointBars(QtGui.QWidget):
     """Bars of the joint values.
 
-    lower, upper: (axes,) in the displayed units, infinite for continuous axes, which have a
-    turning mark instead of a bar.
+    lower, upper: (axes,) in displayed units, infinite for continuous axes, which have a rotary
+    symbol instead of a bar.
     """
 
     def __init__(
@@ -50,12 +51,14 @@ class JointBars(QtGui.QWidget):
         )
 
     def set(self, values: Array, margins: Array, ratios: Array, bad: Mask) -> None:
-        """(axes,) values and margins in the units shown, shares of the largest speeds, and which are to be red."""
+        """Set values and margins (axes,) in displayed units, fractions of the maximum speeds, and
+        which axes are red.
+        """
         self.values, self.margins, self.ratios, self.bad = values, margins, ratios, bad
         self.update()
 
     def texts(self, axis: int) -> tuple[str, str, str]:
-        """Return value, margin and share of speed of an axis as texts."""
+        """Return value, margin and speed fraction of an axis as texts."""
         unit = "°" if self.units[axis] == "deg" else " mm"
         if not np.isfinite(self.values[axis]):
             return "–", "–", "–"
@@ -137,13 +140,15 @@ class JointBars(QtGui.QWidget):
         )
 
 
-STEPS = 10_000  # of the slider
+STEPS = 10_000  # slider steps
 FACTORS = (0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0, 100.0, 500.0)
 
 
 class Fields(QtGui.QWidget):
-    """In the language of the window of now. slid: called with the share of the job's time that the user chose; acts: what
-    each button does, by its name."""
+    """The fields in the window's language.
+
+    slid: called with the chosen fraction of the job's time. acts: action of each button, by name.
+    """
 
     def __init__(
         self,

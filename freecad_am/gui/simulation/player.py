@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Position of a simulation and its data at that time. Uses neither window nor view."""
+"""The current time of a simulation and the data at that time. Independent of window and view."""
 
 from __future__ import annotations
 
@@ -32,9 +32,12 @@ from ...objects.staleness import STALE, UP_TO_DATE
 
 @dataclass(frozen=True, eq=False)
 class Run:
-    """Data of a simulation without its pictures. title: of the played object. objects: names of the
-    objects it was made from. stale: whether they have changed since. deposit: predicted by an
-    inspection of the toolpath; None without a current one."""
+    """Data of a simulation.
+
+    title: title of the played object. objects: names of its source objects. stale: whether they
+    have changed since. deposit: deposit that an inspection of the toolpath predicted; None without
+    a current inspection.
+    """
 
     document: str
     title: str
@@ -53,14 +56,17 @@ class Run:
 
 
 def run_of(obj: Any) -> Run:
-    """Return the run of a joint path or of a program. Raises InputError with the remedy if it has
-    nothing to play."""
+    """Return the run of a joint path or program. Raises InputError with the remedy if there is
+    nothing to play.
+    """
     return prepared(obj)()
 
 
 def prepared(obj: Any) -> Callable[[], Run]:
-    """What makes the run of a joint path or of a program, without the document, from which all is read now. Raises
-    InputError as `run_of`."""
+    """Read a joint path or program, and return a function that builds its run without the document.
+
+    Raises InputError as `run_of`.
+    """
     stage = stage_of(obj)
     if stage is None or stage.kind not in ("joint path", "program"):
         raise InputError(
@@ -114,7 +120,9 @@ def prepared(obj: Any) -> Callable[[], Run]:
 
 
 def _predicted(toolpath: Any) -> Array | None:
-    """The deposit that the last inspection of a toolpath has predicted, where it fits that."""
+    """Return the deposit that the last current inspection of a toolpath predicted; None without
+    one.
+    """
     for obj in reversed(toolpath.InList):
         stage = stage_of(obj)
         if (
@@ -134,10 +142,13 @@ _TOLERANCE_S = 1e-9  # s
 
 @dataclass(frozen=True, eq=False)
 class Moment:
-    """One moment. state: of the timeline. row: of the motion. values, margins, ratios, bad: (axes,)
-    joints and margins in display units, shares of the speed limits, violations. links: (axes + 1,)
-    links to be marked. asked, achieved: mm/s. condition, threshold: NaN where not known. singular:
-    whether condition is below threshold."""
+    """The data of a moment.
+
+    state: state of the timeline. row: motion row. values, margins, ratios, bad: (axes,) joints and
+    margins in display units, fractions of the speed limits, violations. links: (axes + 1,) links to
+    mark. asked, achieved: mm/s. condition, threshold: NaN if unknown. singular: whether condition
+    is below threshold.
+    """
 
     state: State
     row: int
@@ -154,21 +165,21 @@ class Moment:
 
 
 class Player:
-    """The time of a simulation, s, and ways to move it."""
+    """The current time of a simulation, s, and functions to change it."""
 
     def __init__(self, run: Run) -> None:
         self.run, self.time, self.playing, self.factor = run, 0.0, False, 10.0
-        self.row: int | None = None  # where it was put on a row
-        self.finding: int | None = None  # which one it was put on
+        self.row: int | None = None  # row of the last jump
+        self.finding: int | None = None  # index of the issue of the last jump
 
     def advance(self, seconds: float) -> None:
-        """Let the simulated time pass that goes with some seconds of the clock."""
+        """Advance the simulated time for some seconds of real time."""
         if self.playing:
             self.go(self.time + seconds * self.factor)
             self.playing = self.time < self.run.times.total
 
     def go(self, time: float) -> None:
-        """To a time."""
+        """Go to a time."""
         self.time, self.row, self.finding = (
             float(np.clip(time, 0.0, self.run.times.total)),
             None,
@@ -176,11 +187,11 @@ class Player:
         )
 
     def go_to_row(self, row: int) -> None:
-        """To where a row is reached."""
+        """Go to the time at which a row is reached."""
         self.time, self.row, self.finding = float(self.run.times.arrive[row]), row, None
 
     def step(self, by: int) -> None:
-        """To the next point, or to the one before."""
+        """Go to the next or previous point."""
         arrive = self.run.times.arrive
         if by > 0:
             row = int(np.searchsorted(arrive, self.time + _TOLERANCE_S, side="right"))
@@ -189,8 +200,10 @@ class Player:
         self.go_to_row(int(np.clip(row, 0, len(arrive) - 1)))
 
     def step_layer(self, by: int) -> None:
-        """Go to the start of the next layer; backwards: of this layer, or of the previous one if
-        already at the start."""
+        """Go to the start of the next layer.
+
+        Backwards, go to the start of this layer, or of the previous layer if already at the start.
+        """
         starts = self.run.times.arrive[self.run.times.layer_rows]
         if by > 0:
             index = int(np.searchsorted(starts, self.time + _TOLERANCE_S, side="right"))
@@ -202,8 +215,9 @@ class Player:
         self.go_to_row(int(self.run.times.layer_rows[index]))
 
     def next_finding(self) -> Finding | None:
-        """Go to the next issue: after the current one, else the first from here on; None without
-        issues."""
+        """Go to the issue after the current issue, or to the first issue from here on; None without
+        issues.
+        """
         findings = self.run.watch.findings
         if not findings:
             return None

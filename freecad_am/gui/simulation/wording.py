@@ -22,7 +22,7 @@ _HOUR = 3600.0  # s
 
 
 def clock(seconds: float) -> str:
-    """A time as minutes and seconds, with hours if any."""
+    """Format a time as minutes and seconds, with hours if any."""
     duration = max(0.0, seconds)
     minutes, remainder = divmod(duration, 60.0)
     hours, minutes = divmod(int(minutes), 60)
@@ -32,7 +32,7 @@ def clock(seconds: float) -> str:
 
 
 def finding(finding: Finding, unit: str = "deg") -> str:
-    """One finding."""
+    """Describe a finding."""
     unit = "°" if unit == "deg" else " mm"
     if finding.kind == watch.TOUCHES:
         text = link_touches(finding.label, finding.other)
@@ -57,12 +57,12 @@ def finding(finding: Finding, unit: str = "deg") -> str:
 
 
 def count_of_findings(count: int) -> str:
-    """How many findings there are."""
+    """Return the number of findings as text."""
     return tr("1 finding") if count == 1 else tr("{count} findings").format(count=count)
 
 
 def nothing(run: Run) -> str:
-    """That there are no findings, and among what."""
+    """Return the text for no findings, with the scope of the check."""
     if run.watch.arm_known:
         return tr(
             "No findings: no limit, singularity or speed is near, and no link of the robot "
@@ -72,7 +72,7 @@ def nothing(run: Run) -> str:
 
 
 def place(run: Run, moment: Moment) -> str:
-    """Layer, bead and point, from 0 as everywhere."""
+    """Return layer, bead and point, counted from 0."""
     motion, row = run.motion, moment.row
     return _place(run, int(motion.layer[row]), int(motion.bead[row]), int(motion.point[row]))
 
@@ -88,7 +88,7 @@ def _place(run: Run, layer: int, bead: int, point: int) -> str:
 
 
 def doing(run: Run, moment: Moment) -> str:
-    """What the machine does."""
+    """Describe the machine's current action."""
     out_of_reach, waits_lit, waits, deposits, rapid = _doings()
     if not np.isfinite(moment.state.joints).all():
         return out_of_reach
@@ -122,7 +122,7 @@ def _instead(achieved: str, requested: str) -> str:
 
 
 def _speed(value: float) -> str:
-    """A speed, mm/s, in the unit that the user prefers."""
+    """Format a speed, mm/s, in the user's unit."""
     return _in_unit(preferences.speed(value))
 
 
@@ -131,7 +131,7 @@ def _in_unit(value: float) -> str:
 
 
 def condition(moment: Moment) -> str:
-    """The condition and the least allowed."""
+    """Return the inverse condition number and its minimum."""
     if not math.isfinite(moment.condition):
         return "–"
     return _condition(moment.condition, moment.threshold)
@@ -148,7 +148,7 @@ def times(run: Run, time: float) -> str:
     return f"{clock(time)} / {clock(run.times.total)}"
 
 
-# ---- how wide it gets
+# ---- widths
 
 
 def widest(run: Run) -> dict[str, tuple[str, ...]]:
@@ -175,12 +175,12 @@ def widest(run: Run) -> dict[str, tuple[str, ...]]:
 
 
 def _wide(number: int) -> int:
-    """A number of as many digits, and wide ones."""
+    """Return a number with the same count of digits, all wide."""
     return int("8" * len(str(number)))
 
 
 def _widest_speed(speeds: Array) -> str:
-    """Return a text as wide as any of these speeds (n,) mm/s."""
+    """Return a text as wide as any of these speeds (n,), mm/s."""
     values = preferences.speed(1.0) * speeds[np.isfinite(speeds) & (speeds > 0.0)]
     if not len(values):
         return "–"
@@ -189,7 +189,7 @@ def _widest_speed(speeds: Array) -> str:
 
 
 def totals(run: Run) -> list[tuple[str, str]]:
-    """The sums, each as its name and its value."""
+    """Return the totals, each with name and value."""
     sums = run.totals
     rows = [
         (tr("Time"), clock(sums.time)),

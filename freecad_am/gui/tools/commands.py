@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The tools of the toolbar and the menu: each opens a panel, whose OK is one call of the macro interface."""
+"""The tools of toolbar and menu. Each opens a panel, whose OK is one call of the macro interface."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ from . import whats_this
 from .freecad_am import add_command
 from .tool import PREFIX, Tool
 
-# ---- What each tool opens. Panels and docks are imported when they are first opened: the workbench
-# starts the sooner
+# ---- Actions of the tools. Panels and docks are imported when first opened, so that the workbench starts
+# faster
 
 ENDINGS = PART_FILES
 
 
 def ask() -> None:
-    """Let a file be chosen, and open it."""
+    """Ask for a file and open it."""
     document = App.ActiveDocument
     folder = (
         os.path.dirname(document.FileName) if document is not None and document.FileName else ""
@@ -40,8 +40,10 @@ def ask() -> None:
 
 
 def opened(path: str) -> Any:
-    """Open a part in the active or a new document, select and show it; None if it is rejected, which is reported,
-    or cancelled."""
+    """Open a part in the active or a new document, select and show it.
+
+    Return None if the part is rejected, which is reported, or the user cancels.
+    """
     is_new = App.ActiveDocument is None
     if is_new:
         Gui.doCommand("App.newDocument()")
@@ -73,7 +75,7 @@ def open_part() -> None:
 
 
 def new_job() -> None:
-    """The panel of a new job."""
+    """Open the panel of a new job."""
     from ..panels.new_job import JobPanel
     from ..panels.stage import show
 
@@ -81,7 +83,7 @@ def new_job() -> None:
 
 
 def export_path() -> None:
-    """The panel that exports a path."""
+    """Open the panel that exports a path."""
     from ..panels.stage import show
     from .export_path import ExportPanel
 
@@ -89,7 +91,7 @@ def export_path() -> None:
 
 
 def cell() -> None:
-    """The panel of a new cell."""
+    """Open the panel of a new cell."""
     from ..panels.cell import CellPanel
     from ..panels.stage import show
 
@@ -97,7 +99,7 @@ def cell() -> None:
 
 
 def toolpath() -> None:
-    """The panel of a new toolpath."""
+    """Open the panel of a new toolpath."""
     from ..panels.stage import show
     from ..panels.toolpath import ToolpathPanel
 
@@ -105,7 +107,7 @@ def toolpath() -> None:
 
 
 def joint_path() -> None:
-    """The panel of a new joint path."""
+    """Open the panel of a new joint path."""
     from ..panels.joint_path import JointPathPanel
     from ..panels.stage import show
 
@@ -113,42 +115,42 @@ def joint_path() -> None:
 
 
 def redundancy_map() -> None:
-    """The map of a joint path."""
+    """Open the map of a joint path."""
     from ..redundancy_map import dock
 
     dock.redundancy_map()
 
 
 def placement() -> None:
-    """The dock of placements."""
+    """Open the placement dock."""
     from ..placement import dock
 
     dock.placement()
 
 
 def path() -> None:
-    """The dock of paths."""
+    """Open the path dock."""
     from ..path import dock
 
     dock.show()
 
 
 def infill() -> None:
-    """The dock of infill."""
+    """Open the infill dock."""
     from ..path import infill_dock
 
     infill_dock.show()
 
 
 def simulate() -> None:
-    """The dock of a simulation."""
+    """Open the simulation dock."""
     from ..simulation import dock
 
     dock.simulate()
 
 
 def program() -> None:
-    """The panel of a new program."""
+    """Open the panel of a new program."""
     from ..panels.program import ProgramPanel
     from ..panels.stage import show
 
@@ -156,21 +158,21 @@ def program() -> None:
 
 
 def new_machine() -> None:
-    """The wizard of a new machine."""
+    """Open the wizard for a new machine."""
     from ..machine_wizard import wizard
 
     wizard.show()
 
 
 def inspect() -> None:
-    """The panel of an inspection."""
+    """Open the panel of an inspection."""
     from ..inspection import panel
 
     panel.inspect()
 
 
 def plots() -> None:
-    """The dock of plots."""
+    """Open the plots dock."""
     from ..plots import dock
 
     dock.show()
@@ -313,7 +315,7 @@ TOOLS = {
 
 
 def register() -> list[str]:
-    """Add all commands to FreeCAD; their names in the order of the toolbar, with separators."""
+    """Add all commands to FreeCAD; return their names in toolbar order, with separators."""
     for name, tool in TOOLS.items():
         tool.name = name
         add_command(PREFIX + name, tool)
@@ -321,7 +323,7 @@ def register() -> list[str]:
 
 
 def _in_order(names: list[str]) -> list[str]:
-    """Commands and separators of a toolbar that has these tools."""
+    """Return commands and separators of a toolbar with these tools."""
     grouped = {name for group in GROUPS for name in group}
     entries: list[str] = []
     for group in (*GROUPS, tuple(name for name in names if name not in grouped)):

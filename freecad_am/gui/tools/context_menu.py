@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Entries of context menus in the tree for a stage or a whole job."""
+"""Context menu entries in the tree for a stage or a whole job."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ from ..in_language import error_line, escape_mnemonic, tr
 
 Act = Callable[[], Any]
 _NAME = "RoboticAM_Menu"
-_MAKE_NEXT = ("Toolpath", "JointPath", "Program")  # of a stage that fits
+# tools that create the next stage from a suitable stage
+_MAKE_NEXT = ("Toolpath", "JointPath", "Program")
 
 
 def add_stage_entries(menu: Any, obj: Any) -> None:
@@ -141,7 +142,7 @@ def _add(menu: Any, name: str, text: str, act: Act, on: bool = True) -> None:
 
 
 def _add_inputs(menu: Any, obj: Any) -> None:
-    """An entry for each input, which is selected and shown in the tree."""
+    """Add an entry for each input, which selects the input and shows it in the tree."""
     inputs: dict[str, Any] = {}
     for link in obj.Proxy.links:
         value = getattr(obj, link.name)
@@ -162,7 +163,7 @@ def _add_inputs(menu: Any, obj: Any) -> None:
 
 
 def go_to(obj: Any) -> None:
-    """Select an object, see it in the tree, and show it."""
+    """Select and show an object, and scroll the tree to it."""
     Gui.Selection.clearSelection()
     Gui.Selection.addSelection(obj.Document.Name, obj.Name)
     Gui.runCommand("Std_TreeSelection")
@@ -183,7 +184,7 @@ def _add_tool_entry(menu: Any, name: str, text: str, obj: Any, on: bool) -> None
 
 
 def _tool(name: str, obj: Any) -> None:
-    """Use a tool of the toolbar on an object."""
+    """Run a toolbar tool on an object."""
     Gui.Selection.clearSelection()
     Gui.Selection.addSelection(obj.Document.Name, obj.Name)
     Gui.runCommand(f"RoboticAM_{name}")
@@ -208,9 +209,11 @@ def _export(obj: Any) -> None:
 
 
 def _save_cell(obj: Any) -> None:
-    """Ask for a file, first one in the folder that New Job offers cells of, and write the cell into it."""
+    """Ask for a file and write the cell into it. The default folder is the one that New Job
+    searches for cells.
+    """
     default_path = saved_cells.path_of(os.path.join(saved_cells.own_folder(), obj.Label))
-    with contextlib.suppress(OSError):  # writing the file reports it
+    with contextlib.suppress(OSError):  # writing the file reports the error
         os.makedirs(os.path.dirname(default_path), exist_ok=True)
     path, _ = QtGui.QFileDialog.getSaveFileName(
         Gui.getMainWindow(), tr("Save cell"), default_path, f"{tr('Cells')} {saved_cells.PATTERN}"

@@ -30,11 +30,11 @@ _PREFERENCES, _FOLDER = "User parameter:BaseApp/Preferences/Mod/RoboticAM", "Wir
 
 
 class ExportPanel:
-    """Panel to choose a path and the export format, first `kind`; nothing happens before OK."""
+    """Panel to choose a path and the export format, initially `kind`; nothing happens before OK."""
 
     def __init__(self, kind: str = STEP) -> None:
         self.document = App.ActiveDocument
-        self.proposed = ""  # the file name without extension that the panel itself has proposed
+        self.proposed = ""  # file name without extension that the panel proposed
         self.paths = [
             obj for kind in _KINDS for obj in api.stages_of(self.document, kind) if obj.Key
         ]
@@ -141,7 +141,7 @@ class ExportPanel:
         upright(self.form)
 
     def _follow(self, *_: Any) -> None:
-        """Show the fields of the kind that is chosen, and a file name that fits."""
+        """Show the fields of the chosen format, and a suitable file name."""
         kind = self.kind.currentData()
         self._note_file("")
         for widget, is_shown in (
@@ -164,7 +164,9 @@ class ExportPanel:
         return os.path.join(folder, self.path.currentText().replace(os.sep, "-"))
 
     def _first(self) -> int:
-        """Return the selected path or the one of the selected job, else the last joint path."""
+        """Return the index of the selected path or the path of the selected job; otherwise the last
+        joint path.
+        """
         for obj in job_selection(self.document.Name):
             if obj in self.paths:
                 return self.paths.index(obj)
@@ -200,7 +202,9 @@ class ExportPanel:
     # ---- called by FreeCAD
 
     def accept(self) -> bool:
-        """Write or make it; True closes the panel, an error is shown in it."""
+        """Export the path or create the object; return True to close the panel, or show an error in
+        it.
+        """
         self.say("")
         self._note_file("")
         kind = self.kind.currentData()
@@ -240,5 +244,5 @@ class ExportPanel:
         }
 
     def reject(self) -> bool:
-        """Nothing was done."""
+        """Close the panel; nothing was exported."""
         return True

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Adds commands to FreeCAD under the module name `freecad_am`.
+"""Add commands to FreeCAD under the module name `freecad_am`.
 
-FreeCAD remembers the file name of the script that adds a command and writes `import NAME` into every macro that uses the
-command. So this file has the name of the package, which a macro can import in the window and without one.
+FreeCAD stores the file name of the script that adds a command, and writes `import NAME` into every
+macro that uses the command. This file therefore has the name of the package, which a macro can
+import with and without a window.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A FreeCAD command of this workbench: its texts, its requirements, and a tooltip that names
-missing ones; the row of its toolbar."""
+"""A FreeCAD command of this workbench: its texts, its requirements, and a tooltip with missing
+requirements. Also keeps the toolbar complete.
+"""
 
 from __future__ import annotations
 
@@ -22,11 +23,14 @@ PREFIX = "RoboticAM_"
 
 
 class Tool:
-    """One command. `icon` is also the object it creates; `action` opens its panel or window; `need` returns what a
-    document lacks for it; `with_dialog`: whether it is available with an open task panel."""
+    """A command.
+
+    icon: also the object that the command creates. action: opens its panel or window. need: returns
+    what a document lacks for it. with_dialog: whether it is available while a task panel is open.
+    """
 
     name = ""  # without prefix
-    hint = ""  # in its tooltip now, below its name
+    hint = ""  # current tooltip text below the name
 
     def __init__(
         self,
@@ -37,14 +41,14 @@ class Tool:
         need: whats_this.Need = whats_this.document,
         with_dialog: bool = False,
     ) -> None:
-        # as written: FreeCAD translates them by the name of the command, and again when the language changes
+        # untranslated: FreeCAD translates by command name, and again when the language changes
         self.icon, self.text, self.help, self.action, self.need = icon, text, help, action, need
         self.with_dialog = with_dialog
 
     def GetResources(self) -> dict[str, str]:
-        """Texts and icon; the macro interface makes the step of undo, not the command.
+        """Return texts and icon. The macro interface, not the command, opens the undo step.
 
-        With ForEdit FreeCAD asks `IsActive` even while a task panel is open.
+        With ForEdit, FreeCAD asks `IsActive` even while a task panel is open.
         """
         return {
             "Pixmap": icons.path(self.icon),
@@ -65,7 +69,7 @@ class Tool:
         return not lacking
 
     def missing(self) -> str:
-        """What to do first, '' when it can act now."""
+        """Return what the user must do first, '' if the tool is available."""
         try:
             if (
                 App.ActiveDocument is not None
@@ -78,35 +82,34 @@ class Tool:
             return tr("First open a part, or create a document.")
 
     def _explain(self, text: str) -> bool:
-        """Put the tool's name and missing requirements in the tooltip, which FreeCAD sets only once; False while no
-        button exists."""
+        """Update the tooltip, which FreeCAD sets only once. Return False while no button exists."""
         command = Gui.Command.get(PREFIX + self.name)
         actions = [] if command is None else command.getAction()
         name, help = html.escape(tr(self.text).rstrip("…")), html.escape(text, quote=False)
         bar = Gui.getMainWindow().statusBar()
         for action in actions:
             if action.statusTip() != text and bar.currentMessage() == action.statusTip():
-                bar.clearMessage()  # it is no longer true
+                bar.clearMessage()  # the message is outdated
             action.setToolTip(f"<p><b>{name}</b></p><p>{help}</p>")
             action.setStatusTip(text)
         return bool(actions)
 
     def Activated(self, index: int = 0) -> None:
-        """The tool was clicked, or called by a macro or a shortcut at a moment when it cannot act."""
+        """Run the tool. A macro or a shortcut may call it while it is unavailable."""
         lacking = self.missing()
         if lacking:
             App.Console.PrintWarning(tr("{}: {}").format(tr(self.text), lacking) + "\n")
         else:
-            # the tooltip shown under the pointer is out of date
+            # the tooltip under the pointer is outdated
             Gui.getMainWindow().statusBar().clearMessage()
             self.action()
 
 
-# ---- Give the workbench's toolbar its own row where it would hide tools next to others
+# ---- Move the workbench's toolbar to its own row if it would be cut off
 
 
 def show_tooltips(title: str) -> None:
-    """Let the entries of the menu show their tooltips, once FreeCAD has made it."""
+    """Show tooltips of menu entries, after FreeCAD has created the menu."""
 
     def show() -> None:
         for menu in present(Gui.getMainWindow().menuBar(), QtGui.QMenu):
@@ -117,7 +120,7 @@ def show_tooltips(title: str) -> None:
 
 
 def for_selection() -> list[str]:
-    """Tools for the shapes that are selected."""
+    """Return the tools for the selected shapes."""
     document = App.ActiveDocument
     if document is None or Gui.Control.activeDialog():
         return []
@@ -132,7 +135,7 @@ def for_selection() -> list[str]:
 
 
 class _BarWidth(QtCore.QObject):
-    """Checks the bar whenever its space changes, such as with the window width."""
+    """Checks the toolbar whenever its space changes, such as with the window width."""
 
     def __init__(self, bar: Any) -> None:
         super().__init__(bar)
@@ -141,17 +144,17 @@ class _BarWidth(QtCore.QObject):
 
     def eventFilter(self, watched: Any, event: Any) -> bool:
         """Called by Qt; the filter handles no event itself."""
-        # PySide may take an event for what lay at its address before
+        # PySide may confuse an event with an earlier object at its address
         if isinstance(event, QtCore.QEvent) and event.type() in (
             QtCore.QEvent.Resize,
             QtCore.QEvent.Show,
         ):
-            QtCore.QTimer.singleShot(0, self.give)  # once Qt is done with its layout
+            QtCore.QTimer.singleShot(0, self.give)  # after Qt has finished the layout
         return False
 
     def give(self) -> None:
-        """Begin a row with the bar where it is cut off; it stays where the user has put it where it is not."""
-        with contextlib.suppress(RuntimeError):  # the main window is gone
+        """Move a toolbar that is cut off to a new row; otherwise keep the user's position."""
+        with contextlib.suppress(RuntimeError):  # the main window is deleted
             window, bar = Gui.getMainWindow(), self.bar
             cut = bar.isVisible() and not bar.isFloating() and bar.width() < bar.sizeHint().width()
             if cut and bar.orientation() == QtCore.Qt.Horizontal and not window.toolBarBreak(bar):
@@ -159,7 +162,7 @@ class _BarWidth(QtCore.QObject):
 
 
 def keep_whole(title: str) -> None:
-    """Watch the toolbar of a title, once FreeCAD has made it; once or more often."""
+    """Watch the toolbar with a title after FreeCAD has created it; may be called repeatedly."""
     QtCore.QTimer.singleShot(0, lambda: _watch(title))
 
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Help on our tools and panels: What's This opens their page of docs/tools in a window of FreeCAD.
+"""Help on our tools and panels: What's This opens their page of docs/tools in a FreeCAD window.
 
-FreeCAD passes clicks to its Help module, which knows only pages of FreeCAD's wiki; 0.20 has no such module and asks
-for it in a dialog. So in What's This mode, and only then, clicks on our widgets are handled before FreeCAD.
+FreeCAD passes clicks to its Help module, which knows only pages of FreeCAD's wiki. FreeCAD 0.20 has
+no such module and asks for it in a dialog. In What's This mode only, clicks on our widgets are
+therefore handled before FreeCAD.
 """
 
 from __future__ import annotations
@@ -41,14 +42,14 @@ def document(doc: Any) -> str:
 
 
 def part(doc: Any) -> str:
-    """Something with a shape or a mesh."""
+    """Require an object with a shape or a mesh."""
     return document(doc) or (
         "" if _any(doc, usable) else tr("First open a part, or import one into this document.")
     )
 
 
 def faces(doc: Any) -> str:
-    """Something with a shape, which a mesh has not."""
+    """Require an object with a shape, which a mesh does not have."""
     if document(doc) or _any(doc, lambda obj: usable(obj) and not is_mesh(obj)):
         return document(doc)
     return (
@@ -59,7 +60,7 @@ def faces(doc: Any) -> str:
 
 
 def feature(doc: Any) -> str:
-    """A feature to deposit."""
+    """Require a feature to deposit."""
     if document(doc) or _some(doc, "feature"):
         return document(doc)
     return tr(
@@ -69,7 +70,7 @@ def feature(doc: Any) -> str:
 
 
 def toolpath_and_cell(doc: Any) -> str:
-    """What to run, and where."""
+    """Require a toolpath and a cell."""
     if document(doc):
         return document(doc)
     if not _some(doc, "toolpath"):
@@ -78,7 +79,7 @@ def toolpath_and_cell(doc: Any) -> str:
 
 
 def path(doc: Any) -> str:
-    """A toolpath or joint path that was computed."""
+    """Require a computed toolpath or joint path."""
     if document(doc):
         return document(doc)
     has_path = any(obj.Key for kind in ("toolpath", "joint path") for obj in _stages(doc, kind))
@@ -86,7 +87,7 @@ def path(doc: Any) -> str:
 
 
 def joint_path(doc: Any) -> str:
-    """A joint path that was computed."""
+    """Require a computed joint path."""
     if document(doc):
         return document(doc)
     paths = list(_stages(doc, "joint path"))
@@ -98,7 +99,7 @@ def joint_path(doc: Any) -> str:
 
 
 def feasible(doc: Any) -> str:
-    """A joint path that can be carried out."""
+    """Require a feasible joint path."""
     lacking = joint_path(doc)
     if lacking or any(obj.Status != INFEASIBLE for obj in _stages(doc, "joint path")):
         return lacking
@@ -125,7 +126,7 @@ def _any(doc: Any, predicate: Callable[[Any], bool]) -> bool:
 
 PAGES = Path(__file__).resolve().parents[3] / "docs" / "tools"
 NAME, INDEX, PREFIX = "RoboticAM_Help", "README.md", "RoboticAM_"
-# of panels and docks that are not called as their tool is
+# pages of panels and docks that are not named after their tool
 _CALLED = {
     "PathDock": "path",
     "Simulation": "simulate",
@@ -137,14 +138,16 @@ _SIZE = (900, 700)
 
 @functools.cache
 def _pages() -> dict[str, str]:
-    """Return the pages of panels and docks that are not called as their tool is, by name."""
+    """Return the pages of panels and docks that are not named after their tool, by name."""
     of_features = {f"{type(family).__name__}Feature": window_of(family).page for family in FAMILIES}
     return {**_CALLED, **of_features}
 
 
 def page_of(name: str) -> str:
-    """The file of a tool, panel or dock by its name: `RoboticAM_SpinMap` gives `spin-map.md`, an unknown name the
-    index."""
+    """Return the file of a tool, panel or dock by its name.
+
+    `RoboticAM_SpinMap` gives `spin-map.md`; an unknown name gives the index.
+    """
     bare = name.removeprefix(PREFIX)
     words = "".join(f"-{letter.lower()}" if letter.isupper() else letter for letter in bare).lstrip(
         "-"
@@ -154,7 +157,7 @@ def page_of(name: str) -> str:
 
 
 def url(name: str) -> str:
-    """The address of a page, for a FreeCAD that shows it itself."""
+    """Return the address of a page, for FreeCAD versions that show it themselves."""
     return QtCore.QUrl.fromLocalFile(str(PAGES / page_of(name))).toString()
 
 
@@ -162,7 +165,7 @@ class Help:
     """The command that opens the list of tools."""
 
     def GetResources(self) -> dict[str, str]:
-        """Texts, in the language that the window has when the workbench is opened."""
+        """Return the texts in the window's language at the time when the workbench is opened."""
         return {
             "MenuText": tr("Help on Robotic AM"),
             "ToolTip": tr("Opens the help pages of the tools"),
@@ -175,7 +178,7 @@ class Help:
 
 
 class HelpWindow:
-    """Pages in a window of their own; links lead on."""
+    """Shows pages in a separate window and follows their links."""
 
     def __init__(self) -> None:
         self.window = QtGui.QDialog(Gui.getMainWindow())
@@ -213,7 +216,7 @@ class HelpWindow:
                     table.removeRows(0, 1)
 
     def show(self, page: str, note: str = "") -> None:
-        """Show a page of docs/tools, above it a note."""
+        """Show a page of docs/tools, with a note above."""
         self.note.setText(note)
         self.note.setVisible(bool(note))
         self.text.setSource(QtCore.QUrl.fromLocalFile(str(PAGES / page)))
@@ -233,13 +236,13 @@ class Watch(QtCore.QObject):
         """Called by Qt; True for handled events."""
         if not isinstance(
             event, QtCore.QEvent
-        ):  # PySide may take it for what lay at its address before
+        ):  # PySide may confuse an event with an earlier object at its address
             return False
         kind = event.type()
         if kind == QtCore.QEvent.EnterWhatsThisMode and watched is self.window:
             QtCore.QTimer.singleShot(
                 0, self._take
-            )  # after FreeCAD has begun to: who comes last is asked first
+            )  # after FreeCAD: Qt asks the last event filter first
         elif kind == QtCore.QEvent.LeaveWhatsThisMode and watched is self.window:
             QtGui.QApplication.instance().removeEventFilter(self)
         elif kind == QtCore.QEvent.WhatsThis and isinstance(watched, QtGui.QWidget):
@@ -256,7 +259,9 @@ class Watch(QtCore.QObject):
 
 
 def _ours(widget: Any) -> tuple[str, str]:
-    """Return the name of the tool, panel or dock of a widget, '' for foreign ones, and the widget's own help."""
+    """Return the name of the tool, panel or dock of a widget ('' for foreign widgets), and the
+    widget's own help.
+    """
     if isinstance(widget, QtGui.QToolButton) and widget.defaultAction() is not None:
         action = widget.defaultAction()
         for name in (str(action.data() or ""), action.objectName()):
@@ -282,9 +287,9 @@ _watches: list[Watch] = []
 
 
 def show(page: str, note: str = "") -> None:
-    """Show a page of docs/tools in the window for help, which is made when it is first asked for."""
+    """Show a page of docs/tools in the help window, created at first use."""
     for window in list(_windows):
-        with contextlib.suppress(RuntimeError):  # it went with the main window
+        with contextlib.suppress(RuntimeError):  # the window was deleted with the main window
             window.show(page, note)
             return
         _windows.remove(window)
@@ -293,7 +298,7 @@ def show(page: str, note: str = "") -> None:
 
 
 def install() -> None:
-    """Register the command and watch the main window; once or more often."""
+    """Register the command and watch the main window; may be called repeatedly."""
     if not _watches:
         add_command(NAME, Help())
         _watches.append(Watch(Gui.getMainWindow()))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Gives our objects their view providers and opens their panels.
+"""Attach view providers to our objects and open their panels.
 
 InitGui registers this module with `objects.hooks`.
 """
@@ -32,7 +32,7 @@ from .joint_path import JointPathView
 from .program import ProgramView
 from .toolpath import ToolpathView
 
-__all__ = ("attach", "carry_out", "view_of")  # what `objects.hooks` calls, and what tests ask
+__all__ = ("attach", "carry_out", "view_of")  # called by `objects.hooks` and by tests
 
 VIEWS: dict[str, type[StageView]] = {
     "cell": CellView,
@@ -45,7 +45,8 @@ VIEWS: dict[str, type[StageView]] = {
 _to_be_seen: set[str] = set()
 
 
-# ---- what views ask for; imported at first need, for panels and menus take longer to import than a document to open
+# ---- functions that views call, imported at first use: panels and menus import more slowly than a
+# document opens
 
 
 def _edit(obj: Any) -> None:
@@ -74,7 +75,7 @@ registry.register(
 
 
 def _preferences_changed() -> None:
-    """All that is drawn is to be as the user prefers it now."""
+    """Redraw everything with the current preferences."""
     for document in App.listDocuments().values():
         for obj in document.Objects:
             view = getattr(obj.ViewObject, "Proxy", None)
@@ -86,13 +87,15 @@ preferences_watch.listen(_preferences_changed)
 
 
 def view_of(stage: Stage) -> type[StageView]:
-    """The view provider of a stage."""
+    """Return the view provider of a stage."""
     family = stage_family(stage)
     return VIEWS[stage.kind] if family is None else window_of(family).view()
 
 
 def attach(obj: Any) -> None:
-    """Show an object: with a new view provider when it has none (new, or made without a window), else redrawn."""
+    """Show an object: redraw it, or give it a view provider if it has none (new, or created without
+    a window).
+    """
     vobj = obj.ViewObject
     if is_group(obj):
         job.attach(obj)
@@ -110,7 +113,7 @@ def attach(obj: Any) -> None:
 
 
 def _show_all(name: str) -> None:
-    """Turn the camera to a document that was made without a window, and so has none."""
+    """Fit the camera to a document that was created without a window, and therefore has no camera."""
     document = Gui.getDocument(name) if name in App.listDocuments() else None
     if document is not None and document.Document.Restoring:
         QtCore.QTimer.singleShot(100, lambda: _show_all(name))
@@ -121,7 +124,7 @@ def _show_all(name: str) -> None:
         view.fitAll()
 
 
-# ---- The panel of every kind of stage; families have those of their features
+# ---- The panel of every kind of stage; families define the panels of their features
 
 PANELS: dict[type, Any] = {
     panel.stage: panel

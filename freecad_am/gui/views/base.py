@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Base of the view providers of all stages. Their class paths are a file format."""
+"""Base class of the view providers of all stages. Their class paths are part of the file format."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class StageView:
     """Draws the stored result of a stage; its icon shows the status."""
 
     icon: ClassVar[str] = ""
-    # view property: FreeCAD type, default (of an enumeration all choices, the default first), help
+    # view property: FreeCAD type, default (for an enumeration all choices, the default first), help
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {}
     obj: Any = None
     root: Any = None
@@ -31,7 +31,7 @@ class StageView:
         self.complete(vobj)
 
     def complete(self, vobj: Any) -> None:
-        """Add the view properties and choices the object lacks."""
+        """Add the view properties and choices that the object lacks."""
         have = set(vobj.PropertiesList)
         for name, (type_name, default, help) in self.options.items():
             if name not in have:
@@ -41,17 +41,19 @@ class StageView:
                 isinstance(default, tuple)
                 and tuple(vobj.getEnumerationsOfProperty(name)) != default
             ):
-                old_choice = getattr(vobj, name)  # of a document of an earlier version
+                old_choice = getattr(vobj, name)  # from a document of an earlier version
                 setattr(vobj, name, list(default))
                 setattr(vobj, name, old_choice if old_choice in default else default[0])
 
-    # ---- what a view defines
+    # ---- to be defined by a view
 
     def scene(self, root: Any) -> None:
         """Add the nodes to the root, once."""
 
     def read(self, obj: Any) -> Any:
-        """What `draw` is given: the stored result or its drawn part. Raises InputError as `Stage.value`."""
+        """Return the input of `draw`: the stored result or its drawn part. Raises InputError as
+        `Stage.value`.
+        """
         return obj.Proxy.value(obj)
 
     def draw(self, obj: Any, value: Any) -> None:
@@ -61,16 +63,16 @@ class StageView:
         """Apply the view properties."""
 
     def preferences_changed(self) -> None:
-        """Show what the user prefers now; most views depend on no preference."""
+        """Apply the current preferences; most views depend on none."""
 
     def edit(self, obj: Any) -> None:
-        """Open what a double click opens."""
+        """Open the panel or window for a double click."""
         registry.edit(obj)
 
     # ---- called by FreeCAD
 
     def attach(self, vobj: Any) -> None:
-        """Make the scene; called when the view provider is set, and when a document opens."""
+        """Create the scene; called when the view provider is set, and when a document opens."""
         self.obj = vobj.Object
         self.root, self.switch = coin.SoSeparator(), coin.SoSwitch()
         self.scene(self.root)
@@ -79,7 +81,7 @@ class StageView:
         vobj.addDisplayMode(self.switch, MODE)
 
     def stand_back(self, aside: bool) -> None:
-        """Draw nothing while a preview replaces it; the properties stay."""
+        """Draw nothing while a preview replaces the view; the properties stay."""
         self.switch.whichChild = coin.SO_SWITCH_NONE if aside else coin.SO_SWITCH_ALL
 
     def refresh(self) -> None:
@@ -93,13 +95,13 @@ class StageView:
         except InputError as error:
             if (
                 not obj.Document.Transacting
-            ):  # within undo the parts of a result come back one by one
+            ):  # during undo, the parts of a result are restored one by one
                 App.Console.PrintError(error_line(error))
             return
         self.style(obj.ViewObject)
 
     def updateData(self, obj: Any, name: str) -> None:
-        """A property of the object has changed."""
+        """Handle a changed property of the object."""
         if self.obj is None or obj.Document.Restoring:
             return
         if name in ("Key", "ResultLayout", "ResultData") and obj.Key != self.drawn:
@@ -109,7 +111,7 @@ class StageView:
                 target.ViewObject.signalChangeIcon()
 
     def onChanged(self, vobj: Any, name: str) -> None:
-        """A view property has changed."""
+        """Handle a changed view property."""
         if (
             name in self.options
             and all(hasattr(vobj, option) for option in self.options)
@@ -118,19 +120,19 @@ class StageView:
             self.style(vobj)
 
     def getDisplayModes(self, vobj: Any) -> list[str]:
-        """There is one."""
+        """Return the only display mode."""
         return [MODE]
 
     def getDefaultDisplayMode(self) -> str:
-        """There is one."""
+        """Return the only display mode."""
         return MODE
 
     def setDisplayMode(self, mode: str) -> str:
-        """There is one."""
+        """Accept the only display mode."""
         return mode
 
     def getIcon(self) -> str:
-        """The icon, with a badge unless all is well."""
+        """Return the icon, with a badge for problems."""
         return icons.badge_path(self.icon, getattr(self.obj, "Status", ""))
 
     def doubleClicked(self, vobj: Any) -> bool:
@@ -139,14 +141,14 @@ class StageView:
         return True
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """Entries of the context menu in the tree."""
+        """Add entries to the context menu in the tree."""
         registry.fill_menu_of_stage(menu, vobj.Object)
 
     def dumps(self) -> None:
-        """Nothing is kept."""
+        """Store nothing."""
 
     def loads(self, state: Any) -> None:
-        """Nothing to restore."""
+        """Restore nothing."""
 
     __getstate__ = dumps
     __setstate__ = loads

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The cell in the 3D view, as the part sees it: platform under it, nozzle where the deposit ends, on demand the machine."""
+"""The cell in the 3D view, in part coordinates: platform, nozzle at the end of the deposit, and
+optionally the machine.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,8 @@ from .base import StageView
 
 
 class CellView(StageView):
-    """Draws platform and nozzle in part coordinates; without a toolpath the platform is at the origin.
+    """Draws platform and nozzle in part coordinates; without a toolpath the platform is at the
+    origin.
 
     The machine is drawn at rest: the part upright, its highest point under the nozzle.
     """
@@ -36,8 +39,9 @@ class CellView(StageView):
     end = (
         np.zeros(3),
         np.array([0.0, 0.0, 1.0]),
-    )  # the last point of the deposit, and the tool axis there
-    stands_on = ""  # the key of the toolpath that platform and nozzle were placed by, "" for none
+    )  # the last point of the deposit and its tool axis
+    # key of the toolpath that determines the poses of platform and nozzle, "" for none
+    stands_on = ""
 
     def scene(self, root: Any) -> None:
         self.nodes = CellNodes()
@@ -63,7 +67,7 @@ class CellView(StageView):
         self.nodes.set(nozzle_scenery(value, *(_end_of_shown_path(obj) or self.end), mount))
 
     def follow_stretch(self, view: path_view.PathView) -> None:
-        """Move the nozzle to the end of the shown path section; the machine at rest stays."""
+        """Move the nozzle to the end of the visible path stretch; the machine at rest stays."""
         if self.drawn and self.nodes.machine is None and view.obj.ViewObject.Visibility:
             self.nodes.move_nozzle(at_end(*(view.last_point() or self.end)))
 
@@ -73,7 +77,7 @@ class CellView(StageView):
             self.refresh()
 
     def onChanged(self, vobj: Any, name: str) -> None:
-        """A view property has changed."""
+        """Handle a changed view property."""
         if name == "ShowMachine" and self.root is not None and not vobj.Object.Document.Restoring:
             self.refresh()
 
@@ -82,7 +86,7 @@ class CellView(StageView):
             self.nodes.machine.renew_colours()
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """Entries of the context menu in the tree."""
+        """Add entries to the context menu in the tree."""
         super().setupContextMenu(vobj, menu)
         action = menu.addAction(tr("Hide machine") if vobj.ShowMachine else tr("Show machine"))
         action.setObjectName("RoboticAM_ShowMachine")
@@ -90,7 +94,7 @@ class CellView(StageView):
 
 
 def toolpath_of(obj: Any) -> Any:
-    """The toolpath object that is for a cell, or that a joint path is planned of in it; None without one."""
+    """Return the toolpath of a cell, or of a joint path planned in the cell; None without one."""
     for follower in obj.InList:
         kind = getattr(stage_of(follower), "kind", "")
         toolpath = (
@@ -102,7 +106,9 @@ def toolpath_of(obj: Any) -> Any:
 
 
 def _standing(obj: Any) -> Any:
-    """Return points and tool axes of the last bead, frame and family of the toolpath; read nothing else."""
+    """Return points and tool axes of the last bead, frame and family of the toolpath; read nothing
+    else.
+    """
     last_bead = ("layers", -1, "beads", -1)
     return _toolpath_contents(
         obj, (*last_bead, "points"), (*last_bead, "tool"), ("frame",), ("family",)
@@ -110,7 +116,7 @@ def _standing(obj: Any) -> Any:
 
 
 def _end_of_shown_path(obj: Any) -> Any:
-    """Return the end of the section shown of the cell's path, None without one."""
+    """Return the end of the visible stretch of the cell's path, None without one."""
     for follower in obj.InList:
         view = getattr(follower.ViewObject, "Proxy", None)
         if (
@@ -125,7 +131,7 @@ def _end_of_shown_path(obj: Any) -> Any:
 def _toolpath_contents(obj: Any, *locations: Place) -> Any:
     toolpath = toolpath_of(obj)
     if toolpath is not None:
-        with contextlib.suppress(InputError):  # within undo
+        with contextlib.suppress(InputError):  # during undo
             return stage_of(toolpath).parts(toolpath, *locations)
     return None
 
@@ -135,7 +141,7 @@ def _key_of(toolpath: Any) -> str:
 
 
 def _path_changed(view: path_view.PathView) -> None:
-    """A toolpath or joint path was drawn: the cell it is for goes with it."""
+    """Redraw the cell of a toolpath or joint path that was drawn."""
     cell = view.obj.Cell
     if cell is not None and isinstance(cell.ViewObject.Proxy, CellView):
         cell.ViewObject.Proxy.follow()

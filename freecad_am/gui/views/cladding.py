@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faces that are covered with layers of beads in the 3D view."""
+"""Faces covered with layers of beads, in the 3D view."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class CladdingView(StageView):
 
 
 def borders_of(value: Any) -> list[Any]:
-    """The borders (k, 3) of each sheet of faces, the first point repeated."""
+    """Return the borders (k, 3) of each sheet of faces, with the first point repeated."""
     return [
         sheet.vertices[[*border, border[0]]]
         for sheet in value.sheets

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The feature in the 3D view: meridian and axis, or faces and first layer of a wall on a substrate."""
+"""A feature in the 3D view: meridian and axis, or faces and first layer of a wall on a substrate."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from .base import StageView
 
 
 class FeatureView(StageView):
-    """Draws the meridian at the start angle and the axis; faces and first layer of a wall on a substrate."""
+    """Draws the meridian at the start angle and the axis, or faces and first layer of a wall on a
+    substrate.
+    """
 
     icon = "feature"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {

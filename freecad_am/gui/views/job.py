@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The group of a job in the tree. Its class path is a file format."""
+"""The group of a job in the tree. Its class path is part of the file format."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from .. import icons, registry
 
 
 class JobView:
-    """Shows the worst status of its stages. Deleting it deletes them; other members stay."""
+    """Shows the worst status of its stages. Deleting the group deletes its stages; other members
+    stay.
+    """
 
     obj: Any = None
 
@@ -25,10 +27,11 @@ class JobView:
     def attach(self, vobj: Any) -> None:
         """Called when the view provider is set, and when a document opens."""
         self.obj = vobj.Object
-        QtCore.QTimer.singleShot(0, self._renew_icon)  # FreeCAD 1.1 asked before there was a proxy
+        # FreeCAD 1.1 asks for the icon before the proxy exists
+        QtCore.QTimer.singleShot(0, self._renew_icon)
 
     def _renew_icon(self) -> None:
-        with contextlib.suppress(ReferenceError, RuntimeError, AttributeError):  # it is gone
+        with contextlib.suppress(ReferenceError, RuntimeError, AttributeError):  # deleted
             self.obj.ViewObject.signalChangeIcon()
 
     def getIcon(self) -> str:
@@ -42,12 +45,14 @@ class JobView:
         return stage_of(obj) is not None
 
     def replaceObject(self, old: Any, new: Any) -> bool:
-        """Keep a stage that another one is dropped onto. FreeCAD would replace it in the job, although later stages
-        still need it."""
+        """Keep a stage that another stage is dropped onto.
+
+        FreeCAD would replace it in the job, although later stages still need it.
+        """
         return False
 
     def onDelete(self, vobj: Any, names: Any) -> bool:
-        """Delete the stages too, last ones first, within the undo step that deletes the group."""
+        """Delete the stages too, last stages first, within the undo step that deletes the group."""
         document = vobj.Object.Document
         stages = sorted(stages_in(vobj.Object), key=lambda obj: -len(obj.OutListRecursive))
         for name in [stage.Name for stage in stages]:
@@ -55,20 +60,20 @@ class JobView:
         return True
 
     def setupContextMenu(self, vobj: Any, menu: Any) -> None:
-        """Entries of the context menu in the tree."""
+        """Add entries to the context menu in the tree."""
         registry.fill_menu_of_job(menu, vobj.Object)
 
     def dumps(self) -> None:
-        """Nothing is kept."""
+        """Store nothing."""
 
     def loads(self, state: Any) -> None:
-        """Nothing to restore."""
+        """Restore nothing."""
 
     __getstate__ = dumps
     __setstate__ = loads
 
 
 def attach(obj: Any) -> None:
-    """Show a group that has no view provider yet."""
+    """Give a group a view provider if it has none."""
     if not getattr(obj.ViewObject, "Proxy", None):
         JobView(obj.ViewObject)

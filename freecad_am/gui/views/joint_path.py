@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The joint path in the 3D view: beads coloured by the distance to the machine's limits, rapid moves and infeasible
-points."""
+"""A joint path in the 3D view: beads coloured by the margin to the machine's limits, rapids and
+infeasible points.
+"""
 
 from __future__ import annotations
 
@@ -38,7 +39,9 @@ from .toolpath import band_of, width_of
 
 @dataclass(frozen=True, eq=False)
 class Course:
-    """The drawn columns of a motion of n rows; opening a document reads only these."""
+    """The columns of a motion of n rows that are drawn; opening a document reads only these
+    columns.
+    """
 
     deposit: Mask
     layer: Integers
@@ -54,8 +57,10 @@ class Course:
 
 @dataclass(frozen=True)
 class Seen:
-    """The drawn part of a joint path. limits: name of the limit set. read: returns the full result or parts by
-    location."""
+    """The drawn part of a joint path.
+
+    limits: name of the limit set. read: returns the full result, or parts by location.
+    """
 
     course: Course
     limits: str
@@ -63,8 +68,9 @@ class Seen:
 
 
 class JointPathView(PathView):
-    """Draws the beads as they are run, rapid moves as thin dashed lines, and a red point wherever the machine does not reach
-    or a finding forbids a program."""
+    """Draws beads in their order of execution, rapids as thin dashed lines, and a red point at
+    every point that the machine does not reach or that has an error.
+    """
 
     icon = "joint_path"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
@@ -100,7 +106,7 @@ class JointPathView(PathView):
         course, width = value.course, width_of(_linked(obj))
         height = (
             _layer_height(obj) if obj.ViewObject.Look == TUBES else None
-        )  # lines do without the toolpath
+        )  # lines do not need the toolpath
         starts = np.flatnonzero(course.point[self.at] == 0)
         bead_widths = course.width[self.at]
         return Rows(
@@ -118,7 +124,7 @@ class JointPathView(PathView):
         self.motion, self.at = (
             motion,
             np.flatnonzero(motion.deposit),
-        )  # the row of the motion of each point
+        )  # the motion row of each point
         self.reachable = np.logical_and.reduce([np.isfinite(column) for column in motion.joints.T])
         self.rapid = np.flatnonzero(~motion.deposit[1:]) + 1
         self.find_wrong(obj)
@@ -128,8 +134,8 @@ class JointPathView(PathView):
             obj.Toolpath.ViewObject.Visibility = False
 
     def find_wrong(self, obj: Any) -> None:
-        """The rows of the motion that the machine does not reach, or that a finding forbids a program for."""
-        motion, layers = self.motion, self.motion.layer[self.at]  # rising
+        """Find the motion rows that the machine does not reach, or that have an error."""
+        motion, layers = self.motion, self.motion.layer[self.at]  # ascending
         wrong = motion.deposit & ~self.reachable
         for issue in issues_of(obj):
             if issue.level == ERROR and issue.layer is not None:
@@ -140,14 +146,17 @@ class JointPathView(PathView):
         self.bad = np.flatnonzero(wrong)
 
     def updateData(self, obj: Any, name: str) -> None:
-        """A property of the object has changed; undo and redo may bring findings back after the result they are of."""
+        """Handle a changed property of the object. Undo and redo may restore issues after their
+        result.
+        """
         super().updateData(obj, name)
         if name == "Issues" and self.rows is not None and not obj.Document.Restoring:
             self.find_wrong(obj)
             self.limited(*self.stretch())
 
     def limited(self, start: int, end: int) -> None:
-        low = 0 if start == 0 else int(self.at[start - 1]) + 1  # with what leads to the first bead
+        # including the rapids before the first bead
+        low = 0 if start == 0 else int(self.at[start - 1]) + 1
         high = len(self.motion) if end >= len(self.at) else int(self.at[max(end - 1, 0)]) + 1
         rapid = self.rapid[(self.rapid >= low) & (self.rapid < high)]
         self.rapids.set(
@@ -179,7 +188,7 @@ class JointPathView(PathView):
 
 
 def _linked(obj: Any) -> Any:
-    """The toolpath object of a joint path. Raises InputError where it was deleted."""
+    """Return the toolpath object of a joint path. Raises InputError if it was deleted."""
     if obj.Toolpath is None:
         raise InputError(
             "NO_INPUT",
@@ -190,18 +199,22 @@ def _linked(obj: Any) -> Any:
 
 
 def _toolpath_of(obj: Any) -> Any:
-    """The toolpath of a joint path.
-    Raises InputError where it was deleted, or where undo has not yet brought it back."""
+    """Return the toolpath of a joint path.
+
+    Raises InputError if the toolpath was deleted, or if undo has not yet restored it.
+    """
     return _linked(obj).Proxy.value(obj.Toolpath)
 
 
 def _layer_height(obj: Any) -> float:
-    """Return the toolpath's layer height without reading the toolpath. Raises InputError as `_toolpath_of`."""
+    """Return the toolpath's layer height without reading the toolpath. Raises InputError as
+    `_toolpath_of`.
+    """
     return float(_linked(obj).Proxy.parts(obj.Toolpath, ("layer_height",))[0])
 
 
 def _known_layer_height(obj: Any) -> float:
-    """Return the toolpath's layer height if there is one, else the typical layer height."""
+    """Return the toolpath's layer height, or the default layer height without a toolpath."""
     try:
         return _layer_height(obj)
     except InputError:
@@ -209,8 +222,11 @@ def _known_layer_height(obj: Any) -> float:
 
 
 def _limit_shares(obj: Any, value: Seen, kind: str) -> Array:
-    """Return (n,) the smallest relative margin to a joint limit, or the largest relative joint speed, per row.
-    Raises InputError of the machine."""
+    """Return the minimum relative margin to a joint limit, or the maximum relative joint speed,
+    (n,) per row.
+
+    Raises InputError of the machine.
+    """
     if obj.Cell is None:
         raise InputError("NO_INPUT", obj.Label, "its cell was deleted; choose another cell")
     folders, settings = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Preview of a panel's entries, computed outside the document and shown in its 3D views until removed."""
+"""Preview a panel's entries: computed outside the document and shown in its 3D views until removed."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ T = TypeVar("T")
 
 
 class Draft:
-    """A stage outside the document, for reading only: all links and outer values by property name.
+    """A read-only stage outside the document: all links and outer values by property name.
 
-    Errors name `label` in place of the object's Label.
+    Errors name `label` instead of the object's Label.
     """
 
     def __init__(
@@ -37,12 +37,14 @@ class Draft:
         self.obj = SimpleNamespace(Label=label, Name=label, Document=document, **values, **links)
 
     def check(self) -> None:
-        """Raises InputError for a parameter that the stage refuses."""
+        """Raise InputError for a parameter that the stage rejects."""
         for section in self.stage.sections:
             self.stage.parameters(self.obj, section.cls)
 
     def prepare(self) -> Work:
-        """Return a function that computes the stage's result without the document. Both raise the stage's errors."""
+        """Return a function that computes the stage's result without the document. Both raise the
+        stage's errors.
+        """
         return self.stage.prepare(self.obj)
 
     def reporting(self, work: Callable[[], T]) -> Callable[[], T]:
@@ -68,7 +70,7 @@ class Preview:
             scene.addChild(node)
 
     def remove(self) -> None:
-        """Remove the preview from the views; further calls have no effect."""
+        """Remove the preview from the views; may be called repeatedly."""
         for scene in self.scenes:
             with contextlib.suppress(RuntimeError, ReferenceError):  # the view is closed
                 scene.removeChild(self.node)
@@ -82,7 +84,7 @@ class Aside:
         self.objects: list[Any] = []
 
     def put(self, *objects: Any) -> None:
-        """Hide these objects instead of the previous ones; None entries are ignored."""
+        """Hide these objects instead of the previous objects; ignore None."""
         new_objects = [obj for obj in objects if obj is not None]
         self._stand_back(
             False,
@@ -97,5 +99,5 @@ class Aside:
 
     def _stand_back(self, aside: bool, objects: list[Any]) -> None:
         for obj in objects:
-            with contextlib.suppress(RuntimeError, ReferenceError, AttributeError):  # it is gone
+            with contextlib.suppress(RuntimeError, ReferenceError, AttributeError):  # deleted
                 obj.ViewObject.Proxy.stand_back(aside)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The program in the tree; a double click opens its text."""
+"""A program in the tree; a double click opens its text."""
 
 from __future__ import annotations
 
@@ -19,11 +19,13 @@ _SHOWN = (
     "ResultData",
     "Status",
     "Message",
-)  # undo brings them back in any order
+)  # undo restores the properties in any order
 
 
 class ProgramView(StageView):
-    """Nothing to draw. A double click reads the text; the context menu has the parameters and the export."""
+    """Draws nothing. A double click opens the text; the context menu has the parameters and the
+    export.
+    """
 
     icon = "program"
 
@@ -35,11 +37,13 @@ class ProgramView(StageView):
     def attach(self, vobj: Any) -> None:
         """Called when the view provider is set, and when a document opens."""
         super().attach(vobj)
-        QtCore.QTimer.singleShot(0, self._fit_post)  # once all properties are there
+        QtCore.QTimer.singleShot(0, self._fit_post)  # after all properties exist
 
     def _fit_post(self) -> None:
-        """Show in the property editor what the post reads, and what differs from its default."""
-        with contextlib.suppress(ReferenceError, RuntimeError, AttributeError):  # it is gone
+        """Show in the property editor the parameters that the post reads, and other non-default
+        parameters.
+        """
+        with contextlib.suppress(ReferenceError, RuntimeError, AttributeError):  # deleted
             post = str(self.obj.Post)
             for row in rows(ProgramParameters):
                 if row.path[0] != "nc" or row.name not in self.obj.PropertiesList:
@@ -51,10 +55,10 @@ class ProgramView(StageView):
                     self.obj.setEditorMode(row.name, modes)
 
     def refresh(self) -> None:
-        """Nothing is drawn, and so nothing read."""
+        """Do nothing, because nothing is drawn."""
 
     def updateData(self, obj: Any, name: str) -> None:
-        """A property of the object has changed."""
+        """Handle a changed property of the object."""
         super().updateData(obj, name)
         if name == "Post" and not obj.Document.Restoring:
             self._fit_post()

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The toolpath in the 3D view: beads coloured by layer or another quantity, build directions on demand."""
+"""A toolpath in the 3D view: beads coloured by layer or another quantity, optionally with build
+directions.
+"""
 
 from __future__ import annotations
 
@@ -39,7 +41,7 @@ class ToolpathView(PathView):
         super().draw(obj, value)
         if (
             not self.source_hidden
-        ):  # a new path lies in the surface of its shape, and its start in the wall's surface
+        ):  # a new path lies on the surface of its shape, and its start on the wall's surface
             self.source_hidden = True
             for feature in features_of(obj):
                 for source in (feature.Source[0], *getattr(feature, "Further", ())):
@@ -49,7 +51,10 @@ class ToolpathView(PathView):
         _show_cell(obj)
 
     def updateData(self, obj: Any, name: str) -> None:
-        """A property of the object has changed; another cell may leave a toolpath as it is, and is drawn where that is."""
+        """Handle a changed property of the object.
+
+        Another cell may leave the toolpath unchanged, so it is drawn at the toolpath's location.
+        """
         super().updateData(obj, name)
         if name == "Cell" and not obj.Document.Restoring:
             _show_cell(obj)
@@ -62,18 +67,22 @@ class ToolpathView(PathView):
 
 
 def _show_cell(obj: Any) -> None:
-    """Draw the cell of a toolpath where that is."""
+    """Draw the cell of a toolpath."""
     if obj.Cell is not None and getattr(obj.Cell.ViewObject, "Proxy", None):
         obj.Cell.ViewObject.Proxy.refresh()
 
 
 def band_of(obj: Any) -> float:
-    """By how much of a layer height the distance of layers may differ, of a toolpath's feature."""
+    """Return the tolerance of the layer distance for a toolpath's feature, as a fraction of the
+    layer height.
+    """
     return float(getattr(obj.Feature, "Band", 100.0 * SurfaceParameters().band)) / 100.0
 
 
 def width_of(obj: Any) -> float:
-    """The width, mm, of a toolpath's beads that know none: as far as neighbours are apart, else as it is reported."""
+    """Return the width, mm, of a toolpath's beads without a width: the bead spacing, or the
+    reported width.
+    """
     spacing = getattr(obj.Feature, "BeadSpacing", None)
     return (
         float((obj.BeadWidth if spacing is None else spacing).Value)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Lists to choose from that show words where job files, macros and documents hold keys: 'along the wall' for arc-length,
-the full name of a machine for its id."""
+"""Lists that show words for the keys in job files, macros and documents: 'along the wall' for
+arc-length, the full name of a machine for its id.
+"""
 
 from __future__ import annotations
 
@@ -13,8 +14,8 @@ from ...core.kinematics.machines import machine
 from ...objects import user_machines
 from ..in_language import marked, tr, translated
 
-FEWEST_LETTERS = 8  # a list may be as narrow: panels are
-WORDS = {  # of keys that are not words; `tr` gives them in the language of the window
+FEWEST_LETTERS = 8  # minimum width of a list, in letters, for narrow panels
+WORDS = {  # labels of keys; `tr` translates them to the window's language
     "part-on-robot": marked("part on robot"),
     "tool-on-robot": marked("tool on robot"),
     "rotary-table": marked("five-axis machine"),
@@ -73,8 +74,10 @@ def machines() -> list[tuple[str, str]]:
 
 
 def offer(combo: Any, pairs: Iterable[tuple[str, str]]) -> None:
-    """Fill a list with keys and their texts; it opens as wide as its longest entry. In an editable list any part of
-    an entry completes it."""
+    """Fill a list with keys and texts; its popup is as wide as the longest entry.
+
+    In an editable list, any part of an entry completes it.
+    """
     for key, text in pairs:
         combo.addItem(text, key)
         combo.setItemData(combo.count() - 1, text, QtCore.Qt.ToolTipRole)
@@ -95,7 +98,7 @@ def entered(combo: Any) -> str:
 
 
 def enter(combo: Any, key: str) -> None:
-    """Show a key in a list that can be typed into, in words where it has any; the list then opens there."""
+    """Show a key in an editable list, as words if it has any. The popup then opens at the key."""
     index = combo.findData(key)
     combo.setCurrentIndex(index)
     combo.setEditText(combo.itemText(index) if index >= 0 else key)
@@ -103,6 +106,6 @@ def enter(combo: Any, key: str) -> None:
 
 
 def shrink(combo: Any) -> None:
-    """Let a list be narrower than its longest text: the panel is narrow."""
+    """Let a list be narrower than its longest text, because panels are narrow."""
     combo.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
     combo.setMinimumContentsLength(FEWEST_LETTERS)

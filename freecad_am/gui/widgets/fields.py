@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One widget per parameter, made from its row; it shows and reads outer units."""
+"""One widget per parameter, built from its row; the widget shows and reads outer units."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ from .upright import present
 
 
 class PendantLine:
-    """Pendants to choose from, and the line. `read` and `show` are of the fields above: x y z RX RY RZ in mm and deg."""
+    """A choice of pendants, and a line with the pose as the pendant shows it.
+
+    `read` and `show` access the fields above: x y z RX RY RZ in mm and deg.
+    """
 
     def __init__(
         self,
@@ -61,7 +64,7 @@ class PendantLine:
         self.line.clear()
         with contextlib.suppress(
             InputError, TypeError, ValueError
-        ):  # a field holds an expression, or nothing
+        ):  # a field holds an expression, or is empty
             x, y, z, *angles = self.read()
             numbers = pendants.pendant_values(controller, (x, y, z, *map(math.radians, angles)))
             text = " ".join(
@@ -73,7 +76,7 @@ class PendantLine:
         self.line.setCursorPosition(0)
 
     def enter(self) -> None:
-        """Enter the typed pose into the fields; report an unreadable one and keep the fields."""
+        """Enter the typed pose into the fields; report an unreadable pose and keep the fields."""
         controller = self.choice.currentData()
         if not controller or self.line.text() == self.put or not self.line.text().strip():
             return
@@ -103,8 +106,11 @@ _MAX_INT32 = 2_147_483_647
 
 
 class Field:
-    """A widget, how to read it, and how to show another outer value in it. `value` raises InputError
-    naming the field for what cannot be read; it is a text that starts with `=` for an expression."""
+    """A widget with functions to read and show outer values.
+
+    `value` raises InputError, naming the field, for unreadable entries. An expression is a text
+    that starts with `=`.
+    """
 
     def __init__(
         self, row: Row, widget: Any, read_value: Callable[[], Any], show: Callable[[Any], None]
@@ -120,7 +126,7 @@ class Field:
 
     @property
     def value(self) -> Any:
-        """What the widget holds, in outer units as a macro passes it."""
+        """Return the widget's value in outer units, as a macro passes it."""
         return self.read()
 
     def show(self, value: Any) -> None:
@@ -129,20 +135,20 @@ class Field:
 
     @property
     def changed(self) -> bool:
-        """Whether the value differs from the initial or last applied one."""
+        """Whether the value differs from the initial or last applied value."""
         return bool(self.read() != self.shown)
 
     def differs_from(self, value: Any) -> None:
-        """Mark that the value differs from this inner default."""
+        """Compare future entries with this inner default."""
         self.shown = self.row.outer(value)
 
     def applied(self) -> None:
-        """Take the value as the state of the document."""
+        """Store the value as the state of the document."""
         self.shown = self.read()
 
     @property
     def heading(self) -> str:
-        """The label, with the unit if the widget does not show one."""
+        """The label, with the unit if the widget does not show it."""
         shows_unit = self.row.form in (*_QUANTITIES, f.POSE, MIXED, LENGTH_OR_POSE)
         unit = self.row.spec.unit or ("" if shows_unit else self.row.unit)
         return f"{self.label} ({unit})" if unit else self.label
@@ -151,8 +157,10 @@ class Field:
 def make(
     row: Row, value: Any, suggestions: Texts | None = None, expression: str = "", section: str = ""
 ) -> Field:
-    """The field of a row that shows an inner value, or the expression it follows; `suggestions`: texts to choose from, and
-    their labels. The job file section is for the help."""
+    """Create the field of a row that shows an inner value, or the expression that it follows.
+
+    suggestions: texts to choose from, with labels. section: of the job file, for the help.
+    """
     field = _make(row, value, suggestions, expression)
     for widget in (field.widget, *present(field.widget, QtGui.QWidget)):
         widget.setWhatsThis(whats_this(row, section))
@@ -201,7 +209,7 @@ def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> F
         box = QtGui.QSpinBox()
         box.setRange(
             -_MAX_INT32, _MAX_INT32
-        )  # the core reports values out of range; do not clip them here
+        )  # the core reports values out of range, so do not clip them here
         box.setValue(outer_value)
         return (
             Field(row, box, box.value, box.setValue)
@@ -214,12 +222,12 @@ def _make(row: Row, value: Any, suggestions: Texts | None, expression: str) -> F
 
 
 def _speed(row: Row, value: float, expression: str) -> Field:
-    """A speed in the user's preferred unit; it reads as mm/s."""
+    """Create a speed field in the user's preferred unit; its value is in mm/s."""
     unit = preferences.preferred_speed_unit()
     quantity = QuantityField(value, row.unit, row.label, expression, unit)
     quantity.box.setButtonSymbols(
         QtGui.QAbstractSpinBox.NoButtons
-    )  # room for "100 mm/s" in a narrow panel
+    )  # saves space for "100 mm/s" in a narrow panel
     quantity.make_room()
     return Field(row, quantity.box, quantity.read, quantity.show)
 
@@ -269,8 +277,10 @@ def _add_placeholder(edit: Any, row: Row, unit: str) -> None:
 
 
 def _quantity_or_word(row: Row, value: Any, expression: str) -> Field:
-    """A plain line for a quantity, a word such as `auto`, nothing, or a pose. A number without a unit is in the unit that the
-    line shows, or its placeholder."""
+    """Create a plain line for a quantity, a word such as `auto`, an empty entry or a pose.
+
+    A number without a unit is in the unit that the line or its placeholder shows.
+    """
     edit = QtGui.QLineEdit()
     display = preferences.preferred_speed_unit() if row.spec.kind == f.SPEED else ""
     last_shown: dict[str, Any] = {}
@@ -312,8 +322,9 @@ def _point(edit: Any) -> str:
 
 
 def _replace_decimal_point(text: str, old: str, new: str) -> str:
-    """A text of one number, with its unit or without, or of several with nothing but blanks between, with another decimal
-    point; any other text as it is."""
+    """Replace the decimal point in a text of a single number, with or without a unit, or of several
+    numbers separated by blanks. Return any other text unchanged.
+    """
     numbers = re.split(r"[ \t]+", text.strip())  # no-break spaces occur within a number
     if len(numbers) > 1 and all(_PLAIN.fullmatch(number.replace(old, ".")) for number in numbers):
         return " ".join(number.replace(old, new) for number in numbers)
@@ -337,7 +348,7 @@ def _number(text: str, name: str) -> float | str:
 
 def _choice(row: Row, key: str) -> Field:
     combo = QtGui.QComboBox()
-    for choice in row.spec.choices:  # a job file and a macro have the word itself
+    for choice in row.spec.choices:  # job files and macros use the key itself
         combo.addItem(choices.worded(choice), choice)
     choices.shrink(combo)
     combo.setCurrentIndex(row.spec.choices.index(key))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A part of a panel that can be folded away."""
+"""Collapsible sections of a panel, with labels and notes that layouts do not cut off."""
 
 from __future__ import annotations
 
@@ -13,7 +13,9 @@ from .upright import present
 
 
 class WrappedLabel(QtGui.QLabel):
-    """Layouts give other labels that are wrapped the height of a wider one, and cut off the last lines."""
+    """A wrapped label with a sufficient height; layouts give other wrapped labels the height of a
+    wider label and cut off the last lines.
+    """
 
     def __init__(self, text: str = "") -> None:
         super().__init__(text)
@@ -25,10 +27,10 @@ class WrappedLabel(QtGui.QLabel):
         return QtCore.QSize(hint.width(), max(hint.height(), self.heightForWidth(self.width())))
 
     def resizeEvent(self, event: Any) -> None:
-        """Called by Qt: another width may take more lines, or fewer."""
+        """Called by Qt; another width may change the number of lines."""
         super().resizeEvent(event)
         if event.oldSize().width() != event.size().width():
-            # the layout that gives it the width would overlook it
+            # the layout that sets the width would ignore an immediate update
             QtCore.QTimer.singleShot(0, self._renew)
 
     def _renew(self) -> None:
@@ -40,7 +42,7 @@ MARGIN = 2  # pixels
 NARROW, MAX_LINES = (
     30,
     12,
-)  # letters of a line in a panel as FreeCAD opens it, and lines that are held
+)  # letters per line in a panel at FreeCAD's initial width, and maximum number of reserved lines
 
 
 class Messages(QtGui.QScrollArea):
@@ -74,7 +76,7 @@ class Messages(QtGui.QScrollArea):
         return label
 
     def hold(self, label: Any) -> None:
-        """Reserve space for all of a label in a narrow panel, up to MAX_LINES lines, and never less
+        """Reserve space for a whole label in a narrow panel, up to MAX_LINES lines, and never less
         than now.
 
         Call it before the panel is visible, so that fields do not move later.
@@ -92,16 +94,19 @@ class Messages(QtGui.QScrollArea):
         self.verticalScrollBar().setValue(0)
 
 
-KEEP_MS = 2500  # ms for which the space of a removed note is kept
+KEEP_MS = 2500  # ms; how long the space of a removed note is kept
 WIDEST_LABEL = 78  # pixels; longer labels wrap
-LONGEST_ROW = 2  # fields next to a label; more go below it
-WIDEST_CHOICE = 84  # pixels of a choice's texts next to its label; longer texts go below it
+LONGEST_ROW = 2  # maximum number of fields next to a label; more fields go below it
+# pixels; maximum text width of a choice next to its label; wider choices go below the label
+WIDEST_CHOICE = 84
 
 
 class Note(QtGui.QLabel):
-    """A text that has room for all its lines; a form cuts off the last ones of other labels where it is narrow. Its place
-    stays for a while once it was there: a field that is put right would else move those below it as the next one is being
-    clicked."""
+    """A text with space for all its lines; in a narrow form, other labels lose their last lines.
+
+    The space of a hidden note is kept for a while. Otherwise a corrected field would move the
+    fields below it just when the user clicks the next field.
+    """
 
     def __init__(self) -> None:
         super().__init__()
@@ -118,14 +123,14 @@ class Note(QtGui.QLabel):
         return max(super().heightForWidth(width), self.tallest)
 
     def showEvent(self, event: Any) -> None:
-        """Called by Qt: from now on it takes its place."""
+        """Called by Qt; from now on the note keeps its space."""
         super().showEvent(event)
         policy = self.sizePolicy()
         policy.setRetainSizeWhenHidden(True)
         self.setSizePolicy(policy)
 
     def hideEvent(self, event: Any) -> None:
-        """Called by Qt: a while later, once the next field is entered, its place goes too."""
+        """Called by Qt; release the space after a while, when the user has entered the next field."""
         super().hideEvent(event)
         QtCore.QTimer.singleShot(KEEP_MS, self._close_gap)
 
@@ -142,7 +147,7 @@ class Note(QtGui.QLabel):
             self.tallest = 0
 
     def resizeEvent(self, event: Any) -> None:
-        """Called by Qt: another width may take more lines, or fewer."""
+        """Called by Qt; another width may change the number of lines."""
         super().resizeEvent(event)
         self.tallest = (
             max(self.tallest, event.size().height())
@@ -152,7 +157,7 @@ class Note(QtGui.QLabel):
         if event.oldSize().width() != event.size().width():
             QtCore.QTimer.singleShot(
                 0, self._renew
-            )  # the layout that gives it the width would overlook it
+            )  # the layout that sets the width would ignore an immediate update
 
     def _renew(self) -> None:
         with contextlib.suppress(RuntimeError):  # the panel is closed
@@ -160,7 +165,9 @@ class Note(QtGui.QLabel):
 
 
 class Name(QtGui.QLabel):
-    """Label of a field with room for all its lines; a form cuts off other labels next to a lower field."""
+    """Label of a field with space for all its lines; a form cuts off other labels next to a lower
+    field.
+    """
 
     def minimumSizeHint(self) -> Any:
         """Called by Qt."""
@@ -175,7 +182,7 @@ class Name(QtGui.QLabel):
 
 
 class Fold:
-    """A heading with an arrow, and under it a form that it folds and unfolds. widest_label: pixels."""
+    """A heading with an arrow that folds and unfolds the form below it. widest_label: pixels."""
 
     def __init__(self, title: str, unfolded: bool, widest_label: int = WIDEST_LABEL) -> None:
         self.widest_label = widest_label
@@ -197,7 +204,7 @@ class Fold:
         self.form.setRowWrapPolicy(QtGui.QFormLayout.WrapLongRows)
         self.rows: dict[
             str, tuple[Any, Any]
-        ] = {}  # label, and what holds the field and its note, by the field's name
+        ] = {}  # label, and container of the field and its note, by field name
         column.addWidget(self.heading)
         column.addWidget(self.body)
         self.heading.toggled.connect(self._show)
@@ -205,11 +212,11 @@ class Fold:
         self._show(unfolded)
 
     def add(self, label: str, widget: Any) -> Any:
-        """Add a row to the form. Returns the hidden note for problems, under the widget."""
+        """Add a row to the form; return the hidden note for problems under the widget."""
         name = Name(label)
         name.setToolTip(widget.toolTip())
         for child in (widget, *present(widget, QtGui.QWidget), name):
-            if not child.whatsThis():  # of one that is not, Qt asks its parent for help
+            if not child.whatsThis():  # without What's This text, Qt would use the parent's help
                 child.setWhatsThis(widget.whatsThis() or child.toolTip() or widget.toolTip())
         note = Note()
         note.setObjectName(f"{widget.objectName()}Note")
@@ -234,7 +241,7 @@ class Fold:
         return note
 
     def enable(self, widget: Any, on: bool) -> None:
-        """Make a field and its label work, or grey them."""
+        """Enable a field and its label, or grey them out."""
         widget.setEnabled(on)
         self.rows[widget.objectName()][0].setEnabled(on)
 

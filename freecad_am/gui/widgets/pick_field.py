@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""An input of a panel that is picked in the tree or the 3D view: a button waits for clicks, another one clears."""
+"""A panel input that is picked in the tree or the 3D view. One button waits for clicks, another
+clears it.
+"""
 
 from __future__ import annotations
 
@@ -28,9 +30,11 @@ def pick_button(text: str, name: str, help: str) -> Any:
 
 
 class NextClick:
-    """Calls `act`, a method, once something is selected, after `wait`; `widget`: whose end ends it.
+    """Calls the method `act` when something is selected after `wait`; stops when `widget` is
+    deleted.
 
-    The method is held weakly: its object holds this one, and a cycle would keep the fields of a closed panel.
+    The method is held weakly. Its object holds this object, and a reference cycle would keep the
+    fields of a closed panel.
     """
 
     def __init__(self, widget: Any, act: Callable[[], None]) -> None:
@@ -44,13 +48,13 @@ class NextClick:
             Gui.Selection.addObserver(self)
 
     def stop(self, *_: Any) -> None:
-        """Wait no longer; once or more often."""
+        """Stop waiting; may be called repeatedly."""
         if self.waits:
             self.waits = False
             Gui.Selection.removeObserver(self)
 
     def addSelection(self, *_: Any) -> None:
-        """Something was clicked; called by FreeCAD, which must first be done with it."""
+        """Handle a click after FreeCAD has finished it; called by FreeCAD."""
         QtCore.QTimer.singleShot(0, self._clicked)
 
     setSelection = addSelection
@@ -77,7 +81,7 @@ class Input:
 
     @property
     def missing(self) -> str:
-        """What the user should do if there is nothing to choose, else ''."""
+        """Return what the user should do if there is nothing to choose, otherwise ''."""
         return ""
 
     def arguments(self) -> dict[str, str]:
@@ -85,7 +89,7 @@ class Input:
         raise NotImplementedError
 
     def applied(self) -> None:
-        """Take the entry as the state of the document."""
+        """Store the entry as the state of the document."""
 
     def stored(self, obj: Any) -> Any:
         """Return the input's value of a stage in the document."""
@@ -100,7 +104,7 @@ _LIST = "App::PropertyLinkList"
 
 
 class PickField(Input):
-    """What a link of a stage holds: faces or edges of one object, a whole object, or several objects."""
+    """Input for a link of a stage: faces or edges of an object, a whole object, or several objects."""
 
     def __init__(
         self,
@@ -112,8 +116,11 @@ class PickField(Input):
         meshes: bool = False,
         allow_whole: bool = False,
     ) -> None:
-        """element: type of picked elements, '' for whole objects; meshes: accept meshes anyway; allow_whole: accept
-        a whole object in place of its edges."""
+        """Create the input.
+
+        element: type of picked elements, '' for whole objects. meshes: accept meshes although
+        elements are picked. allow_whole: accept a whole object instead of its edges.
+        """
         self.link, self.label, self.element = link, label, element
         self.several = link.type_name == _LIST
         self.meshes = meshes or not element
@@ -121,7 +128,7 @@ class PickField(Input):
         self.picks = self._present(present)
         self.explicit = link.required or bool(
             self.picks
-        )  # whether a macro must say that there is nothing
+        )  # whether a macro must pass an empty input explicitly
         self.widget = QtGui.QWidget()
         self.widget.setObjectName(f"Input{link.name}")
         self.widget.setToolTip(translated(link.help))
@@ -183,7 +190,7 @@ class PickField(Input):
         return self.several or bool(self.element and self.picks and self.picks[0].names)
 
     def clear(self, *_: Any) -> None:
-        """Nothing is picked."""
+        """Remove all picks."""
         self.picks = []
         self.show()
 
@@ -212,7 +219,7 @@ class PickField(Input):
         return tr("{} is missing: click it in the tree or the 3D view.").format(self.label)
 
     def value(self) -> Any:
-        """Return the picks as the link's property holds them."""
+        """Return the picks in the form of the link's property."""
         if self.several:
             return [pick.obj for pick in self.picks]
         if not self.picks:
@@ -239,4 +246,4 @@ class PickField(Input):
             return {"source": references[0], "faces": repr(names)}
         return {
             self.link.key: repr(names) if self.element else references[0]
-        }  # edges are the wall's own
+        }  # edges belong to the wall's own object

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A field for a quantity: the unit shown is the unit typed.
+"""A field for a quantity; a number typed without a unit is in the displayed unit.
 
-A number typed without a unit is in the unit that the field shows. An untouched field keeps its value bit for bit,
-regardless of the displayed digits. A text that starts with `=` is an expression, which the number follows.
+An untouched field keeps its value exactly, regardless of the displayed digits. A text that starts
+with `=` is an expression that determines the number.
 
-FreeCAD's own field is not used: it groups digits ('1,5' is 15 where decimals have a point), refuses keys that make a quantity
-of another kind, goes back to the last text it could read, and on leaving takes the value that it shows for the value it has
-('0' for 0.01 mm in feet and inches).
+FreeCAD's own field is not used, for four reasons: it groups digits ('1,5' is 15 with a decimal
+point), it rejects keys that create a quantity of another dimension, it restores the last readable
+text, and on leaving it stores the displayed value ('0' for 0.01 mm in feet and inches).
 """
 
 from __future__ import annotations
@@ -29,10 +29,11 @@ from ..in_language import tr
 from ..signals import connect
 
 _LEAST_WIDTH, _MOST_LETTERS = 70, 16
-_LINE_MARGINS = 10  # px, left and right of the text in a line
-_PROBE = QtCore.QSize(400, 40)  # of a box that the style is asked about
+_LINE_MARGINS = 10  # px; left and right of the text in a line
+_PROBE = QtCore.QSize(400, 40)  # size of a box for style queries
 _LEFT_OF_UNIT = re.compile(r"[-+]?[\d.,]+(?= \D)")
-_SET, _UNSET = ":/icons/bound-expression.svg", ":/icons/bound-expression-unset.svg"  # of FreeCAD
+# icons of FreeCAD
+_SET, _UNSET = ":/icons/bound-expression.svg", ":/icons/bound-expression-unset.svg"
 
 
 class UnitBox(QtGui.QAbstractSpinBox):
@@ -60,7 +61,7 @@ class UnitBox(QtGui.QAbstractSpinBox):
         return QtGui.QAbstractSpinBox.StepUpEnabled | QtGui.QAbstractSpinBox.StepDownEnabled
 
     def focusInEvent(self, event: Any) -> None:
-        """Select the number that is shown, so that its unit stays when another one is typed."""
+        """Select the number only, so that its unit stays when another number is typed."""
         super().focusInEvent(event)
         if event.reason() in (QtCore.Qt.TabFocusReason, QtCore.Qt.BacktabFocusReason):
             number = _LEFT_OF_UNIT.match(self.lineEdit().text())
@@ -68,12 +69,14 @@ class UnitBox(QtGui.QAbstractSpinBox):
                 self.lineEdit().setSelection(0, number.end())
 
     def sizeHint(self) -> Any:
-        """Called by Qt: room for the number with its unit."""
+        """Called by Qt; include the number with its unit."""
         size = super().sizeHint()
         return QtCore.QSize(self.minimumWidth(), size.height())
 
     def showEvent(self, event: Any) -> None:
-        """Called by Qt. A style sheet sets its own least width once, just before a box is shown for the first time."""
+        """Called by Qt. A style sheet sets its own minimum width once, just before a box is first
+        shown.
+        """
         super().showEvent(event)
         self._fit()
 
@@ -84,7 +87,7 @@ class UnitBox(QtGui.QAbstractSpinBox):
                 self.field.make_room()
 
     def width_beside_line(self) -> int:
-        """Width of frame and arrows, px, as the style draws them."""
+        """Return the width of frame and arrows, px, in the current style."""
         option = QtGui.QStyleOptionSpinBox()
         self.initStyleOption(option)
         option.rect = QtCore.QRect(QtCore.QPoint(0, 0), _PROBE)
@@ -95,7 +98,7 @@ class UnitBox(QtGui.QAbstractSpinBox):
         return _PROBE.width() - line.width()
 
     def changeEvent(self, event: Any) -> None:
-        """The font has another size."""
+        """Fit the width to a new font or style."""
         super().changeEvent(event)
         kinds = (QtCore.QEvent.FontChange, QtCore.QEvent.StyleChange)
         if event.type() in kinds:
@@ -113,8 +116,11 @@ class QuantityField:
     def __init__(
         self, value: float, unit: str, name: str, expression: str = "", display: str = ""
     ) -> None:
-        """value: the number in the unit; expression: the one it follows, '' for none; display: the displayed unit,
-        '' for the one of FreeCAD's unit scheme."""
+        """Create the field.
+
+        value: number in the unit. expression: expression that determines the number, '' for none.
+        display: displayed unit, '' for the unit of FreeCAD's unit scheme.
+        """
         self.unit, self.name, self.display = unit, name, display
         self.dimension = App.Units.Quantity(f"1 {unit}").Unit
         self.box = UnitBox(self)
@@ -146,12 +152,13 @@ class QuantityField:
         self.make_room()
 
     def make_room(self) -> None:
-        """Make the field as wide as its text with the unit, for the font and the style it has."""
+        """Make the field as wide as its text with the unit, in the current font and style."""
         metrics = self.line.fontMetrics()
         text = "" if isinstance(self.shown, str) else self.known_text
         letters = text if len(text) <= _MOST_LETTERS else text[-_MOST_LETTERS:]
         style = self.box.style()
-        icon = style.pixelMetric(QtGui.QStyle.PM_SmallIconSize) + 6  # as QLineEdit places an action
+        # space that QLineEdit reserves for an action
+        icon = style.pixelMetric(QtGui.QStyle.PM_SmallIconSize) + 6
         width = metrics.horizontalAdvance(letters) + icon + icon // 4 + _LINE_MARGINS
         width += self.box.width_beside_line()
         self.box.setMinimumWidth(min(max(_LEAST_WIDTH, width), self.box.maximumWidth()))
@@ -166,14 +173,18 @@ class QuantityField:
         connect(self.line, "textChanged(QString)", self._show_mark)
 
     def read(self) -> float | str:
-        """Return the number in the field's unit, or the expression. Raises InputError BAD_VALUE for other text."""
+        """Return the number in the field's unit, or the expression. Raises InputError BAD_VALUE for
+        other text.
+        """
         text = str(self.line.text())
         if text == self.known_text:
             return self.shown
         return text.strip() if is_expression(text) else self._number(text)
 
     def internal_value(self) -> float:
-        """FreeCAD's raw value in mm, mm/s and so on; NaN for unreadable text and expressions."""
+        """Return FreeCAD's raw value in mm, mm/s and so on; NaN for unreadable text and
+        expressions.
+        """
         try:
             number = self.read()
         except InputError:
@@ -183,7 +194,7 @@ class QuantityField:
         return float(App.Units.Quantity(f"{number!r} {self.unit}").Value)
 
     def step(self, steps: int) -> None:
-        """Add to the number, in the unit that the field shows."""
+        """Add steps to the number, in the displayed unit."""
         try:
             number = self.read()
         except InputError:
@@ -230,7 +241,7 @@ class QuantityField:
             "BAD_VALUE", self.name, "{!r} is not understood; {}", plain_blanks(text), remedy
         )
 
-    # ---- what the user does
+    # ---- user actions
 
     def _settle(self, *_: Any) -> None:
         """Show the entry in the field's unit; unreadable text stays, scrolled to its start."""
@@ -241,12 +252,12 @@ class QuantityField:
         self.line.setCursorPosition(0)
 
     def _begin_in_sight(self, *_: Any) -> None:
-        """Where the field is too narrow for the number, its first digits are seen: '1000 m', not '000 mm'."""
+        """Scroll a narrow field to the first digits of its number: '1000 m', not '000 mm'."""
         if not self.box.hasFocus() and not self.line.hasFocus():
             self.line.setCursorPosition(0)
 
     def _begin(self, *_: Any) -> None:
-        """Begin an expression, or mark the one there is, to be typed over."""
+        """Start an expression, or select the existing expression for typing over."""
         if not is_expression(self.line.text()):
             self.line.setText(MARK)
         self.line.setFocus()
@@ -257,7 +268,7 @@ class QuantityField:
 
 
 class PlainQuantity(QuantityField):
-    """The same in its own unit, whatever FreeCAD's unit scheme is."""
+    """A quantity field in its own unit, whatever FreeCAD's unit scheme is."""
 
     def __init__(self, value: float, unit: str, name: str, expression: str = "") -> None:
         super().__init__(value, unit, name, expression, unit)

@@ -21,8 +21,11 @@ _ORDER = ("joint path", "cell", "feature", "toolpath", "program")
 
 
 def job_selection(document: str = "") -> list[Any]:
-    """The selected objects of a document, by its name, or of the active one, and behind them the other stages of their
-    jobs: joint paths, then the others in the order in which they are made."""
+    """Return the selected objects of a document (by name, '' for the active document), then the
+    other stages of their jobs.
+
+    Joint paths come first among the stages, then the other kinds in creation order.
+    """
     selection = selected(document)
     objects = [obj for obj in selection if not is_group(obj)]
     for obj in selection:
@@ -31,7 +34,7 @@ def job_selection(document: str = "") -> list[Any]:
 
 
 def selected(document: str = "") -> list[Any]:
-    """The selected objects of a document, by its name, or of the active one."""
+    """Return the selected objects of a document, by name, or of the active document."""
     return list(Gui.Selection.getSelection(document) if document else Gui.Selection.getSelection())
 
 
@@ -47,8 +50,11 @@ def job_named() -> str:
 
 
 def _job(obj: Any) -> list[Any]:
-    """Return the stages of a job or of a stage's job: stages in its group, linked ones first, then their sources
-    elsewhere. Without a group, the linked stages, latest first."""
+    """Return the stages of a job or of a stage's job.
+
+    These are the stages in its group, linked stages first, then their sources elsewhere. Without a
+    group, they are the linked stages, latest first.
+    """
     if is_group(obj):
         linked, group = [], obj
     elif stage_of(obj) is not None:
@@ -71,7 +77,10 @@ def _group_of(stage: Any) -> Any:
 
 
 def _line(stage: Any) -> list[Any]:
-    """Return the sources of a stage, its dependents and their sources. An inspection uses the stage it measures."""
+    """Return the sources of a stage, its dependents and their sources.
+
+    For an inspection, start from the inspected stage.
+    """
     planned = getattr(stage, "Planned", None)
     origin = stage if planned is None or stage_of(planned) is None else planned
     lines = [_leading_to(obj) for obj in stage.Document.Objects if stage_of(obj) is not None]
@@ -79,7 +88,7 @@ def _line(stage: Any) -> list[Any]:
 
 
 def _leading_to(stage: Any) -> list[Any]:
-    """Return a stage and its sources. Expressions are ignored, because jobs may share figures."""
+    """Return a stage and its sources. Expressions are ignored, because jobs may share values."""
     stages = [stage]
     for obj in stages:
         inputs = [getattr(obj, link.name) for link in obj.Proxy.links]
@@ -98,8 +107,11 @@ def _rank(stage: Any) -> int:
 
 
 class ShapeChoice(Input):
-    """A selected shape with some of its faces, or an axis; a button updates it. An empty selection clears an
-    optional input. `present`: the value of the link. note: message of the panel when it opens."""
+    """A selected shape with some of its faces, or an axis; a button updates it.
+
+    An empty selection clears an optional input. present: the value of the link. note: message of
+    the panel when it opens.
+    """
 
     note = ""
 
@@ -165,19 +177,21 @@ class ShapeChoice(Input):
             self._show()
 
     def _is_selected(self) -> bool:
-        """Whether anything is selected. Taking from a closed document reports it."""
+        """Whether anything is selected. True for a closed document, because taking its selection
+        reports the error.
+        """
         try:
             return bool(Gui.Selection.getSelection(self.document.Name))
         except (ReferenceError, RuntimeError, NameError):
             return True
 
     def _clicked(self) -> None:
-        """Something was clicked that the input waits for."""
+        """Take the selection after an awaited click."""
         self.pick.setChecked(False)
         self._take_selected()
 
     def clear(self, *_: Any) -> None:
-        """Nothing is picked."""
+        """Remove the pick."""
         self.present = None
         self._show()
         self.show_note("")
@@ -195,7 +209,7 @@ class ShapeChoice(Input):
             )
 
     def take(self, *_: Any) -> None:
-        """Take the selection; report a rejected one and keep the previous input."""
+        """Take the selection; report a rejected selection and keep the previous input."""
         self._take(self._selected())
 
     def _take(self, pick: picking.Pick | None) -> None:
@@ -216,7 +230,7 @@ class ShapeChoice(Input):
         )
 
     def value(self) -> Any:
-        """As the link of the stage holds it."""
+        """Return the input in the form of the stage's link."""
         return self.present
 
     def _refusal(self) -> str:
@@ -311,7 +325,7 @@ class ObjectsChoice(ShapeChoice):
         self._show_state(bool(text))
 
     def clear(self, *_: Any) -> None:
-        """Nothing is picked."""
+        """Remove all picks."""
         self.objects = []
         self._show()
         self.show_note("")
@@ -332,8 +346,11 @@ INSPECTION = "inspection"
 
 
 class StageChoice(Input):
-    """One of the stages of a kind in the active document: the present one, else the selected one or the one of the
-    selected job, else the last."""
+    """Choice of a stage of a kind in the active document.
+
+    The default is the present stage, then the selected stage or the stage of the selected job, then
+    the last stage.
+    """
 
     def __init__(self, link: Link, present: Any) -> None:
         self.link, self.label = link, translated(link.label)
@@ -363,8 +380,10 @@ class StageChoice(Input):
         self.widget.setCurrentIndex(self.widget.findData(name))
 
     def follow(self, toolpath: StageChoice) -> None:
-        """Propose the cell that the chosen toolpath was made for, now and for another one, until a cell is chosen; one
-        that is selected itself stays."""
+        """Propose the cell of the chosen toolpath, until the user chooses a cell.
+
+        Another toolpath changes the proposal. A cell that is itself selected stays.
+        """
         if not any(obj is self.value() for obj in selected()):
             toolpath.widget.currentIndexChanged.connect(lambda *_: self._propose(toolpath))
             self._propose(toolpath)
@@ -388,7 +407,7 @@ class StageChoice(Input):
         ).format(self.label)
 
     def value(self) -> Any:
-        """As the link of the stage holds it."""
+        """Return the input in the form of the stage's link."""
         name = self.widget.currentData() if self.widget.count() else ""
         return self.document.getObject(name) if name else None
 
@@ -426,7 +445,7 @@ class NameChoice(Input):
 
 
 def of(proxy: type[Stage], obj: Any = None) -> list[Input]:
-    """The inputs of a stage to be made, or of an existing one."""
+    """Return the inputs of a new or existing stage."""
     inputs: list[Input] = []
     for link in proxy.links:
         present = None if obj is None else getattr(obj, link.name)
@@ -446,7 +465,7 @@ def of(proxy: type[Stage], obj: Any = None) -> list[Input]:
 
 
 def _match(choices: list[Input]) -> None:
-    """A cell is proposed for the toolpath that runs in it."""
+    """Let the cell follow the toolpath."""
     stages = {choice.link.kind: choice for choice in choices if isinstance(choice, StageChoice)}
     if "toolpath" in stages and "cell" in stages:
         stages["cell"].follow(stages["toolpath"])

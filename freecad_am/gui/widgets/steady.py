@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Texts and numbers that change in every frame without moving their neighbours.
 
-A plain label has the size of its text: on each change Qt repeats the layout of the window and composes it again,
-which costs as much as a small picture. A fixed size avoids both.
+A plain label has the size of its text. On each change Qt repeats the layout of the window and
+composes it again, which costs as much as a small image. A fixed size avoids both.
 """
 
 from __future__ import annotations
@@ -16,7 +16,9 @@ LEAST_HEIGHT = 60  # pixels
 
 
 class Scrolled(QtGui.QScrollArea):
-    """Scroll area with the size of its content, at least LEAST_HEIGHT high. narrowest: minimum width in pixels."""
+    """Scroll area with the size of its content, at least LEAST_HEIGHT high. narrowest: pixels,
+    minimum width.
+    """
 
     def __init__(self, widget: Any, narrowest: int = 0) -> None:
         super().__init__()
@@ -42,7 +44,7 @@ class Scrolled(QtGui.QScrollArea):
 
 
 class SteadyLabel(QtGui.QLabel):
-    """A line that has room for the widest of its texts from the start."""
+    """A single line that reserves the width of its widest text from the start."""
 
     def __init__(self, name: str) -> None:
         super().__init__()
@@ -67,7 +69,7 @@ class SteadyLabel(QtGui.QLabel):
 
 
 class SteadyText(QtGui.QWidget):
-    """A text that is wrapped, with room for some lines, and for more once there were more."""
+    """A wrapped text with space for some lines, and for more once they were needed."""
 
     def __init__(self, name: str, lines: int) -> None:
         super().__init__()
@@ -95,7 +97,7 @@ class SteadyText(QtGui.QWidget):
 
 
 def hold(widget: Any) -> None:
-    """Keep a field as large as it has to be now, or had to be before."""
+    """Fix a field at its largest size so far."""
     size = widget.sizeHint().expandedTo(widget.minimumSize())
     if size != widget.minimumSize():
         widget.setFixedSize(size)

@@ -48,7 +48,7 @@ def _branches() -> list[str]:
 
 
 def is_robot(name: str) -> bool:
-    """Whether it is a machine that may carry part or tool; not of one that cannot be read, as of a saved cell."""
+    """Whether a machine may carry part or tool; False for a saved cell or an unreadable machine."""
     try:
         return len(machine.load(name, user_machines.folders()).arrangements) > 1
     except InputError:
@@ -56,8 +56,10 @@ def is_robot(name: str) -> bool:
 
 
 def no_post(name: str, setup: str = "") -> str:
-    """Return the note on a machine without a post for a setup ('': the default one); '' for other and unreadable
-    machines."""
+    """Return the note on a machine without a post for a set-up ('' for the default set-up).
+
+    Return '' for other and unreadable machines.
+    """
     try:
         loaded = machine.load(name, user_machines.folders())
     except InputError:
@@ -91,8 +93,11 @@ def no_post(name: str, setup: str = "") -> str:
 
 
 def post_of_job(name: str, setup: str = "") -> str:
-    """The post of a new job with a machine in a set-up, '' for its usual one, or with a saved cell; '' where none writes its
-    program, or it cannot be read."""
+    """Return the post of a new job with a machine in a set-up ('' for the default set-up), or with
+    a saved cell.
+
+    Return '' if no post writes its program, or it cannot be read.
+    """
     try:
         if saved_cells.is_file_of_cell(name):
             cell = api.read_cell(name)
@@ -107,8 +112,11 @@ def post_of_job(name: str, setup: str = "") -> str:
 
 
 def setup_for(name: str) -> str:
-    """The set-up of a new job with a machine: the usual one, or where no post writes for that one in which its post does;
-    '' for a machine that cannot be read."""
+    """Return the set-up of a new job with a machine.
+
+    This is the default set-up, or one that a post supports if none supports the default. Return ''
+    for an unreadable machine.
+    """
     try:
         loaded = machine.load(name, user_machines.folders())
     except InputError:
@@ -127,13 +135,16 @@ def setup_for(name: str) -> str:
 
 
 def usual_post() -> str:
-    """The post of new programs where the machine does not ask for another one."""
+    """Return the default post of new programs."""
     return str(preferences.post() or ProgramParameters().post)
 
 
 def post_for(path: Any) -> tuple[str, str]:
-    """Post and motion of a new program for the cell of a joint path, ('none', '') where nothing writes for its controller;
-    ('', '') where those by default will do, or the machine says nothing."""
+    """Return post and motion of a new program for the cell of a joint path.
+
+    ('none', '') means that no post writes for its controller. ('', '') means that the defaults
+    apply, or the machine does not determine them.
+    """
     if path is None or path.Cell is None:
         return "", ""
     usual, default_post = ProgramParameters(), usual_post()

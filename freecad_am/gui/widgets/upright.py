@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Panels scroll only vertically. Qt also scrolls sideways when it reveals a note or field above or below: FreeCAD's
-task view then cuts off the left edge and shows no scroll bar."""
+"""Restrict panels to vertical scrolling.
+
+Qt also scrolls sideways when it reveals a note or field above or below. FreeCAD's task view then
+cuts off the left edge and shows no scroll bar.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +17,10 @@ from PySide import QtCore, QtGui
 
 
 def present(parent: Any, kind: Any) -> list[Any]:
-    """Return child widgets of a kind, without those that PySide takes for deleted ones: it finds them by their
-    memory address, which an older widget may have had (docs/versions.md)."""
+    """Return the child widgets of a kind, without widgets that PySide considers deleted.
+
+    PySide finds wrappers by memory address, which an older widget may have had (docs/versions.md).
+    """
     widgets = []
     for widget in parent.findChildren(kind):
         with contextlib.suppress(RuntimeError):
@@ -25,11 +30,11 @@ def present(parent: Any, kind: Any) -> list[Any]:
 
 
 class _Guard(QtCore.QObject):
-    """Lets the wheel pass by fields without the focus, to the panel that scrolls."""
+    """Passes wheel events on fields without focus to the scrolling panel."""
 
     def eventFilter(self, widget: Any, event: Any) -> bool:
         """Called by Qt."""
-        # PySide may take an event for what lay at its address before
+        # PySide may confuse an event with an earlier object at its address
         if (
             isinstance(event, QtCore.QEvent)
             and event.type() == QtCore.QEvent.Wheel
@@ -44,7 +49,9 @@ _guard = _Guard()
 
 
 def scrolls(form: Any) -> None:
-    """Let the wheel scroll over all fields of a panel; by default it would give them the focus, and turn their values."""
+    """Let the wheel scroll over all fields of a panel; by default it would focus them and change
+    their values.
+    """
     for kind in (QtGui.QAbstractSpinBox, QtGui.QComboBox, QtGui.QAbstractSlider):
         for field in present(form, kind):
             _scrolls(field)
@@ -58,13 +65,13 @@ def _scrolls(field: Any) -> None:
 
 
 class _Upright(QtCore.QObject):
-    """Takes what a panel is scrolled in back to its left edge, from when it is shown as long as it is there."""
+    """Scrolls a panel back to its left edge, as long as the panel is visible."""
 
     def eventFilter(self, widget: Any, event: Any) -> bool:
         """Called by Qt for the panel and the content of its scroll areas."""
-        # PySide may take an event for what lay at its address before
+        # PySide may confuse an event with an earlier object at its address
         if isinstance(event, QtCore.QEvent):
-            with contextlib.suppress(RuntimeError):  # what scrolls it is gone
+            with contextlib.suppress(RuntimeError):  # the scroll area is deleted
                 if event.type() == QtCore.QEvent.Show and widget is self.parent():
                     for area in scroll_areas_of(widget):
                         area.widget().installEventFilter(self)

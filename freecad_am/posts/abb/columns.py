@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Moves of RAPID modules as read so far, column by column, and the resulting `ReadMoves`."""
+"""Collect the moves of RAPID modules column by column, and convert them to `ReadMoves`."""
 
 from __future__ import annotations
 
@@ -22,8 +22,9 @@ _DECIMALS = re.compile(r"\.(\d+)")
 
 class Move(NamedTuple):
     """A move as in its line: joint values, or position and orientation, and the external axes.
-    amount: s for joint moves, mm/s for linear ones, half: of its last digit. wire: value of the
-    analogue output, and half of its last digit.
+
+    amount: s for joint moves, mm/s for linear moves. half: half of the last digit of `amount`.
+    wire: value of the analogue output, and half of its last digit.
     """
 
     linear: bool
@@ -39,16 +40,18 @@ class Move(NamedTuple):
 
 @dataclass
 class Run:
-    """The state while the routines are followed, column by column. external: current external axes;
-    `used` have values, `unit` is their unit, and a remark marks `slides` as the track; active:
-    the mechanical unit that the module has activated.
+    """The state while routines are executed, column by column.
 
-    placed: whether a move has a position, in positions and turns; joints: the numbers of joint
-    moves. rounding: mm, NaN of moves that stop. nearest: ConfL is off, and the arm reaches
-    positions in its nearest configuration. process_data: of the module. output, on: the switch of
-    the deposit, and its state. seam, weave: of the active arc, struck: the weave at its start,
-    until it moves, last_weld: weld data and weave of its start or last move. feeding: whether
-    the wire is feeding, fed: whether it stopped within the bead.
+    external: values of the external axes. used: numbers of the axes with values. unit: mechanical
+    unit of these axes. slides: axes that a remark marks as the track. active: mechanical unit that
+    the module activated.
+
+    placed: whether a move has a position, stored in positions and turns. joints: values of joint
+    moves. rounding: mm, NaN for moves that stop. nearest: ConfL is off, and the arm reaches
+    positions in the nearest configuration. process_data: data of the module. output, on: output and
+    state of the deposit. seam, weave: data of the active arc. struck: weave at the start of the
+    arc, until the robot moves. last_weld: weld data and weave of the arc's start or last move.
+    feeding: whether the wire feeds. fed: whether it stopped within the bead.
     """
 
     modules: dict[str, Module]
@@ -92,19 +95,18 @@ class Run:
     def happens(
         self, kind: str, *value: float | str, digits: float = 0.0, before: float | None = None
     ) -> None:
-        """Add an event before the next move, or ahead of the end of the last one.
+        """Add an event before the next move, or ahead of the end of the last move.
 
         Parameters
         ----------
         kind : str
             Kind of the event.
         *value : float or str
-            Its values.
+            Values of the event.
         digits : float, optional
             Half of the last digit of a number.
         before : float or None, optional
-            Distance before the end of the last move, mm; None for an event before the
-            next move.
+            Distance before the end of the last move, mm; None for an event before the next move.
         """
         self.events.append(Event(len(self.time_or_speed), kind, value, digits, before=before))
 
@@ -117,23 +119,22 @@ class Run:
         digits: float = 0.0,
         before: float | None = None,
     ) -> None:
-        """Record that the deposit is switched by an output or by the arc.
+        """Record that an output or the arc switches the deposit.
 
         Parameters
         ----------
         output : str
             Number of the output.
         on : bool
-            Whether it is switched on.
+            Whether it switches on.
         word : str
-            Instruction that switches it; ARC for the arc.
+            Instruction that switches the deposit; ARC for the arc.
         where : str
             File and line, for messages.
         digits : float, optional
             Half of the last digit of `before`.
         before : float or None, optional
-            Distance before the end of the last move, mm; None for a switch before the
-            next move.
+            Distance before the end of the last move, mm; None for a switch before the next move.
 
         Raises
         ------
@@ -190,8 +191,9 @@ class Run:
         self.wire_half.append(move.wire_half)
 
     def stands_at(self, move: Move, where: str) -> bool:
-        """Whether the position of an instruction equals the current position of the robot. If the
-        text gave only joints so far, this position also applies to the earlier move.
+        """Whether the position of an instruction equals the robot's current position.
+
+        If the text has given only joint values so far, the position also applies to the last move.
         """
         if not self.time_or_speed or self.moving or move.zone != "fine":
             return False
@@ -217,9 +219,10 @@ class Run:
         return ",".join(text for text in texts if text != "9E9")
 
     def _external_axes(self, texts: list[str], frames: Frames, where: str) -> None:
-        """Keep the values of the external axes, the same ones in all moves: the axes of the active
-        unit below the work object, and the track. With a fixed work object the track is the only
-        one.
+        """Store the values of the external axes: the axes of the active unit below the work object,
+        and the track.
+
+        All moves must use the same axes. With a fixed work object, only the track is allowed.
         """
         used = tuple(number for number, text in enumerate(texts, 1) if text != "9E9")
         if used != tuple(range(used[0], used[0] + len(used)) if used else ()) or self.used not in (
@@ -249,7 +252,7 @@ class Run:
 
 
 def all_moves(run: Run) -> ReadMoves:
-    """The moves of the routines. Raises InputError UNREADABLE_PROGRAM."""
+    """Convert the moves of the routines. Raises InputError UNREADABLE_PROGRAM."""
     linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
     time_or_speed = np.array(run.time_or_speed)
     half = np.array(run.half)
@@ -289,8 +292,10 @@ def all_moves(run: Run) -> ReadMoves:
 
 
 def _add_positions(read_moves: ReadMoves, run: Run) -> ReadMoves:
-    """The moves with the positions of the tool in the work object. If the robot holds the work
-    object, the read poses are inverted: they are the work object's poses at the tool.
+    """Add the positions of the tool in the work object.
+
+    If the robot holds the work object, the poses are inverted to poses of the work object at the
+    tool.
     """
     used, placed = run.frames, np.array(run.placed, dtype=np.bool_)
     assert used is not None
@@ -314,8 +319,8 @@ def _add_positions(read_moves: ReadMoves, run: Run) -> ReadMoves:
         position=positions,
         rotation=rotation,
         position_digits=_half_digit(run.positions),
-        # rounding four numbers by half a digit each rotates by at most four half digits,
-        # like three angles of that error
+        # rounding four components by half a digit each rotates by at most four half digits, as much
+        # as three angles with this error
         rotation_digits=4.0 / 3.0 * _half_digit(run.turns),
         frame=stands,
         tool=np.broadcast_to(carried, (len(placed), 4, 4)),
@@ -324,12 +329,12 @@ def _add_positions(read_moves: ReadMoves, run: Run) -> ReadMoves:
 
 
 def _numbers(texts: list[str], columns: int) -> Array:
-    """(n, columns) of the numbers of texts."""
+    """Parse the numbers (n, columns) of texts."""
     return np.array(",".join(texts).split(",") if texts else [], dtype=np.float64).reshape(
         -1, columns
     )
 
 
 def _half_digit(texts: list[str]) -> float:
-    """Half of the last digit of numbers, or 0 without numbers."""
+    """Return half of the last digit of the numbers, or 0 without numbers."""
     return 0.5 * 10.0 ** -min(map(len, _DECIMALS.findall(" ".join(texts))), default=99)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads the modules of a RAPID program: their data, and the statements of their routines. No motion yet."""
+"""Parse the modules of a RAPID program: data, and the statements of routines, but no motion."""
 
 from __future__ import annotations
 
@@ -23,16 +23,18 @@ _MODULE_LINE, _PROC_LINE = (
     re.compile(r"MODULE ([A-Za-z]\w*)$"),
     re.compile(r"PROC ([A-Za-z]\w*)\(\)$"),
 )
-# deg/s of the tool, mm/s and deg/s of external axes: moves that need more would be slowed down, as by RAPID's v1000
+# deg/s of the tool, mm/s and deg/s of external axes; minimum speeddata, as in RAPID's v1000, so
+# that moves are not slowed down
 _FAST = 500.0, 5000.0, 1000.0
 _NO_ARC = [0] * 9
 
 
 @dataclass(frozen=True, eq=False)
 class Frames:
-    """A tool and a work object, (4, 4) in the world or on the flange: part_held: the robot carries
-    the work object, and the tool is fixed. unit: the mechanical unit that carries the work object,
-    '' for a fixed one.
+    """A tool and a work object, (4, 4) in the world or on the flange.
+
+    part_held: the robot carries the work object, and the tool is fixed. unit: the mechanical unit
+    that carries the work object; '' for a fixed work object.
     """
 
     tool: Array
@@ -41,7 +43,7 @@ class Frames:
     unit: str = ""
 
     def same(self, module_frames: Frames) -> bool:
-        """Whether they equal another module's frames, number by number."""
+        """Whether the frames equal those of another module exactly."""
         alike = np.array_equal(self.tool, module_frames.tool) and np.array_equal(
             self.work_object, module_frames.work_object
         )
@@ -53,9 +55,11 @@ class Frames:
 
 @dataclass
 class Module:
-    """A file: the statements of its one routine with the numbers of their lines, and its data by
-    name. slides: numbers of the external axes that a remark marks as the track. speeds: of the tip,
-    mm/s. halves: half of their last digits. welds: mm/s in weld data.
+    """A file with one routine.
+
+    statements: lines of the routine with their numbers. slides: numbers of the external axes that a
+    remark marks as the track. speeds: tip speeds, mm/s. halves: half of the last digit of each
+    speed. welds: speeds in weld data, mm/s.
     """
 
     file: str
@@ -79,19 +83,19 @@ class Module:
         Parameters
         ----------
         tool, work_object : str
-            Their names.
+            Names of the data.
         where : str
             File and line, for messages.
 
         Returns
         -------
         Frames
-            The frames; the robot carries one.
+            The frames; the robot carries exactly one of the two.
 
         Raises
         ------
         InputError
-            UNREADABLE_PROGRAM for unknown names, or if the robot carries both or none.
+            UNREADABLE_PROGRAM for unknown names, or if the robot carries both or neither.
         """
         if (tool, work_object) not in self._paired:
             if tool not in self.tools or work_object not in self.objects:
@@ -119,7 +123,7 @@ class Module:
 
 
 def modules(files: dict[str, bytes]) -> dict[str, Module]:
-    """The modules by name, lower case. Raises InputError UNREADABLE_PROGRAM."""
+    """Parse the modules by lower-case name. Raises InputError UNREADABLE_PROGRAM."""
     by_name: dict[str, Module] = {}
     for file in sorted(files):
         module = _module(file, files[file].decode("latin-1").replace("\r\n", "\n").split("\n"))
@@ -181,7 +185,7 @@ def _declare(module: Module, line: str, where: str) -> None:
 
 
 def _keep(module: Module, kind: str, name: str, value: Any) -> None:
-    """Store a value by its name. Raises ValueError or TypeError if it cannot be read."""
+    """Store a value under its name. Raises ValueError or TypeError if the value cannot be read."""
     if kind == "tooldata":
         is_held, pose, (_mass, _centre, _axes, _x, _y, _z) = value
         module.tools[name] = _truth(is_held), _pose(pose)
@@ -225,7 +229,7 @@ def _truth(value: Any) -> bool:
 
 
 def _pose(value: Any) -> Array:
-    """(4, 4) of [[x,y,z],[q1,q2,q3,q4]]."""
+    """Convert [[x,y,z],[q1,q2,q3,q4]] to a pose (4, 4)."""
     position, turn = (np.array(numbers, dtype=np.float64) for numbers in value)
     if position.shape != (3,) or turn.shape != (4,) or abs(np.linalg.norm(turn) - 1.0) > 1e-5:
         raise ValueError
@@ -238,7 +242,7 @@ def _pose(value: Any) -> Array:
 
 
 def rotation_of_quaternions(quaternion: Array) -> Array:
-    """Return the rotations of unit quaternions.
+    """Convert unit quaternions to rotations.
 
     Parameters
     ----------
@@ -260,7 +264,7 @@ def rotation_of_quaternions(quaternion: Array) -> Array:
 
 
 def unreadable(where: str, why: str) -> InputError:
-    """The error for text that is not understood."""
+    """Return the error for text that is not understood."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)
 
 
@@ -273,8 +277,8 @@ _FEED_END = re.compile(r"TriggSpeed (\w+),0,0,ao(\d+),0;$")
 
 @dataclass
 class Weld:
-    """Weld data of a module: the weld data of the controller that it copies, and its speed, mm/s,
-    with half of its last digit.
+    """Weld data of a module: the controller's weld data that it copies, and its speed, mm/s, with
+    half of the last digit.
     """
 
     schedule: int
@@ -285,8 +289,9 @@ class Weld:
 
 @dataclass(frozen=True)
 class Switch:
-    """A digital output that switches `distance` mm before the end of a move, along the tip's path;
-    digits: half of the last one.
+    """A digital output that switches `distance` mm of tip path before the end of a move.
+
+    digits: half of the last digit of the distance.
     """
 
     output: str
@@ -297,8 +302,8 @@ class Switch:
 
 @dataclass(frozen=True)
 class Feed:
-    """An analogue output that follows the speed of the tip, mm/s, from the start of a move on;
-    scale 0 ends it.
+    """An analogue output that follows the tip speed, mm/s, from the start of a move on; scale 0
+    ends it.
     """
 
     output: int
@@ -321,14 +326,14 @@ class ProcessData:
         line : str
             The line.
         module : Module
-            Its module.
+            Module that contains the line.
         where : str
             File and line, for messages.
 
         Returns
         -------
         bool
-            Whether the line has any.
+            Whether the line has process data.
 
         Raises
         ------

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""ABB: RAPID modules of joint moves by time, or of linear moves with the speed held at the tip.
+"""Write ABB RAPID modules of joint moves by time, or of linear moves at a constant tip speed.
 
-With the part on the robot linear moves have a stationary tool, the nozzle, and a work object that
-the robot holds: points are positions of the nozzle on the part. Rapids are joint moves in either,
-and stop at every point. Output, controller settings and confirmations: docs/posts/abb.md.
+With the part on the robot, linear moves use a stationary tool (the nozzle) and a work object that
+the robot holds. Points are then nozzle positions relative to the part. In all cases rapids are
+joint moves that stop at every point. Output, controller settings and confirmations:
+docs/posts/abb.md.
 """
 
 from __future__ import annotations
@@ -63,11 +64,11 @@ CONTROLLER = Controller(
     linear_triggers=True,
 )
 PENDANT = Pendant("ABB", ("q1", "q2", "q3", "q4"), QUATERNION, 7)
-NO_WIRE = NO_WEAVE = NO_TRIGGER = ""  # combinations that are not possible: refuse_process
+NO_WIRE = NO_WEAVE = NO_TRIGGER = ""  # refuse_process rejects unsupported combinations
 NO_SCHEDULE: dict[str, str] = {}
 refuse_process = process.refuse
 LAST_GROUP, LAST_SCHEDULE = 9999, 65535  # group outputs
-# an ArcLEnd with the plain speed belongs to the end of the move before it
+# an ArcLEnd at the plain speed belongs to the end of the previous move
 MOVE_LINE = re.compile(rb" *(?:Move(?:AbsJ|L|J)|Trigg(?:AbsJ|L)|ArcL|ArcLEnd(?! [^v]*v_am,)) ")
 ON_CONTROLLER = controller_checks(
     "The world frame of the controller is the robot base",
@@ -78,7 +79,7 @@ ON_CONTROLLER = controller_checks(
 )
 AXES = 6
 SETUPS = ("part-on-robot", "tool-on-robot")
-FOLDER = "HOME:/"  # the folder from which parts are loaded
+FOLDER = "HOME:/"  # folder that parts are loaded from
 
 _RESERVED = INSTRUCTIONS | frozenset(
     (
@@ -156,7 +157,8 @@ _RESERVED = INSTRUCTIONS | frozenset(
         name.upper() for name in (text.TOOL, text.WORK_OBJECT, text.SPEED, *process.TRIGGER_NAMES)
     )
 )
-# 16 characters on older controllers; the routine of a part takes two more than its name
+# 16 characters on older controllers; the routine of a part needs two more characters than its
+# module
 NAMING = Naming(
     str,
     "[A-Za-z]",
@@ -169,17 +171,20 @@ NAMING = Naming(
 )
 _NO_END = (
     10**9
-)  # the maximum number of lines in a module is unknown: modules are cut by their points
+)  # the maximum number of lines in a module is unknown, so modules are split by points
 
 
 def write(program: Program) -> dict[str, bytes]:
-    """The modules of a program, file name -> content; the same bytes for the same program.
+    """Write the modules of a program, file name -> content; the same program always gives the same
+    bytes.
 
-    One file NAME.mod if its points fit; otherwise NAME.mod loads NAME01.mod, NAME02.mod and so on
-    in turn, each with whole beads. The program gives the duration of the first move.
+    If all points fit into one file, write only NAME.mod. Otherwise NAME.mod loads NAME01.mod,
+    NAME02.mod and so on in turn, each with whole beads. The first move takes its duration from the
+    program.
 
-    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, MOVE_TIME, MOVE_SPEED,
-    NO_POSITIONS, BEAD_TOO_LONG, ANALOGUE_INPUT, NO_WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
+    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, MOVE_TIME,
+    MOVE_SPEED, NO_POSITIONS, BEAD_TOO_LONG, ANALOGUE_INPUT, NO_WIRE_OUTPUT, UNREACHABLE,
+    NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
@@ -202,7 +207,8 @@ def write(program: Program) -> dict[str, bytes]:
         (piece_list,) = packed(groups, program.max_points, _NO_END, unbroken)
         refuse_calls_of_own(program, {name}, program_name)
         return {f"{name}.mod": module.as_bytes(name, text.MAIN, remarks, piece_list)}
-    # one point is reserved for the retract from the last bead: the next part is loaded away from it
+    # one point is reserved for the retract from the last bead, so that the next part is loaded
+    # there
     part_groups = move_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
     names = NAMING.parts(name, len(part_groups))
     refuse_calls_of_own(program, {name, *names, *map(text.routine_of, names)}, program_name)
@@ -222,8 +228,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller. Raises InputError PROGRAM_NAME with the reason and a valid
-    proposal.
+    """Return the name on the controller.
+
+    Raises InputError PROGRAM_NAME with the reason and a valid proposal.
     """
     return NAMING.checked(name, where)
 
@@ -234,8 +241,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError UNSUPPORTED_SETUP for a set-up that this controller does not support; it
-    supports both motions.
+    """Reject unsupported set-ups; both motions are supported.
+
+    Raises InputError UNSUPPORTED_SETUP.
     """
     if setup not in SETUPS:
         raise InputError(
@@ -310,7 +318,7 @@ def _instructions(program: Program, words: process.Process, block: Block) -> lis
             else [*text.wait(block.lead), *_switched(program, words, block, False)]
         )
     if isinstance(block, Weave):
-        return []  # an argument of the moves
+        return []  # the weave is an argument of the moves
     if isinstance(block, Schedule):
         return [f"    SetGO go{program.schedule_output},{block.number};"]
     if isinstance(block, LayerStart):
@@ -329,8 +337,8 @@ def _instructions(program: Program, words: process.Process, block: Block) -> lis
 def _switched(
     program: Program, words: process.Process, block: DepositOn | DepositOff, on: bool
 ) -> list[str]:
-    """Statements that switch the deposit at the robot's position; empty if the moves themselves
-    switch it.
+    """Return statements that switch the deposit at the robot's position; empty if a move switches
+    it.
     """
     if block.schedule is not None:
         if not on and not block.lead:
@@ -342,7 +350,7 @@ def _switched(
 
 
 def _names_used(program: Program, words: process.Process, zones: text.Words) -> list[str]:
-    """Names of the data and signals in the text, without names that are never valid for a program."""
+    """Return the names of data and signals in the text, except names that no program can have."""
     kinds = {WaitInput: "di", WaitBelow: "ai"}
     inputs = [
         f"{kinds[type(block)]}{block.number}"
@@ -360,7 +368,7 @@ def _names_used(program: Program, words: process.Process, zones: text.Words) -> 
 
 @dataclass(frozen=True)
 class _Module:
-    """Writes the modules of a program. words, zones: of its moves, complete."""
+    """Write the modules of a program; words and zones of all its moves must be complete."""
 
     program: Program
     words: process.Process
@@ -369,7 +377,7 @@ class _Module:
     def as_bytes(
         self, name: str, routine: str, remarks: list[str], piece_list: Sequence[Piece]
     ) -> bytes:
-        """One module with the data that its moves use."""
+        """Return a module with the data that its moves use."""
         program, part_held = self.program, self.program.holds_part
         station, carried = text.pose(program.station), text.pose(program.carried)
         lines: list[str] = []
@@ -400,7 +408,9 @@ class _Module:
 def _motion(
     moves: Moves, rows: slice, words: Sequence[str], program: Program, straight: bool = False
 ) -> list[str]:
-    """Lines through some points of moves; straight: as positions, even for joint moves."""
+    """Return the lines through some points of moves. straight: write positions even for joint
+    moves.
+    """
     first_external, slides = program.first_external, program.slides
     if moves.interpolation != LINEAR_MOVE and not straight:
         return text.joint_moves(

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The process data on the moves of a RAPID program: arc welding instructions with their data, an
-output that switches ahead of a point, and an analogue output in proportion to the real tip speed.
+"""Write process data on the moves of a RAPID program: arc welding instructions, an output that
+switches ahead of a point, and an analogue output in proportion to the actual tip speed.
 
-Such a move has another instruction than MoveL or MoveAbsJ: its word begins with the instruction and
-a space. The controller declares the data of the welder (seam3, weld3, weave2); a program copies
-weld3 and sets the speed of its beads.
+Such moves use other instructions than MoveL or MoveAbsJ, so their words begin with the instruction
+and a space. The controller declares the data of the welder (seam3, weld3, weave2). The program
+copies weld3 and sets the speed of its beads.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from ..parts import place
 from ..refusals import Asked, schedule_refused, weave_refused, wire_refused
 from . import text
 
-# names of data that a module declares, numbered except FEED_END: speeds, weld data, triggers of
-# the wire, switching on and off
+# names of data that a module declares, numbered except FEED_END: speeds, weld data, wire triggers,
+# switching on and off
 SPEED, WELD, FEED, FEED_END, SWITCH_ON, SWITCH_OFF = (
     "v_am",
     "d_am",
@@ -31,19 +31,20 @@ SPEED, WELD, FEED, FEED_END, SWITCH_ON, SWITCH_OFF = (
     "g_off",
 )
 TRIGGER_NAMES = (FEED_END, SWITCH_ON, SWITCH_OFF)
-# maximum number of data of one kind, such as speeds, in a module: each takes a line
+# maximum number of data items of one kind in a module, such as speeds; each item takes a line
 MOST_NAMES = 500
 ARC, CARTESIAN = "arc", "cartesian"
 LAST_WEAVE, LAST_SEAM = 255, 9999
 WAY_DECIMALS = 4  # decimals of the distance, mm, from a switching point to the end of its move
-SLOWEST = 0.1  # mm/s at the tip at which these decimals resolve half a millisecond
+SLOWEST = 0.1  # mm/s; minimum tip speed at which these decimals resolve half a millisecond
 _Key = TypeVar("_Key")
 _NO_ARC = "[0,0,0,0,0,0,0,0,0]"
 
 
 def refuse(request: Asked) -> None:
-    """Raises InputError SCHEDULE, WEAVE or NO_WIRE_OUTPUT for process settings that exclude each
-    other.
+    """Reject process settings that conflict with each other.
+
+    Raises InputError SCHEDULE, WEAVE or NO_WIRE_OUTPUT.
     """
     arc = request.by == ARC
     if arc and request.motion != CARTESIAN:
@@ -77,9 +78,11 @@ def refuse(request: Asked) -> None:
 
 @dataclass(frozen=True)
 class Aboard:
-    """Process data of a run of moves. on, off: s ahead of the end of the last move. arc: schedule
-    of the arc; weave: number of its weave, 0 for none. ends: whether the bead ends with the run;
-    stands: whether the torch stops there, still depositing.
+    """Process data of a run of moves.
+
+    arc: schedule of the arc. weave: weave number, 0 for none. on, off: s before the end of the last
+    move at which the deposit switches. ends: whether the bead ends with the run. stands: whether
+    the torch then stops while still depositing.
     """
 
     moves: Moves
@@ -92,12 +95,12 @@ class Aboard:
 
     @property
     def lead(self) -> float | None:
-        """The time before its end at which the run switches the deposit, or None."""
+        """The time before its end at which the run switches the deposit, s, or None."""
         return self.off if self.on is None else self.on
 
 
 def aboard(blocks: Iterable[Block]) -> list[Aboard]:
-    """Process data on each run of moves of a program, in order."""
+    """Return the process data of each run of moves, in order."""
     runs: list[Aboard] = []
     arc, weave = None, 0
     for block in blocks:
@@ -118,8 +121,9 @@ def aboard(blocks: Iterable[Block]) -> list[Aboard]:
 
 
 class Process:
-    """Words of the moves of a program, built block by block in the order of motion: from `plain`,
-    or with the instruction that carries process data.
+    """Build the words of a program's moves, block by block in the order of motion.
+
+    A word comes from `plain`, or contains the instruction with process data.
     """
 
     def __init__(self, program: Program, plain: Callable[[Moves], Sequence[str]]) -> None:
@@ -132,7 +136,7 @@ class Process:
         self._switches: dict[str, dict[str, str]] = {SWITCH_ON: {}, SWITCH_OFF: {}}
 
     def __call__(self, moves: Moves) -> Sequence[str]:
-        """Speed, process and zone of each move."""
+        """Return speed, process data and zone of each move."""
         words = self._plain(moves)
         if not self._aboard:
             return words
@@ -182,7 +186,7 @@ class Process:
         return welded
 
     def _arc(self, aboard_run: Aboard, schedule: int, speed: str) -> str:
-        """Seam, weld data at a speed, and weave."""
+        """Return seam, weld data at a speed, and weave."""
         weld = _numbered(self._welds, WELD, (schedule, speed))
         return f"seam{schedule},{weld}" + (
             f"\\Weave:=weave{aboard_run.weave}" if aboard_run.weave else ""
@@ -192,14 +196,17 @@ class Process:
         return _numbered(self._speeds, SPEED, _speed_in(word))
 
     def _feed(self, ratio: float) -> str:
-        """The trigger by which the output follows the speed of the tip, mm/s; the wire speed in
-        m/min is `ratio` times that.
+        """Return the trigger that makes the output follow the tip speed.
+
+        ratio: wire feed per tip speed.
         """
         return _numbered(self._feeds, FEED, f"{0.06 * self._program.nc.wire_gain * ratio:#.7G}")
 
     def _switched(self, aboard_run: Aboard, word: str) -> list[str]:
-        """The triggers that switch the deposit before the end of a run whose last word is `word`.
-        RAPID limits a time before the stop to the braking phase; a distance has no such limit.
+        """Return the triggers that switch the deposit before the end of a run with the last word
+        `word`.
+
+        RAPID limits a time before the stop to the braking phase, but not a distance.
         """
         if aboard_run.lead is None:
             return []
@@ -225,23 +232,25 @@ class Process:
         ]
 
     def arc_start(self, schedule: int) -> str:
-        """The word of the instruction that starts the arc where the next bead starts."""
+        """Return the instruction that starts the arc at the start of the next bead."""
         aboard_run = self._aboard[self._at]
         return f"ArcLStart {text.SPEED},{self._arc(aboard_run, schedule, f'{aboard_run.moves.speed[0]:.3f}')},fine"
 
     def arc_end(self, schedule: int) -> str:
-        """The word of the instruction that ends the arc where the last bead ended."""
+        """Return the instruction that ends the arc at the end of the last bead."""
         aboard_run = self._aboard[self._at - 1]
         return f"ArcLEnd {text.SPEED},{self._arc(aboard_run, schedule, f'{aboard_run.moves.speed[-1]:.3f}')},fine"
 
     @property
     def before(self) -> Moves:
-        """The last run of moves that got words."""
+        """The last run of moves that received words."""
         return self._aboard[self._at - 1].moves
 
     def data(self, used: Collection[str]) -> list[str]:
-        """Declarations of the data whose names are used.
-        Raises InputError MOVE_SPEED if a module would have too many."""
+        """Declare the data whose names are used.
+
+        Raises InputError MOVE_SPEED if a module would have too many data items of one kind.
+        """
         for all_names in self._all_names:
             if len(set(all_names) & set(used)) > MOST_NAMES:
                 raise InputError(
@@ -266,7 +275,7 @@ class Process:
         return [*speeds, *welds, *(f"LOCAL VAR triggdata {name};" for name in names)]
 
     def setup(self, used: Collection[str]) -> list[str]:
-        """Statements at the beginning of a routine that set its data."""
+        """Return the statements that set the data at the beginning of a routine."""
         lines = []
         for (schedule, speed), name in self._welds.items():
             if name in used:
@@ -293,12 +302,12 @@ class Process:
 
     @property
     def names(self) -> list[str]:
-        """Names of the program's own data."""
+        """Names of the data that the program declares."""
         return [name for names in self._all_names for name in names]
 
     @property
     def _all_names(self) -> list[list[str]]:
-        """The same, by kind."""
+        """Names of the data that the program declares, by kind."""
         kinds = [self._speeds.values(), self._welds.values(), self._feeds.values()]
         return [
             list(names)
@@ -316,10 +325,10 @@ class Process:
 
 
 def _speed_in(word: str) -> str:
-    """The speed in a word."""
+    """Return the speed in a word."""
     return word.rpartition("=")[2]
 
 
 def _numbered(names: dict[_Key, str], kind: str, key: _Key) -> str:
-    """The name of an item; a new item gets the next name of its kind."""
+    """Return the name of an item; a new item gets the next name of its kind."""
     return names.setdefault(key, f"{kind}{len(names) + 1}")

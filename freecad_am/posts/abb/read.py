@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads RAPID modules back: models the controller from the text of the program alone.
+"""Read RAPID modules back: model the controller from the program text alone.
 
-Shares no code with the writer. Accepts the plain instructions that a path needs and rejects all
-others, so that unknown text cannot hide motion.
+Shares no code with the writer. Accepts only the instructions that a path needs and rejects
+everything else, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ _ROUTINE = "main"
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
-    """All moves of the files in the order of execution, beginning with the routine `main`.
+    """Read all moves in the order of execution, starting with the routine `main`.
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
@@ -56,13 +56,13 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _follow(module: Module, run: Run) -> None:
-    """Execute the statements of a routine in order, and those of the parts that it loads."""
+    """Execute the statements of a routine in order, and the parts that it loads."""
     run.followed.append(module.name)
     run.nearest, run.active, run.process_data = (
         False,
         "",
         ProcessData(),
-    )  # each part sets it for itself: it may run separately
+    )  # each part sets this itself because it may run separately
     activated = ("", -1)
     lines = iter(module.statements)
     for number, line in lines:

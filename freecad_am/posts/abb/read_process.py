@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads moves of RAPID with process data: arc welding instructions, and moves with triggers."""
+"""Read RAPID moves with process data: arc welding instructions, and moves with triggers."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def process_move(line: str, module: Module, run: Run, where: str) -> bool:
     line : str
         The line.
     module : Module
-        Its module.
+        Module that contains the line.
     run : Run
         The state, which is updated.
     where : str
@@ -92,7 +92,7 @@ def process_move(line: str, module: Module, run: Run, where: str) -> bool:
     Returns
     -------
     bool
-        Whether the line is such a move.
+        Whether the line is a move with process data.
 
     Raises
     ------
@@ -131,7 +131,7 @@ def _speed_of(module: Module, name: str, where: str) -> float:
 
 
 def _trigger_names(first_trigger: str, further: str, where: str) -> list[str]:
-    """The triggers of a move, which count from \\T2 on without a gap."""
+    """Return the triggers of a move; further triggers count from \\T2 without gaps."""
     numbered = _EXTRA_TRIGGER.findall(further)
     if [int(number) for number, _ in numbered] != list(range(2, 2 + len(numbered))):
         raise unreadable(where, "its triggers are not numbered consecutively")
@@ -185,8 +185,9 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
 
 
 def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
-    """Start the arc at the robot's position, continue it along a move, or end it with a move or at
-    the robot's position after one.
+    """Start the arc at the robot's position, continue it along a move, or end it.
+
+    The arc ends with a move, or at the robot's position after a move.
     """
     kind, position, turn, axes, speed, seam, weld_name, weave, zone, tool, work_object = (
         arc.groups()
@@ -225,8 +226,10 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
 
 
 def _burns(move: Move, weld: Weld, name: str, dry: float, woven: int, run: Run, where: str) -> None:
-    """Handle a move of the arc: its weave begins with the first move and holds for all moves struck
-    with the weld data `name`; with the arc blocked the speed is the same.
+    """Check a move with the arc on, and start its weave.
+
+    The weave starts with the first move and applies to all moves with the weld data `name`. The
+    speed must be the same if the arc is blocked.
     """
     if dry != weld.speed:
         raise unreadable(where, "the move has another speed when the arc is blocked")

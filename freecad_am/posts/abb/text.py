@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The text of a RAPID module: head, data, routine, and its lines. Lines end in CR LF."""
+"""Format the text of a RAPID module: head, data, routine and lines. Lines end in CR LF."""
 
 from __future__ import annotations
 
@@ -18,28 +18,27 @@ from ..catalogue import plain
 from ..parts import place
 from ..refusals import speeds_within
 
-# ---- What a RAPID module says in numbers: joint values, quaternions, times, speeds, zones
+# ---- Numbers in a RAPID module: joint values, quaternions, times, speeds, zones
 
 ANGLE_DECIMALS, LENGTH_DECIMALS, TURN_DECIMALS = 4, 3, 7
-# mm/s: the lowest speed that three decimals resolve well, and RAPID's largest predefined speed
-# (v7000)
+# mm/s: minimum speed that three decimals resolve well, and RAPID's highest predefined speed (v7000)
 SPEEDS = (0.01, 7000.0)
-# s: the shortest move within a bead, and the shortest rapid
+# s: shortest move within a bead, and shortest rapid
 SHORTEST_MOVE_S, SHORTEST_RAPID = 0.0001, 0.001
-# mm: RAPID's largest predefined zone is 200
+# mm; maximum zone size; RAPID's largest predefined zone is 200
 LARGEST_ZONE = 100.0
 STOP = "fine"
 
 
 class Pose(NamedTuple):
-    """X Y Z in mm and w x y z, as the text has them."""
+    """Position X Y Z in mm and quaternion w x y z, rounded as in the text."""
 
     position: tuple[float, ...]
     quaternion: tuple[float, ...]
 
 
 def controller_values(joints: Array, slides: Mask) -> Array:
-    """Return joint values as the text has them.
+    """Convert joint values to the units and decimals of the text.
 
     Parameters
     ----------
@@ -59,7 +58,7 @@ def controller_values(joints: Array, slides: Mask) -> Array:
 
 
 def positions(position: Array) -> Array:
-    """Return positions as the text has them.
+    """Round positions to the decimals of the text.
 
     Parameters
     ----------
@@ -76,7 +75,7 @@ def positions(position: Array) -> Array:
 
 
 def quaternions(rotation: Array) -> Array:
-    """Return rotations as the text has them.
+    """Convert rotations to rounded quaternions.
 
     Parameters
     ----------
@@ -86,8 +85,8 @@ def quaternions(rotation: Array) -> Array:
     Returns
     -------
     (n, 4) array
-        w x y z, rounded; of the two equivalent quaternions the one whose first nonzero
-        number is positive.
+        w x y z, rounded. Of the two equivalent quaternions, the result is the one whose first
+        nonzero component is positive.
     """
     numbers = np.round(QUATERNION.numbers(rotation), TURN_DECIMALS)
     leading = numbers[np.arange(len(numbers)), np.argmax(numbers != 0.0, axis=1)]
@@ -96,7 +95,7 @@ def quaternions(rotation: Array) -> Array:
 
 
 def pose(six: Six | None) -> Pose:
-    """A frame given as X Y Z mm, RX RY RZ rad, with R = Rx Ry Rz; None gives the identity."""
+    """Convert a frame X Y Z mm, RX RY RZ rad, with R = Rx Ry Rz; None gives the identity."""
     x, y, z, rx, ry, rz = (0.0,) * 6 if six is None else six
     rotation = MOVING_XYZ.rotations(np.array([[rx, ry, rz]]))
     return Pose(
@@ -105,14 +104,16 @@ def pose(six: Six | None) -> Pose:
 
 
 class Words:
-    """Speed and zone of the moves of a program, built block by block in the order of motion."""
+    """Build speed and zone of a program's moves, block by block in the order of motion."""
 
     def __init__(self, program: Program, speed: str, zone: str) -> None:
         self._blend, self._speed, self._zone = program.blend, speed, zone
         self.zones: dict[float, str] = {}
 
     def __call__(self, moves: Moves) -> Sequence[str]:
-        """`v\\T:=time,zone`, or `v\\V:=speed,zone`, of each move. Raises InputError MOVE_SPEED or MOVE_TIME."""
+        """Return `v\\T:=time,zone` or `v\\V:=speed,zone` of each move. Raises InputError MOVE_SPEED
+        or MOVE_TIME.
+        """
         straight = moves.interpolation == LINEAR_MOVE
         letter, values = (
             ("V", [f"{v:.3f}" for v in speeds_within(moves, *SPEEDS).tolist()])
@@ -127,7 +128,9 @@ class Words:
         ]
 
     def _rounded(self, moves: Moves) -> str:
-        """Size of the corner zones: at most half the shortest move of the bead."""
+        """Return the name of the corner zone, whose size is at most half the shortest move of the
+        bead.
+        """
         shortest = (
             float(np.nan_to_num(moves.speed * moves.duration).min())
             if moves.kind == DEPOSIT
@@ -156,41 +159,41 @@ def _times(moves: Moves) -> Array:
 END_OF_LINE = "\r\n"
 WIDTH = 80  # width of remarks
 
-# names of the data in the modules of a program and its parts; local to each (LOCAL)
+# data names in the modules of a program and its parts; declared LOCAL in each module
 TOOL, WORK_OBJECT, SPEED, ZONE = "t_am", "w_am", "v_am", "z_am"
 MAIN = "main"
-# value of absent external axes
+# placeholder for absent external axes, and number of external axes
 _NO_AXIS, MOST_AXES = "9E9", 6
-# mm/s of the tip, which every move overrides by its speed or time; deg/s; external axes: as in
+# tip speed in mm/s, which every move overrides by its speed or time; deg/s and external axes as in
 # RAPID's v1000
 _SPEEDS = "500,5000,1000"
-# kg, mm: the load of RAPID's tool0
+# identity frame; load of RAPID's tool0 in kg and mm
 _NOWHERE = "[[0,0,0],[1,0,0,0]]"
 _LOAD = "[0.001,[0,0,0.001],[1,0,0,0],0,0,0]"
 _ANGLES = ",".join([f"%.{ANGLE_DECIMALS}f"] * 6)
 _JOINTS = f"    %s [[{_ANGLES}],<axes>]\\NoEOffs,%s,{TOOL}\\WObj:={WORK_OBJECT};"
 _POSE = f"[{','.join([f'%.{LENGTH_DECIMALS}f'] * 3)}],[{','.join([f'%.{TURN_DECIMALS}f'] * 4)}]"
-# ConfL is off: the controller takes the configuration nearest to the arm and ignores these
+# ConfL is off, so the controller takes the nearest configuration and ignores these values
 _POSITION = f"    %s [{_POSE},[0,0,0,0],<axes>],%s,{TOOL}\\WObj:={WORK_OBJECT};"
 
 
 def module(
     name: str, routine: str, remarks: Iterable[str], data: Iterable[str], lines: Iterable[str]
 ) -> bytes:
-    """Return a file: a module with one routine.
+    """Return the file of a module with one routine.
 
     Parameters
     ----------
     name : str
         Name of the module.
     routine : str
-        Name of its routine.
+        Name of the routine.
     remarks : iterable of str
-        Its description.
+        Description of the module.
     data : iterable of str
         Declarations.
     lines : iterable of str
-        Lines of the routine, indented already.
+        Indented lines of the routine.
 
     Returns
     -------
@@ -221,13 +224,13 @@ def data(
     Parameters
     ----------
     tool, work_object : Pose
-        Their frames.
+        Tool frame and work object frame.
     part_held : bool
-        Whether the robot carries the work object, and the tool is fixed.
+        Whether the robot carries the work object and the tool is fixed.
     zones : Sequence[tuple[str, float]]
         Names and sizes of the zones, mm.
     unit : str, optional
-        The mechanical unit that carries the work object, '' for a fixed one.
+        The mechanical unit that carries the work object; '' for a fixed work object.
 
     Returns
     -------
@@ -238,8 +241,8 @@ def data(
     tool_pose, object_pose = (
         _POSE % (*pose.position, *pose.quaternion) for pose in (tool, work_object)
     )
-    # a work object on a mechanical unit uses the unit's frame as user frame, whatever the
-    # text says: the object frame is relative to it
+    # a work object on a mechanical unit takes the unit's frame as user frame and ignores the text,
+    # so the object frame is relative to the unit
     fixed, user, inside = (
         ("FALSE", _NOWHERE, f"[{object_pose}]") if unit else ("TRUE", f"[{object_pose}]", _NOWHERE)
     )
@@ -257,15 +260,15 @@ def speed(tip: str) -> str:
 
 
 def _zone(size: float) -> str:
-    """Return the zonedata for `size` mm, in the proportions of RAPID's own z1: the same size for
-    the orientation, and 0.1 deg per mm.
+    """Return the zonedata for `size` mm in the proportions of RAPID's z1: the same size for the
+    orientation, and 0.1 deg per mm.
     """
     mm, degrees = f"{size:.3f}", f"{0.1 * size:.4f}"
     return f"[FALSE,{mm},{mm},{mm},{degrees},{mm},{degrees}]"
 
 
 def joint_moves(degrees: Array, words: Sequence[str], first_external: int = 1) -> list[str]:
-    """Return joint moves.
+    """Return the lines of joint moves.
 
     Parameters
     ----------
@@ -292,7 +295,7 @@ def linear_moves(
     words: Sequence[str],
     first_external: int = 1,
 ) -> list[str]:
-    """Return moves that are straight in space.
+    """Return the lines of linear moves.
 
     Parameters
     ----------
@@ -317,8 +320,8 @@ def linear_moves(
 
 
 def _move_lines(line: str, instruction: str, values: Array, words: Sequence[str]) -> list[str]:
-    """A line for each row of values (n, k) with its word; a word with process data brings its own
-    instruction.
+    """Return a line for each row of values (n, k) with its word; a word with process data contains
+    the instruction.
     """
     split = [word.rpartition(" ") for word in words]
     rows = zip(values.tolist(), split, strict=True)
@@ -329,28 +332,28 @@ def _move_lines(line: str, instruction: str, values: Array, words: Sequence[str]
 
 
 def _axes(count: int, first_external: int) -> str:
-    """The text of `count` external axes, from number `first_external` on."""
+    """Format `count` external axes, starting at number `first_external`."""
     formats = [_NO_AXIS] * (first_external - 1) + [f"%.{ANGLE_DECIMALS}f"] * count if count else []
     return f"[{','.join(formats + [_NO_AXIS] * (MOST_AXES - len(formats)))}]"
 
 
 def activated(unit: str) -> list[str]:
-    """The line that activates a mechanical unit; none without a unit."""
+    """Return the line that activates a mechanical unit; empty without a unit."""
     return [f"    ActUnit {unit};"] if unit else []
 
 
 def remark(text: str) -> list[str]:
-    """A comment in plain characters, on as many lines as it needs."""
+    """Wrap a comment in ASCII characters to the width of remarks."""
     return [f"! {line}" for line in textwrap.wrap(plain(text), WIDTH)]
 
 
 def wait(seconds: float) -> list[str]:
-    """The lines of a wait, to 0.001 s; none for 0 s."""
+    """Return the line of a wait, to 0.001 s; empty for 0 s."""
     return [f"    WaitTime {max(seconds, 0.001):.3f};"] if seconds > 0.0 else []
 
 
 def load(folder: str, part_name: str) -> list[str]:
-    """The lines that load the module of a part, run it and unload it."""
+    """Return the lines that load the module of a part, run it and unload it."""
     path = f'"{folder}{part_name}.mod"'
     return [
         f"    Load \\Dynamic,{path};",
@@ -360,5 +363,7 @@ def load(folder: str, part_name: str) -> list[str]:
 
 
 def routine_of(part_name: str) -> str:
-    """The routine of a part, with a distinct name, as routines of all modules share one scope."""
+    """Return the routine name of a part, which differs from the module name because routines of all
+    modules share one scope.
+    """
     return f"{part_name}_p"

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""FANUC: TP listings (.LS) of joint moves by time, or of beads in linear moves with the tool on
-the robot; their text.
+"""Write FANUC TP listings (.LS) of joint moves by time, or of beads in linear moves with the tool
+on the robot.
 
-Rapids are joint moves in either, and stop at every point.
-
-Output, controller settings and confirmations: docs/posts/fanuc.md.
+In both cases rapids are joint moves that stop at every point. Output, controller settings and
+confirmations: docs/posts/fanuc.md.
 """
 
 from __future__ import annotations
@@ -58,11 +57,11 @@ from ..refusals import (
 from . import records
 from .read import read
 
-DECIMALS = 2  # of the seconds before the end
+DECIMALS = 2  # decimals of the time before the end of a move, s
 
 
 def at_ends(program: Program) -> dict[int, str]:
-    """The options of the last moves of runs, with a leading space, by the identity of the run."""
+    """Return the options of the last moves of runs, with a leading space, by the id of the moves."""
     if program.dry_run:
         return {}
     output = program.deposit_output
@@ -76,8 +75,8 @@ def at_ends(program: Program) -> dict[int, str]:
 
 
 def as_written(program: Program) -> list[Ahead]:
-    """Switches during motion with their leads as the listing writes them, up to 5 ms longer than
-    requested.
+    """Return the switches during motion with their leads as the listing rounds them: up to 5 ms
+    longer than requested.
     """
     steps = 10**DECIMALS
     return [
@@ -87,15 +86,14 @@ def as_written(program: Program) -> list[Ahead]:
 
 
 def _ahead(seconds: float) -> str:
-    """The lead, to 0.01 s, in the width that controllers write: TB    .05sec."""
+    """Return the lead, to 0.01 s, at the width that controllers write: TB    .05sec."""
     return f"TB{right_aligned(round(seconds, DECIMALS), DECIMALS, 7)}sec"
 
 
 __all__ = ["read", "write"]
 
 
-LAST_ANALOGUE = 25  # analogue inputs
-# why the speed of the wire cannot follow the torch speed
+LAST_ANALOGUE = 25  # number of analogue inputs
 CONTROLLER = Controller(point_bytes=205, external=True, positioner="2")
 PENDANT = Pendant("FANUC", ("W", "P", "R"), FIXED_XYZ)
 NO_WIRE = "FANUC sets AO[] between two moves when it reads the line, ahead of the motion"
@@ -103,7 +101,7 @@ NO_WEAVE = ""  # linear moves can be woven
 NO_TRIGGER = ""  # the deposit can be switched on the move itself
 refuse_process = refuse_no_process
 LAST_WEAVE = 255  # highest number of weave schedules
-NO_SCHEDULE: dict[str, str] = {}  # schedules are supported in every way
+NO_SCHEDULE: dict[str, str] = {}  # all methods of selecting schedules are supported
 LAST_GROUP, LAST_SCHEDULE = 400, 32767  # group outputs
 MOVE_LINE = re.compile(rb" *\d+:[JL] P\[")
 ON_CONTROLLER = controller_checks(
@@ -118,7 +116,7 @@ MOST_LINES = 9999
 
 _FIRST_MOVE = f"{100.0 * FIRST_SHARE:.0f}%"
 
-# words of the language of listings
+# reserved words of listings
 _RESERVED = frozenset(
     (
         "ABORT",
@@ -145,14 +143,15 @@ NAMING = Naming(
 
 
 def write(program: Program) -> dict[str, bytes]:
-    """The listings of a program, file name -> content; the same bytes for the same program.
+    """Write the listings of a program, file name -> content; the same program always gives the same
+    bytes.
 
-    One file if the program fits; otherwise NAME.LS calls NAME01.LS and so on. Files are cut between
-    beads unless a bead is longer than a file.
-    The duration of the first move is not used.
+    If the program fits, write one file. Otherwise NAME.LS calls NAME01.LS and so on. Files are
+    split between beads; only an oversized bead is split between its moves. The duration of the
+    first move is not used.
 
-    Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, MOVE_TIME, MOVE_SPEED,
-    ENDLESS_STEP, TURN_NUMBER, NO_WIRE_OUTPUT, NOTHING_TO_WRITE.
+    Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, MOVE_TIME,
+    MOVE_SPEED, ENDLESS_STEP, TURN_NUMBER, NO_WIRE_OUTPUT, NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
@@ -181,8 +180,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller, upper case. Raises InputError PROGRAM_NAME with the reason and a
-    valid proposal.
+    """Return the name on the controller in upper case.
+
+    Raises InputError PROGRAM_NAME with the reason and a valid proposal.
     """
     return NAMING.checked(name, where)
 
@@ -193,8 +193,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for a set-up that this controller does not
-    support.
+    """Reject a set-up that this controller does not support.
+
+    Raises InputError REMOTE_TCP, UNSUPPORTED_SETUP or COORDINATED_MOTION.
     """
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
@@ -215,8 +216,8 @@ def refuse_setup(
 
 
 def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
-    """Raises InputError COORDINATED_MOTION for a motion that is not supported with external axes of
-    the given kinds.
+    """Raise InputError COORDINATED_MOTION for Cartesian motion with external axes of the given
+    kinds.
     """
     if motion != "cartesian":
         return
@@ -271,7 +272,7 @@ def _refuse(program: Program) -> None:
 
 
 def _refuse_continuous_steps(program: Program) -> None:
-    """Reject moves of half a turn or more: a continuous axis would take the shorter way."""
+    """Reject steps of half a turn or more, because a continuous axis would rotate the shorter way."""
     axes = np.flatnonzero(program.continuous)
     joints = np.concatenate([run.joints for run in program.moves])[:, axes]
     run_numbers = np.repeat(np.arange(len(program.moves)), [len(run) for run in program.moves])
@@ -325,7 +326,7 @@ def _words(program: Program) -> Callable[[Moves], Sequence[str]]:
 def _instructions(program: Program, block: Block) -> list[str]:
     output = f"  DO[{program.deposit_output}]="
     if isinstance(block, (DepositOn, DepositOff)) and block.ahead is not None:
-        return []  # in the move's option: at_ends
+        return []  # an option of the previous move switches the deposit: at_ends
     if isinstance(block, DepositOn):
         on = output + "ON ;" if block.schedule is None else arc("Start", block.schedule)
         return [] if program.dry_run else [on, *wait(block.lead)]
@@ -364,12 +365,12 @@ def _file(
 
 
 def _group(program: Program) -> int:
-    """The motion group of the axes that carry the part; without such axes that of the robot."""
+    """Return the motion group of the axes that carry the part, or of the robot without such axes."""
     return int(program.unit) if program.on_positioner else 1
 
 
 def _motion_lines(run: Run, points_before: int) -> list[str]:
-    """Lines through all points of a run."""
+    """Return the lines through all points of a run."""
     letter = "L" if run.moves.interpolation == LINEAR_MOVE else "J"
     words = run.words[run.start : run.stop]
     return [f"{letter} P[{n}] {word}    ;" for n, word in enumerate(words, points_before + 1)]
@@ -408,20 +409,19 @@ def _record_text(program: Program, runs: Sequence[Run]) -> str:
     )
 
 
-# ---- The text of one FANUC listing (.LS): header, instructions, position records, as a
-# controller exports them
+# ---- Listing text (.LS): header, instructions, position records, as a controller exports them
 #
-# Field widths and line ends follow listings that controllers wrote; docs/posts/fanuc.md says
-# which rules were confirmed where.
+# Field widths and line ends follow listings that controllers wrote; docs/posts/fanuc.md says which
+# rules were confirmed where.
 
 END_OF_LINE = "\r\n"
 REMARK_WIDTH = 32
 COMMENT_WIDTH = 16
-GROUPS = 5  # that fit into the header
+GROUPS = 5  # number of motion groups in the header
 
-# A fixed date, so that the same job gives the same bytes: the controller sets the true date when
-# it loads the file. This day is valid for a two-digit year and for file dates of the controller's
-# memory card, which begin in 1980.
+# A fixed date gives the same bytes for the same job; the controller sets the true date when it
+# loads the file. This day is valid as a two-digit year and on the controller's memory card, whose
+# dates begin in 1980.
 _DATE = "DATE 00-01-01  TIME 00:00:00"
 
 _HEADER = """\
@@ -448,7 +448,7 @@ CONTROL_CODE\t= 00000000 00000000;
 /MN
 """
 
-# longest wait in one line, s; longer waits take several lines
+# s; longest wait in one line; longer waits take several lines
 _LONGEST_WAIT = 300.0
 
 _JOINT_RECORD = (
@@ -473,13 +473,13 @@ def listing(
     name : str
         Name of the program.
     comment : str
-        Its comment.
+        Comment of the program.
     instructions : sequence of str
         Text after the colon of each line, with its semicolon.
     records : str
         Text of joint_records or pose_records, or ''.
     group : int, optional
-        The motion group that moves together with the first one.
+        The motion group that moves together with the first group.
 
     Returns
     -------
@@ -497,18 +497,18 @@ def listing(
 
 
 def plain(text: str) -> str:
-    """The text in characters that a listing allows: without accents, semicolons and quotes."""
+    """Convert text to the characters that a listing allows: no accents, semicolons or quotes."""
     ascii_text = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode("ascii")
     return " ".join(ascii_text.translate(str.maketrans(';"', ",'")).split())
 
 
 def remark(text: str) -> list[str]:
-    """A remark, on as many lines as it needs."""
+    """Wrap a remark to the width of a listing."""
     return [f"  !{line} ;" for line in textwrap.wrap(plain(text), REMARK_WIDTH)]
 
 
 def wait(seconds: float) -> list[str]:
-    """The lines of a wait, to 0.01 s; none for 0 s."""
+    """Return the lines of a wait, to 0.01 s; empty for 0 s."""
     lines = []
     hundredths = max(round(seconds * 100.0), int(seconds > 0.0))
     while hundredths > 0:
@@ -519,17 +519,17 @@ def wait(seconds: float) -> list[str]:
 
 
 def call(name: str) -> str:
-    """A call of another program."""
+    """Return the call of another program."""
     return f"  CALL {name}    ;"
 
 
 def arc(word: str, schedule: int) -> str:
-    """The arc instruction Start or End, with a schedule."""
+    """Return the arc instruction Start or End with a schedule."""
     return f"  Arc {word}[{schedule}]    ;"
 
 
 def weave(number: int) -> str:
-    """The sine weave with the schedule `number`; its end for 0."""
+    """Return the start of a sine weave with the schedule `number`, or the end of weaving for 0."""
     return f"  Weave Sine[{number}] ;" if number else "  Weave End ;"
 
 
@@ -541,20 +541,20 @@ def joint_records(
     Parameters
     ----------
     degrees : (n, 6) array
-        Values of the robot, degrees, rounded to 3 decimals.
+        Robot joint values, degrees, rounded to 3 decimals.
     track : (n, 0) or (n, 1) array
-        Values of the track, mm, rounded.
+        Track values, mm, rounded.
     external : (n, k) array
-        Values of another group, degrees, rounded.
+        Axis values of another motion group, degrees, rounded.
     user_frame, tool_frame : int
         Numbers of the frames.
     group : int, optional
-        Number of the other group.
+        Number of the other motion group.
 
     Returns
     -------
     str
-        Records P[1], P[2] and on.
+        Records P[1], P[2] and so on.
     """
     values = ",".join(f"\tJ{axis}=%s deg" for axis in range(1, external.shape[1] + 1))
     second_group = f"   GP{group}:\r\n\t<frame>\t\r\n{values}\r\n}};" if values else "};"
@@ -580,7 +580,7 @@ def pose_records(
     Returns
     -------
     str
-        Records P[1], P[2] and on.
+        Records P[1], P[2] and so on.
     """
     return _records(_POSE_RECORD, user_frame, tool_frame, [configuration], pose)
 
@@ -588,8 +588,9 @@ def pose_records(
 def _records(
     template: str, user_frame: int, tool_frame: int, words: Sequence[Sequence[str]], values: Array
 ) -> str:
-    """Records of positions from 1 on by a template, whose fields are the number, words (columns
-    (n,)) and values (n, k).
+    """Fill a record template for each position, numbered from 1.
+
+    The fields are the number, words (columns (n,)) and values (n, k).
     """
     record = template.replace("<frame>", f"UF : {user_frame}, UT : {tool_frame},")
     texts = [[right_aligned(value, 3, 10) for value in row] for row in values.tolist()]
@@ -611,12 +612,12 @@ def right_aligned(value: float, decimals: int, width: int) -> str:
     decimals : int
         Number of decimals.
     width : int
-        Smallest number of characters.
+        Minimum number of characters.
 
     Returns
     -------
     str
-        The text.
+        The padded text.
     """
     text = f"{value:.{decimals}f}"
     if float(text) != 0.0 or text.startswith("-"):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads FANUC listings back: models the controller from the text of the program alone.
+"""Read FANUC listings back: model the controller from the program text alone.
 
-Shares no code with the writer. Accepts the plain instructions that a path needs and rejects all
-others, so that unknown text cannot hide motion.
+Shares no code with the writer. Accepts only the instructions that a path needs and rejects
+everything else, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ from ...core.types import Array, Index, Mask
 from ..read_lines import Lines, floats
 from .records import Records, records_of, unreadable
 
-# ---- Parses listings of FANUC programs: instructions, runs of moves, and recorded positions
+# ---- Parse listings of FANUC programs: instructions, runs of moves, and position records
 
 _NO_LISTING = "it is not a listing with /PROG, /MN, /POS and /END in this order"
-_TITLE = 1000  # bytes that contain the first line
-# quantity of each unit of a move: duration s, speed mm/s, share
+_TITLE = 1000  # maximum number of bytes searched for the first line
+# units of a move: duration in s or ms, speed in mm/s, fraction in percent
 UNITS = ("sec", "msec", "mm/sec", "%")
 _LINE = re.compile(r" *\d*:(.*?) *; *$")
 _MOTION = re.compile(
@@ -37,8 +37,10 @@ _MOTION = re.compile(
 
 
 class _Instruction(NamedTuple):
-    """An instruction and the number of its line; or a run of moves, from `first_move` to the one
-    after the last, and the option of the last one, if any.
+    """An instruction with its line number, or a run of moves.
+
+    A run covers the moves `first_move` .. `end` (exclusive); `text` is then the option of its last
+    move, if any.
     """
 
     number: int
@@ -49,8 +51,10 @@ class _Instruction(NamedTuple):
 
 @dataclass
 class _Moves:
-    """All moves of a file in order (n,): their line numbers, positions, speeds with units, whether
-    they are straight, and CNT, NaN for moves that stop.
+    """All n moves of a file in order.
+
+    line: line numbers. point: position numbers. value, unit: speed and index of its unit. straight:
+    whether the move is linear. corner: CNT, NaN for moves that stop.
     """
 
     line: Index
@@ -63,7 +67,7 @@ class _Moves:
 
 @dataclass
 class Listing:
-    """One file: its instructions, its moves, and its positions in the order of their numbers."""
+    """One file: its instructions, its moves, and its position records sorted by number."""
 
     file: str
     instructions: list[_Instruction]
@@ -72,16 +76,16 @@ class Listing:
 
     @cached_property
     def same_frames(self) -> bool:
-        """Whether all positions are seen in the same frames."""
+        """Whether all positions use the same frames."""
         return len(set(self.records.frames)) == 1
 
     def rows(self, points: Index) -> Index:
-        """Return the rows of positions.
+        """Return the record rows of positions.
 
         Parameters
         ----------
         points : (k,) array of int
-            Numbers of the positions in the file.
+            Position numbers in the file.
 
         Returns
         -------
@@ -100,7 +104,7 @@ def _text(content: bytes) -> str:
 
 
 def name_of(file: str, content: bytes) -> str:
-    """The name of a program, upper case."""
+    """Return the name of a program in upper case."""
     title = re.match(r"/PROG +(\w+)\s*$", _text(content[:_TITLE]).partition("\n")[0])
     if title is None:
         raise unreadable(file, _NO_LISTING)
@@ -113,7 +117,7 @@ def listing_of(file: str, content: bytes) -> Listing:
     marks = [text.find(f"\n{section}\n") for section in ("/MN", "/POS", "/END")]
     if -1 in marks or marks != sorted(marks):
         raise unreadable(file, _NO_LISTING)
-    # records are by far the largest part, so they are not split into lines
+    # records are by far the largest section, so they are not split into lines
     lines = text[1 : marks[1]].split("\n")
     start, positions = lines.index("/MN"), len(lines)
     instructions, moves = _instructions(file, lines[start + 1 :], start + 2)
@@ -122,7 +126,7 @@ def listing_of(file: str, content: bytes) -> Listing:
 
 
 def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instruction], _Moves]:
-    """The instructions of lines, the first one numbered `number`, and all moves among them."""
+    """Return the instructions of lines that start at line `number`, and all moves among them."""
     count = len(lines)
     moves = _Moves(
         np.arange(number, number + count),
@@ -133,7 +137,7 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
         np.full(count, np.nan),
     )
     moving, other_rows = np.zeros(count, dtype=bool), []
-    options: dict[int, str] = {}  # of moves, by their rows
+    options: dict[int, str] = {}  # options of moves, by row
     for row, line in enumerate(lines):
         move = _MOTION.match(line)
         if move is None:
@@ -146,7 +150,7 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
             moves.corner[row] = float(move[6])
         if move[7]:
             options[row] = move[7]
-    moves_before = np.cumsum(moving)  # number of moves up to a line
+    moves_before = np.cumsum(moving)  # number of moves up to each line
     instructions, moves_done = [], 0
     for row in [*sorted([*options, *(row for row in other_rows if lines[row].strip())]), count]:
         option = options.get(row, "")
@@ -168,17 +172,17 @@ def _instructions(file: str, lines: list[str], number: int) -> tuple[list[_Instr
     )
 
 
-_ROBOT_AXES = 6  # axes of the robot
+_ROBOT_AXES = 6  # number of robot axes
 
 
 @dataclass
 class Run:
-    """The state while the programs are followed.
+    """The state while programs are executed.
 
-    pending: records of the current listing that moves used and that are not in `values` yet.
-    recorded, numbers: frames of the last checked record, and numbers of the selected frames. track:
-    the external axis that a remark marks as the track, 0 for none, and whether positions have one.
-    moved: groups that headers name.
+    pending: record rows of the current listing that moves used but `values` lacks. recorded,
+    numbers: frames of the last checked record, and numbers of the selected frames. track: the
+    external axis that a remark declares as the track (0 for none), and whether positions have a
+    track value. moved: motion groups in the headers.
     """
 
     cartesian: bool = False
@@ -208,24 +212,23 @@ class Run:
     def happens(
         self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None
     ) -> None:
-        """Add an event before the next move, or ahead of the end of the last one.
+        """Add an event before the next move, or ahead of the end of the last move.
 
         Parameters
         ----------
         kind : str
             Kind of the event.
         *value : float or str
-            Its values.
+            Values of the event.
         digits : float, optional
             Half of the last digit of a number.
         ahead : float or None, optional
-            Time before the end of the last move, s; None for an event before the next
-            move.
+            Time before the end of the last move, s; None for an event before the next move.
         """
         self.events.append(Event(len(self.duration), kind, value, digits, ahead))
 
     def begin(self, listing: Listing) -> None:
-        """Check the groups of a listing; a listing without moves may name none."""
+        """Check the motion groups of a listing; a listing without moves may name no group."""
         groups = listing.records.moved
         if groups and self.moved not in (None, groups):
             raise unreadable(
@@ -234,7 +237,7 @@ class Run:
         self.moved = groups or self.moved
 
     def take(self, listing: Listing) -> None:
-        """Add the pending records to the values."""
+        """Append the pending records to the values."""
         if self.pending:
             rows, records = np.concatenate(self.pending), listing.records
             if self.values and (self.group, self.values[0].shape[1]) != (
@@ -254,8 +257,9 @@ class Run:
 
 
 def read_moves(run: Run) -> ReadMoves:
-    """All moves in the form of a reader. Raises InputError UNREADABLE_PROGRAM if no remark declares
-    the track.
+    """Convert the recorded moves to ReadMoves.
+
+    Raises InputError UNREADABLE_PROGRAM if no remark declares the track.
     """
     cartesian, values, digits = run.cartesian, np.concatenate(run.values), run.digits
     joints, half_turn = (
@@ -300,8 +304,8 @@ def read_moves(run: Run) -> ReadMoves:
 
 
 def _joints(run: Run, values: Array) -> Array:
-    """Joint values (n, axes), rad and mm, of records; a remark gives the place of the track among
-    the external axes.
+    """Return joint values (n, axes) of records, rad and mm. A remark gives the position of the
+    track among the external axes.
     """
     number, track = run.track
     if track != bool(number) or number > values.shape[1] - _ROBOT_AXES:
@@ -316,7 +320,7 @@ def _joints(run: Run, values: Array) -> Array:
 
 
 def _rotation(wpr: Array) -> Array:
-    """(n, 3, 3) rotations Rz(R) Ry(P) Rx(W) of W, P, R (n, 3) in rad."""
+    """Return rotations (n, 3, 3), Rz(R) Ry(P) Rx(W), of angles W, P, R (n, 3) in rad."""
     cw, cp, cr = np.cos(wpr).T
     sw, sp, sr = np.sin(wpr).T
     rows = (
@@ -349,7 +353,8 @@ _HARMLESS = re.compile(r"$|!|//|--eg:")
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
-    """All moves of the files in the order of execution, beginning with the program that no other one calls.
+    """Read all moves in the order of execution, starting with the program that no other program
+    calls.
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
@@ -377,8 +382,9 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 def _follow(
     name: str, files: dict[str, tuple[str, bytes]], run: Run, callers: tuple[str, ...]
 ) -> None:
-    """Execute the instructions of a program in order, and those of the programs that it calls. A
-    listing stays in memory while it is executed.
+    """Execute the instructions of a program in order, and the programs that it calls.
+
+    Only listings being executed stay in memory.
     """
     if name in callers:
         raise unreadable(files[name][0], "it calls itself")
@@ -412,7 +418,7 @@ def _carry_out(statement: str, where: str, run: Run) -> None:
 def _switch(
     output: re.Match[str], where: str, run: Run, digits: float = 0.0, ahead: float | None = None
 ) -> None:
-    """Read an instruction that switches the deposit."""
+    """Switch the deposit by an output."""
     if run.output not in ("", output[1]):
         raise unreadable(where, "it switches a second output")
     run.output, run.on = output[1], output[2] == "ON"
@@ -420,7 +426,7 @@ def _switch(
 
 
 def _trigger(option: str, where: str, run: Run) -> None:
-    """Record that the last move switches the deposit, ahead of its end by the time in `option`."""
+    """Record that the last move switches the deposit ahead of its end, by the time in `option`."""
     trigger = _TRIGGER.match(option)
     output = trigger and _OUTPUT.match(trigger[3])
     if not trigger or not output:
@@ -492,7 +498,7 @@ _INSTRUCTIONS: dict[re.Pattern[str], Callable[[re.Match[str], str, Run], None]] 
 
 
 def _move(listing: Listing, rows_moved: slice, option: str, run: Run) -> None:
-    """Execute a run of moves, column by column, and the option of the last one."""
+    """Execute a run of moves column by column, and the option of its last move."""
     moves, cartesian = listing.moves, listing.records.cartesian
     unit = moves.unit[rows_moved]
     straight = moves.straight[rows_moved]
@@ -534,7 +540,7 @@ def _move(listing: Listing, rows_moved: slice, option: str, run: Run) -> None:
 
 
 def _refuse(listing: Listing, move: int, run: Run) -> None:
-    """Raise InputError for the part of a move that is not understood."""
+    """Raise InputError for the reason why a move is not understood."""
     moves, records = listing.moves, listing.records
     where = _line_name(listing, int(moves.line[move]))
     unit = int(moves.unit[move])
@@ -559,8 +565,8 @@ def _refuse(listing: Listing, move: int, run: Run) -> None:
 
 
 def _select(listing: Listing, row: int, run: Run, number: int) -> None:
-    """Check the frames in which a position is recorded; the same frames need no further check until
-    others are selected.
+    """Check that a position's frames are selected. Positions in the same frames need no further
+    check until the selection changes.
     """
     recorded = listing.records.frames[row]
     for word, frame in zip(("FRAME", "TOOL"), recorded, strict=True):

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads the positions of FANUC listings: joint values, or poses with their configuration."""
+"""Format numbers of FANUC listings, and read position records: joint values, or poses with their
+configuration.
+"""
 
 from __future__ import annotations
 
@@ -18,25 +20,27 @@ from ..refusals import speeds_within
 
 # ---- Numbers of a FANUC listing: times, speeds, angles within half a turn, positions, CONFIG
 
-# Ranges of the FANUC operator's manual (motion instruction, feed rate): 1 to 32000 msec, 0.1 to 3200 sec,
-# up to 2000 mm/sec.
+# Ranges of the FANUC operator's manual (motion instruction, feed rate): 1 to 32000 msec, 0.1 to
+# 3200 sec, up to 2000 mm/sec.
 LONGEST_MSEC = 32_000
 LONGEST_SEC = 3_200.0
 SPEEDS = (0.1, 2000.0)
 
-# The controller counts 180 deg as the next turn, with a tolerance between 0.0004 and 0.0007 deg (CrossArm's
-# measurements on ROBOGUIDE).
+# deg; the controller counts 180 deg as the next turn, with a tolerance between 0.0004 and 0.0007
+# deg (CrossArm's measurements on ROBOGUIDE)
 _TURN_TOLERANCE = 0.00055
 
 
 def speed_words(moves: Moves) -> list[str]:
-    """The path speed of each move, to 0.1 mm/s. Raises InputError MOVE_SPEED."""
+    """Return the path speed of each move, to 0.1 mm/s. Raises InputError MOVE_SPEED."""
     return [f"{speed:.1f}mm/sec" for speed in speeds_within(moves, *SPEEDS).tolist()]
 
 
 def time_words(moves: Moves) -> list[str]:
-    """The time of each move, in whole milliseconds above 0 that add up to the time of the run;
-    moves of more than 32 s are in 0.1 s. Raises InputError MOVE_TIME.
+    """Return the time of each move in whole milliseconds, at least 1 ms, that add up to the run's
+    time.
+
+    Moves of more than 32 s are written to 0.1 s. Raises InputError MOVE_TIME.
     """
     seconds = np.where(np.isfinite(moves.duration), np.maximum(moves.duration, 0.0), 0.0)
     if seconds.max() > LONGEST_SEC:
@@ -59,7 +63,7 @@ def time_words(moves: Moves) -> list[str]:
             n,
             seconds.sum(),
         )
-    # accumulated time beyond the minimum of 1 ms per move: monotonic, at most the total
+    # accumulated time beyond the minimum of 1 ms per move; monotonic, at most the total
     spare = np.minimum(
         np.maximum.accumulate(np.maximum(ends - np.arange(1, n + 1), 0)), max(int(ends[-1]) - n, 0)
     )
@@ -74,7 +78,7 @@ def time_words(moves: Moves) -> list[str]:
 
 
 def within_half_turn(degrees: Array) -> Array:
-    """Bring angles into the range that records use.
+    """Wrap angles to the range of position records.
 
     Parameters
     ----------
@@ -84,14 +88,14 @@ def within_half_turn(degrees: Array) -> Array:
     Returns
     -------
     (...) array
-        In (-180, 180], to 3 decimals.
+        Angles in (-180, 180], to 3 decimals.
     """
     wrapped: Array = np.round(degrees - 360.0 * np.ceil((degrees - 180.0) / 360.0), 3)
     return wrapped
 
 
 def poses(position: Array, rotation: Array) -> Array:
-    """Return poses as records have them; the rotation is Rz(R) Ry(P) Rx(W).
+    """Convert poses to record values; the rotation is Rz(R) Ry(P) Rx(W).
 
     Parameters
     ----------
@@ -110,13 +114,14 @@ def poses(position: Array, rotation: Array) -> Array:
 
 
 def configurations(moves: Moves, continuous: tuple[bool, ...]) -> list[str]:
-    """CONFIG of each point, such as 'N U T, 0, 0, 0'. Raises InputError
-    NO_POSITIONS, ARM_BACKWARDS, TURN_NUMBER.
+    """Return the CONFIG of each point, such as 'N U T, 0, 0, 0'.
 
-    F where J5 > 0, D where the elbow is down; the last number counts the turns of J6. Whether the
-    other two belong to J1 and J4 or to J4 and J5 differs between sources, so those axes must stay
-    within half a turn, where both readings agree. The meaning of U and D for an arm that bends over
+    F means J5 > 0, D means elbow down; the last number counts the turns of J6. Sources differ on
+    whether the other two numbers belong to J1 and J4 or to J4 and J5. Those axes must stay within
+    half a turn, where both readings agree. The meaning of U and D for an arm that bends over
     backwards (B) is unconfirmed.
+
+    Raises InputError NO_POSITIONS, ARM_BACKWARDS or TURN_NUMBER.
     """
     if moves.configuration is None:
         raise InputError(
@@ -169,7 +174,7 @@ def _values(names: str, units: str) -> str:
 
 
 _JOINTS = re.compile(_FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"\s*\};")
-# the same with a track and the axes of another motion group, in the same frames
+# joint record with a track and the axes of another motion group, in the same frames
 _FULL_RECORD = re.compile(
     _FRAMES + _values("J1 J2 J3 J4 J5 J6", "deg " * 6) + r"(?:,\s*E1 ?= *(-?\d*\.\d+) *mm)?"
     r"(?:\s*GP([2-8]):\s*UF : (\d+|F), UT : (\d+|F),((?:\s*J\d ?= *-?\d*\.\d+ *deg,?)+))?\s*\};"
@@ -182,9 +187,11 @@ _POSE = re.compile(
 
 
 class Records(NamedTuple):
-    """Positions of a file by their numbers (n,), values (n, 6 + track + other motion group),
-    configurations, frames, half a last digit, the number of the other group, whether there is a
-    track, and the numbers of the groups in the header.
+    """The n position records of a file.
+
+    point: (n,) position numbers. values: (n, 6 + track + other group). frames: user and tool frame
+    of each record. digits: half of the last digit. group: number of the other motion group. track:
+    whether records have a track value. moved: numbers of the groups in the header.
     """
 
     point: Index
@@ -199,28 +206,28 @@ class Records(NamedTuple):
 
 
 def records_of(file: str, lines: list[str], text: str, positions: int) -> Records:
-    """Return the positions of a file.
+    """Return the position records of a file.
 
     Parameters
     ----------
     file : str
         Name of the file, for messages.
     lines : list of str
-        Lines of its header and instructions.
+        Lines of the header and the instructions.
     text : str
-        Text of the positions.
+        Text of the position section.
     positions : int
-        Number of the line that begins them, from 0.
+        Line number of the start of that section, from 0.
 
     Returns
     -------
     Records
-        The positions in the order of their numbers.
+        The positions, sorted by number.
 
     Raises
     ------
     InputError
-        UNREADABLE_PROGRAM for text that is not understood, or positions recorded twice.
+        UNREADABLE_PROGRAM for text that is not understood, or for duplicate records.
     """
     # counting is much faster than checking every line
     several = text.count("GP") > text.count("GP1:") and re.search(
@@ -254,7 +261,7 @@ def records_of(file: str, lines: list[str], text: str, positions: int) -> Record
 
 
 def _groups_of(lines: list[str]) -> frozenset[str]:
-    """The motion groups that a program moves, by its header."""
+    """Return the motion groups that a program moves, from its header."""
     group_lists = (
         line.partition("=")[2].strip(" ;").split(",")
         for line in lines
@@ -265,7 +272,7 @@ def _groups_of(lines: list[str]) -> frozenset[str]:
 
 
 def _check_groups(file: str, lines: list[str], records: Records) -> None:
-    """Check that the groups that a program moves equal the groups of its positions."""
+    """Check that the header and the positions name the same motion groups."""
     moved = _groups_of(lines)
     if len(records.point) and moved != {"1", records.group or "1"}:
         number = next((k for k, line in enumerate(lines, 1) if line.startswith("DEFAULT_GROUP")), 1)
@@ -280,21 +287,19 @@ def _check_groups(file: str, lines: list[str], records: Records) -> None:
 
 
 def _line(text: str, positions: int, point: int, again: int = 0) -> int:
-    """The line of the record of a position, or of its second record."""
+    """Return the line of the record of a position, or of its duplicate."""
     starts = [match.start() for match in re.finditer(rf"^P\[{point}\b", text, re.MULTILINE)]
     lines_before = text.count("\n", 0, starts[min(again, len(starts) - 1)])
     return lines_before + positions + 2
 
 
 def _place(file: str, text: str, positions: int, point: int) -> str:
-    """File and line of the record of a position."""
+    """Return file and line of the record of a position."""
     return f"{file} line {_line(text, positions, point)}"
 
 
 def _joint_records_of_groups(file: str, text: str, positions: int) -> Records:
-    """The joint positions of a text with a track or two motion groups, if all records have the same
-    form.
-    """
+    """Return joint records with a track or two motion groups; all records must have the same form."""
     values, frames, decimals, points = [], [], 99, []
     groups: set[tuple[str, int, bool]] = set()
     for record in _FULL_RECORD.finditer(text):
@@ -349,7 +354,7 @@ def _joint_records_of_groups(file: str, text: str, positions: int) -> Records:
 
 
 def _any_records(file: str, text: str, positions: int) -> Records:
-    """The positions of a text that begins after line `positions`; other text may stand between
+    """Return the records of a text that begins after line `positions`. Other text may stand between
     them.
     """
     starts = _RECORD_START.findall(text)
@@ -380,5 +385,5 @@ def _any_records(file: str, text: str, positions: int) -> Records:
 
 
 def unreadable(where: str, why: str) -> InputError:
-    """The error for a text that is not understood."""
+    """Return the error for text that is not understood."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""KUKA: KRL modules of beads in linear moves with the tool on the robot, and rapids to axis values.
+"""Write KUKA KRL modules of beads in linear moves with the tool on the robot, and rapids to axis
+values.
 
-Joint moves of KRL use whole percents of the axis speeds, so beads are linear moves, whose speed the
-controller keeps at the tip. Output, controller settings and confirmations: docs/posts/kuka.md.
+KRL joint moves use whole percents of the axis speeds. Beads are therefore linear moves, whose speed
+the controller keeps at the tip. Output, controller settings and confirmations: docs/posts/kuka.md.
 """
 
 from __future__ import annotations
@@ -50,16 +51,15 @@ from .read import read
 __all__ = ["read", "write"]
 
 NO_ANALOGUE = "the documentation does not say whether WAIT FOR polls $ANIN"
-# why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(
     point_bytes=75, memory_mb=4.0, external=True, positioner="2", arc_moves=True
 )
 PENDANT = Pendant("KUKA", ("A", "B", "C"), MOVING_ZYX)
 NO_WIRE = "KRL sets an analogue output between approximated moves ahead of the motion"
 NO_WEAVE = "ArcTech keeps the weave in its weld data, which is made on the pendant, so a weave has no number"
-NO_TRIGGER = ""  # the deposit can be switched on the move itself
+NO_TRIGGER = ""  # a trigger on the move itself can switch the deposit
 refuse_process = refuse_no_process
-NO_SCHEDULE: dict[str, str] = {}  # schedules are supported in every way
+NO_SCHEDULE: dict[str, str] = {}  # all methods of selecting schedules are supported
 LAST_OUTPUT, LAST_SCHEDULE = 4096, 255
 MOVE_LINE = re.compile(rb"(?:PTP|LIN) \{")
 ON_CONTROLLER = controller_checks(
@@ -163,22 +163,24 @@ _RESERVED = frozenset(
     )
     + ("WHILE", "WITH", "CELL", "SPS", "IR_STOPM")
 )
-# 24 characters from memory, unconfirmed: we use fewer
+# KRL probably allows 24 characters (unconfirmed), so we use fewer
 NAMING = Naming(str, "[A-Za-z]", "a letter", longest=20, spare=4, prefix="am_", reserved=_RESERVED)
 _NO_END = (
     10**9
-)  # the maximum number of lines in a module is unknown: modules are cut by their points
+)  # the maximum number of lines in a module is unknown, so modules are split by points
 
 
 def write(program: Program) -> dict[str, bytes]:
-    """The modules of a program, file name -> content; the same bytes for the same program.
+    """Write the modules of a program, file name -> content; the same program always gives the same
+    bytes.
 
-    One file NAME.src if its points fit; otherwise NAME.src calls NAME01.src, NAME02.src and so on.
-    A bead with more points gets its own file. The duration of the first move is not used.
+    If all points fit into one file, write only NAME.src. Otherwise NAME.src calls NAME01.src,
+    NAME02.src and so on. An oversized bead gets its own file. The duration of the first move is not
+    used.
 
-    Raises InputError: PROGRAM_NAME, JOINT_DEPOSIT, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, UNSUPPORTED_FRAME,
-    ENDLESS_AXIS, NO_JOINT_SPEED, JOINT_SPEED, MOVE_SPEED, NO_POSITIONS, NO_ANALOGUE_INPUT, NO_WIRE_OUTPUT, UNREACHABLE,
-    NOTHING_TO_WRITE.
+    Raises InputError: PROGRAM_NAME, JOINT_DEPOSIT, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES,
+    UNSUPPORTED_FRAME, ENDLESS_AXIS, NO_JOINT_SPEED, JOINT_SPEED, MOVE_SPEED, NO_POSITIONS,
+    NO_ANALOGUE_INPUT, NO_WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
@@ -213,8 +215,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller. Raises InputError PROGRAM_NAME with the reason and a valid
-    proposal.
+    """Return the name on the controller.
+
+    Raises InputError PROGRAM_NAME with the reason and a valid proposal.
     """
     return NAMING.checked(name, where)
 
@@ -225,8 +228,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError UNSUPPORTED_SETUP, REMOTE_TCP or JOINT_DEPOSIT for a motion or set-up that
-    this controller does not support.
+    """Reject a motion or set-up that this controller does not support.
+
+    Raises InputError UNSUPPORTED_SETUP, REMOTE_TCP or JOINT_DEPOSIT.
     """
     if setup not in ("part-on-robot", "tool-on-robot"):
         raise InputError(
@@ -334,7 +338,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
     if isinstance(block, (DepositOn, DepositOff)) and block.schedule is not None:
         return [text.after(block), *text.wait(block.lead)]
     if isinstance(block, (DepositOn, DepositOff)) and block.ahead is not None:
-        return []  # the move before it switches
+        return []  # the previous move switches the deposit
     if isinstance(block, DepositOn):
         return [] if program.dry_run else [_STAND, f"{output}TRUE", *text.wait(block.lead)]
     if isinstance(block, DepositOff):
@@ -375,5 +379,5 @@ def _body(program: Program, piece_list: Sequence[Piece]) -> list[str]:
             else entry
         )
         if isinstance(entry, list) and any(line.startswith(text.CALL) for line in entry):
-            settings.clear()  # the settings that ArcTech leaves are unknown
+            settings.clear()  # ArcTech leaves unknown settings
     return [*lines, _STAND]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads KRL modules back: models the controller from the text of the program alone.
+"""Read KRL modules back: model the controller from the program text alone.
 
-Shares no code with the writer. Accepts the plain instructions that a path needs and rejects all
-others, so that unknown text cannot hide motion.
+Shares no code with the writer. Accepts only the instructions that a path needs and rejects
+everything else, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from ...core.read_moves import ARC, Event, ReadMoves
 from ...core.types import Array
 from ..read_lines import Lines, floats
 
-# ---- Reads instructions of ArcTech: a linear move that stops, with its calls before and after it
+# ---- ArcTech instructions: a linear move that stops, with calls before and after it
 
 _DATA, _OF = re.compile(r"\b(WDAT(?:OFF)?)(\d+)\b"), r"\1@"
 _MOVE = "the move"
-# the lines of an instruction; @ is the number of its data
+# lines of an instruction; @ stands for the number of its data
 _ON_LINES = (
     "TRIGGER WHEN DISTANCE=1 DELAY=ArcGetDelay(#PreDefinition,WDAT@) DO ArcMainNG(#PreDefinition,WDAT@,WSEAM) PRIO=-1",
     "TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOn,WDAT@) DELAY=ArcGetDelay(#GasPreflow,WDAT@)"
@@ -44,9 +44,7 @@ _OFF_LINES = (
 
 @dataclass
 class ArcMove:
-    """An instruction of ArcTech while it is read: its lines, the number of lines read, and the
-    number of its data.
-    """
+    """An ArcTech instruction being read: its lines, the number of lines read, and its data number."""
 
     lines: tuple[str, ...] = ()
     lines_read: int = 0
@@ -54,11 +52,11 @@ class ArcMove:
 
     @property
     def is_open(self) -> bool:
-        """Whether more of its lines must follow."""
+        """Whether more lines of the instruction must follow."""
         return bool(self.lines)
 
     def accept_move(self, straight: bool, rounded: bool) -> bool:
-        """Whether a move is allowed here. Within an instruction only a linear move that stops is."""
+        """Whether a move is allowed here. An instruction allows only a linear move that stops."""
         if not self.is_open:
             return True
         right = self.lines[self.lines_read] == _MOVE and straight and not rounded
@@ -66,8 +64,10 @@ class ArcMove:
         return right
 
     def called(self, line: str) -> str | None:
-        """'on' or 'off' with the last line of an instruction, '' with earlier lines; None for an
-        unexpected line, or one that names other data than the lines before it.
+        """Return 'on' or 'off' at the last line of an instruction and '' at earlier lines.
+
+        Return None for an unexpected line, or for a line with another data number than the lines
+        before.
         """
         numbers, template = {number for _, number in _DATA.findall(line)}, _DATA.sub(_OF, line)
         if not self.is_open:
@@ -93,14 +93,13 @@ def is_arc_line(line: str) -> bool:
 
 @dataclass
 class Run:
-    """The state while the modules are followed, column by column.
+    """The state while modules are executed, column by column.
 
-    state: the last settings, by name; a module relies on no settings of another one. standing: the
-    robot rests because the program has waited. signals: first and last output, by their name in the
-    module. external: values of the external axes at each move; unit: the mechanism
-    that BASE is coupled to, and numbers of its axes; slides: number of the axis that a remark marks
-    as the track. arc: the instruction of ArcTech that is being read. trigger: time before its end,
-    s, at which the next move switches an output; the output; whether on.
+    state: current settings by name; a module inherits no settings. standing: a wait has stopped the
+    robot. signals: first and last output of each signal of the module. external: values of the
+    external axes at each move. unit, numbers: mechanism that BASE is coupled to, and its axis
+    numbers. slides: numbers of the axes that a remark marks as the track. arc: the ArcTech
+    instruction being read. trigger: lead, s, output and state of a switch at the next move.
     """
 
     files: dict[str, tuple[str, list[str]]]
@@ -131,30 +130,29 @@ class Run:
     def happens(
         self, kind: str, *value: float | str, digits: float = 0.0, ahead: float | None = None
     ) -> None:
-        """Add an event before the next move, or ahead of the end of the last one.
+        """Add an event before the next move, or ahead of the end of the last move.
 
         Parameters
         ----------
         kind : str
             Kind of the event.
         *value : float or str
-            Its values.
+            Values of the event.
         digits : float, optional
             Half of the last digit of a number.
         ahead : float or None, optional
-            Time before the end of the last move, s; None for an event before the next
-            move.
+            Time before the end of the last move, s; None for an event before the next move.
         """
         self.events.append(Event(len(self.speed), kind, value, digits, ahead))
 
     def note_digits(self, what: str, texts: tuple[str, ...]) -> None:
-        """Store half of the last digit of numbers of a kind."""
+        """Store half of the last digit for a kind of numbers."""
         half = 0.5 * 10.0 ** -min(len(text.partition(".")[2]) for text in texts)
         self.half_digits[what] = max(half, self.half_digits.get(what, 0.0))
 
 
 def read_moves(run: Run) -> ReadMoves:
-    """The moves of the followed modules."""
+    """Convert the moves of the executed modules."""
     linear, deposit = (np.array(column, dtype=np.bool_) for column in (run.linear, run.deposit))
     values, rounding = np.array(run.values), np.array(run.rounding)
     half, is_linear = run.half_digits, linear[:, None]
@@ -190,7 +188,7 @@ def read_moves(run: Run) -> ReadMoves:
 
 
 def _about(axis: int, angle: Array) -> Array:
-    """(n, 3, 3) rotations about X, Y or Z."""
+    """Return rotations (n, 3, 3) about X, Y or Z."""
     turned = np.zeros((len(angle), 3, 3))
     next_axis, last_axis = (axis + 1) % 3, (axis + 2) % 3
     turned[:, axis, axis] = 1.0
@@ -231,8 +229,8 @@ _AWAITED, _LAYERED = re.compile(r"WAIT FOR \$IN\[(\d+)\]==TRUE$"), re.compile(r"
 _CALLED, _HEADED = re.compile(r"([A-Za-z]\w*)\(\)$"), re.compile(r"DEF ([A-Za-z]\w*)\(\)$")
 _ANY_HEAD = re.compile(
     r"\s*((?:GLOBAL\s+)?DEF(?:FCT)?\s[^;]*[^;\s])", re.IGNORECASE
-)  # also as other programs write it
-# whole milliseconds, relative to the end of the next move
+)  # also in the form of other programs
+# delay in whole milliseconds, relative to the end of the next move
 _TRIGGER = re.compile(
     r"TRIGGER WHEN DISTANCE=1 DELAY=(0|-[1-9]\d*) DO \$OUT\[(\d+)\]=(TRUE|FALSE)$"
 )
@@ -241,7 +239,8 @@ _INITIAL, _ON_FLANGE, _TURNING = "BAS(#INITMOV,0)", "$IPO_MODE=#BASE", "$ORI_TYP
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
-    """All moves of the files in the order of execution, beginning with the module that no other one calls.
+    """Read all moves in the order of execution, starting with the module that no other module
+    calls.
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
@@ -274,7 +273,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _routine(file: str, lines: list[str]) -> str:
-    """The name of the only routine of a module; it must equal the name of the file."""
+    """Return the name of a module's only routine, which must equal the file name."""
     title = (
         _HEADED.match(lines[2])
         if len(lines) > 3 and lines[:2] == ["&ACCESS RVP", "&REL 1"]
@@ -300,7 +299,7 @@ def _routine(file: str, lines: list[str]) -> str:
 
 
 def _go(name: str, run: Run) -> None:
-    """Execute the lines of a module in order, and those of the modules that it calls."""
+    """Execute the lines of a module in order, and the modules that it calls."""
     file, lines = run.files[name]
     run.followed.append(name)
     run.state, run.signals = {}, {}
@@ -330,7 +329,7 @@ def _carry_out(line: str, run: Run, where: str) -> None:
 
 
 def _setting(line: str, run: Run) -> bool:
-    """Store the setting in a line for the moves after it; return whether the line has one."""
+    """Store a setting for later moves; return whether the line is a setting."""
     if setting := _PERCENT.match(line):
         run.state["percent"] = float(setting[1])
     elif setting := _METRES.match(line):
@@ -366,14 +365,14 @@ def _couple(coupled: re.Match[str], run: Run, where: str) -> None:
 
 
 def _declare(declared: re.Match[str], earlier_lines: list[str], run: Run, where: str) -> None:
-    """Declare a group of outputs; declarations come before the instructions of a module."""
+    """Declare a signal of several outputs; declarations precede the instructions of a module."""
     if any(not line.startswith(";") for line in earlier_lines):
         raise not_read(where, "it is declared after an instruction; declarations come first")
     run.signals[declared[1]] = int(declared[2]), int(declared[3])
 
 
 def _set(outputs: tuple[int, int], number: int, run: Run, where: str) -> None:
-    """Set a group of outputs, given by the first and the last, to a number."""
+    """Set the outputs from the first to the last to a number."""
     if not run.standing or number >= 2 ** (outputs[1] - outputs[0] + 1):
         raise not_read(
             where, "it is set ahead of the motion, or its outputs are too few for the number"
@@ -384,7 +383,7 @@ def _set(outputs: tuple[int, int], number: int, run: Run, where: str) -> None:
 
 
 def _arc(line: str, run: Run, where: str) -> None:
-    """Read a line of ArcTech, which may change the settings of moves."""
+    """Read an ArcTech line, which may change the settings of moves."""
     if run.trigger:
         raise not_read(where, "it interrupts the lines of another instruction")
     switched = run.arc.called(line)
@@ -413,7 +412,7 @@ def _trigger(trigger: re.Match[str], run: Run, where: str) -> None:
 
 
 def _one_output(number: str, run: Run, where: str) -> None:
-    """Check that only one output switches the deposit, and not ArcTech too."""
+    """Check that a single output, and not also ArcTech, switches the deposit."""
     if run.output not in ("", number) or any(ARC in event.value for event in run.events):
         raise not_read(where, "it switches a second output")
     run.output = number
@@ -436,8 +435,9 @@ _INSTRUCTIONS: dict[re.Pattern[str], Callable[[re.Match[str], Run, str], None]] 
 
 
 def _follow_instruction(line: str, run: Run, where: str) -> None:
-    """Execute an instruction that is neither move nor setting. The advance run stops only at waits,
-    so outputs and calls must follow a wait.
+    """Execute an instruction that is neither a move nor a setting.
+
+    The advance run stops only at waits, so outputs and calls must follow a wait.
     """
     if not any(form.match(line) for form in (_PAUSE, _AWAITED, _SWITCHED, _CALLED)):
         if line.startswith("TRIGGER") and not run.standing:
@@ -480,7 +480,7 @@ def _follow_instruction(line: str, run: Run, where: str) -> None:
 
 
 def _stopped(run: Run, where: str) -> bool:
-    """Return True: a wait holds the program until the robot stops. The corner before it must not be
+    """Return True: a wait holds the program until the robot stops. The last corner must not be
     rounded.
     """
     if run.speed and not np.isnan(run.rounding[-1]):
@@ -541,7 +541,7 @@ def _follow_move(line: str, run: Run, where: str) -> None:
 
 
 def _triggered(ahead: float, output: str, on: bool, run: Run, where: str) -> None:
-    """Record that the move switches an output `ahead` s before its end."""
+    """Record that the last move switches an output `ahead` s before its end."""
     if not np.isnan(run.rounding[-1]):
         raise not_read(
             where, "a trigger needs a move that ends at its point, but the corner is rounded"
@@ -551,8 +551,10 @@ def _triggered(ahead: float, output: str, on: bool, run: Run, where: str) -> Non
 
 
 def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str) -> None:
-    """Check the external axes of a move: the same axes in all moves, coupled, and with enough
-    speed, percent. A linear move keeps its speed only if they may run at full speed.
+    """Check the external axes of a move.
+
+    All moves must use the same axes, coupled and with enough speed, percent. A linear move keeps
+    its speed only if external axes may run at full speed.
     """
     unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
     if run.unit is not None and (run.unit, run.numbers) != (unit, numbers):

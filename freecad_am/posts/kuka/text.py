@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Text and numbers of a KRL module: axis values, A B C, speeds, percents. Lines end in CR LF."""
+"""Format text and numbers of a KRL module: axis values, A B C, speeds, percents. Lines end in CR
+LF.
+"""
 
 from __future__ import annotations
 
@@ -26,20 +28,20 @@ from ..catalogue import plain
 from ..parts import place, switching
 from ..refusals import Ahead, speeds_within
 
-CALL = "ArcMainNG("  # beginning of a line that calls ArcTech
-SEAM = "WSEAM"  # data of the seam, common to all
-WELD_DATA, END_DATA = "WDAT", "WDATOFF"  # weld data, by number
+CALL = "ArcMainNG("  # start of a line that calls ArcTech
+SEAM = "WSEAM"  # seam data, common to all schedules
+WELD_DATA, END_DATA = "WDAT", "WDATOFF"  # names of weld data and end data, without their numbers
 
 
 def after(block: DepositOn | DepositOff) -> str:
-    """The line after such a move."""
+    """Return the ArcTech call after a move that switches the arc."""
     if isinstance(block, DepositOn):
         return f"{CALL}#ArcOnAfterMoveStd,{WELD_DATA}{block.schedule},{SEAM})"
     return f"{CALL}#ArcOffAfterMoveStd,{END_DATA}{block.schedule},{SEAM})"
 
 
 def names(program: Program) -> list[str]:
-    """Names of the data and procedures of ArcTech that a program uses."""
+    """Return the names of the ArcTech data and procedures that a program uses."""
     schedules = {
         block.schedule
         for block in program.blocks
@@ -52,7 +54,9 @@ def names(program: Program) -> list[str]:
 
 
 def refuse_post_flow(program: Program) -> None:
-    """Raises InputError SCHEDULE if a bead has a post-flow, which ArcTech keeps in its weld data."""
+    """Raise InputError SCHEDULE if a bead has a post-flow, because ArcTech keeps it in its weld
+    data.
+    """
     for block in program.blocks:
         if isinstance(block, DepositOff) and block.schedule is not None and block.lead > 0.0:
             raise InputError(
@@ -66,7 +70,7 @@ def refuse_post_flow(program: Program) -> None:
 
 
 def remarks(program: Program) -> Iterator[str]:
-    """Requirements on the controller: the data, and their speed."""
+    """Yield the weld data and speeds that the controller must have."""
     speeds: dict[int, list[float]] = {}
     number: int | None = None
     for block in program.blocks:
@@ -87,7 +91,7 @@ def remarks(program: Program) -> Iterator[str]:
 
 
 def lighting(number: int) -> list[str]:
-    """The lines before the move that starts the arc."""
+    """Return the lines before the move that starts the arc."""
     data, seam = f"{WELD_DATA}{number}", SEAM
     on_the_fly = f"TRIGGER WHEN PATH=ArcGetPath(#OnTheFlyArcOn,{data})"
     return [
@@ -99,7 +103,7 @@ def lighting(number: int) -> list[str]:
 
 
 def ending(number: int) -> list[str]:
-    """The lines before the move that ends the arc."""
+    """Return the lines before the move that ends the arc."""
     data, seam = f"{END_DATA}{number}", SEAM
     return [
         f"TRIGGER WHEN PATH=ArcGetPath(#ArcOffBefore,{data}) DELAY=0 DO {CALL}#ArcOffBeforeOffStd,{data},{seam}) PRIO=-1",
@@ -108,11 +112,11 @@ def ending(number: int) -> list[str]:
     ]
 
 
-TRIGGER = "TRIGGER "  # beginning of its line
+TRIGGER = "TRIGGER "  # start of a trigger line
 
 
 def ahead_of_moves(program: Program) -> dict[int, str]:
-    """The lines before the last move of runs, by the identity of the run."""
+    """Return the lines before the last moves of runs, by the id of the moves."""
     if program.dry_run:
         return {}
     return {
@@ -123,9 +127,7 @@ def ahead_of_moves(program: Program) -> dict[int, str]:
 
 
 def leads(program: Program) -> dict[int, float]:
-    """Time, s, before its end at which the last move of a run switches an output, by the identity
-    of the run.
-    """
+    """Return the lead, s, of the last moves of runs that switch an output, by the id of the moves."""
     if program.dry_run:
         return {}
     return {
@@ -134,8 +136,10 @@ def leads(program: Program) -> dict[int, float]:
 
 
 def in_front(lines: str, word: str) -> str:
-    """The word of a move, after its settings and these lines. A trigger comes last; calls of
-    ArcTech come first, so that later settings override theirs.
+    """Insert lines before a move, after its settings.
+
+    A trigger comes last. ArcTech calls come first, so that later settings override those of
+    ArcTech.
     """
     if CALL in lines:
         return f"{lines}|{word}"
@@ -158,44 +162,44 @@ SCHEDULE, BITS = (
     "am_schedule",
     8,
 )  # name of the signal that carries the schedule, and its number of outputs
-WIDTH = 80  # of remarks
+WIDTH = 80  # characters; width of remarks
 ANGLE_DECIMALS, LENGTH_DECIMALS = 4, 3
-# mm/s: the lowest speed that six decimals of m/s resolve well, and the speed that arms reach
+# mm/s: minimum speed that six decimals of m/s resolve well, and maximum speed of arms
 SPEEDS = (0.01, 3000.0)
-MILLISECOND = 0.001  # s: the step of a delay
-# percent: the lowest whole share of the axis speeds; half a percent is rounded up to it
+MILLISECOND = 0.001  # s; resolution of a delay
+# percent; minimum axis speed; half a percent is rounded up to it
 LEAST_PERCENT = 1
 _AXES = [f"A{axis} %.{ANGLE_DECIMALS}f" for axis in range(1, 7)]
 _PLACE = [f"{axis} %.{LENGTH_DECIMALS}f" for axis in "XYZ"] + [
     f"{axis} %.{ANGLE_DECIMALS}f" for axis in "ABC"
 ]
-# endings of a move: it stops, or the corner is rounded
+# suffixes of a move: exact stop, rounded corner
 _STOPS, _ROUNDED = "", " C_DIS"
 
 
 def module(name: str, lines: Iterable[str]) -> bytes:
-    """One file: a module of one routine."""
+    """Return the file of a module with one routine."""
     text = ["&ACCESS RVP", "&REL 1", f"DEF {name}()", *lines, "END"]
     return (END_OF_LINE.join(text) + END_OF_LINE).encode("ascii")
 
 
 def remark(text: str) -> list[str]:
-    """A comment in plain characters, on as many lines as it needs."""
+    """Wrap a comment in ASCII characters to the width of remarks."""
     return [f"; {line}" for line in textwrap.wrap(plain(text), WIDTH)]
 
 
 def signal(first_output: int) -> list[str]:
-    """The declaration of the outputs that select a schedule."""
+    """Return the declaration of the outputs that select a schedule."""
     return [f"SIGNAL {SCHEDULE} $OUT[{first_output}] TO $OUT[{first_output + BITS - 1}]"]
 
 
 def wait(seconds: float) -> list[str]:
-    """The lines of a wait, to 0.001 s; none for 0 s."""
+    """Return the line of a wait, to 0.001 s; empty for 0 s."""
     return [f"WAIT SEC {max(seconds, 0.001):.3f}"] if seconds > 0.0 else []
 
 
 def controller_values(joints: Array, slides: Mask) -> Array:
-    """Return axis values as the text has them.
+    """Convert axis values to the units and decimals of the text.
 
     Parameters
     ----------
@@ -215,7 +219,7 @@ def controller_values(joints: Array, slides: Mask) -> Array:
 
 
 def frames(position: Array, rotation: Array) -> Array:
-    """Return poses as the text has them; the rotation is Rz(A) Ry(B) Rx(C).
+    """Convert poses to rounded KRL values; the rotation is Rz(A) Ry(B) Rx(C).
 
     Parameters
     ----------
@@ -235,10 +239,10 @@ def frames(position: Array, rotation: Array) -> Array:
 
 
 class Lines:
-    """The lines of the moves of a program, built block by block in the order of motion: each move
-    with its required settings before it, separated by |.
+    """Build the lines of a program's moves, block by block in the order of motion.
 
-    ahead: time in the last moves that is available for switching the deposit ahead of their ends.
+    Each move follows its required settings, separated by |. ahead: the time in the last moves that
+    is available for switching the deposit ahead of their ends.
     """
 
     def __init__(self, program: Program) -> None:
@@ -257,12 +261,12 @@ class Lines:
             f"{word} {{{','.join([*values, *external])}}}"
             for word, values in (("PTP", _AXES), ("LIN", _PLACE))
         )
-        # speed shares of external axes also apply to linear moves and must not slow them down
+        # speed percentages of external axes also limit linear moves, which must not become slower
         self._shares = "".join(f"$VEL_EXTAX[{number}]=%d|" for number in numbers)
         self._unhindered = self._external_speeds(100)
 
     def __call__(self, moves: Moves) -> Sequence[str]:
-        """`settings|move` of each move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
+        """Return `settings|move` of each move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
         values = controller_values(moves.joints, self._slides)
         if moves.interpolation == LINEAR_MOVE:
             assert moves.position is not None and moves.rotation is not None
@@ -271,7 +275,7 @@ class Lines:
                 _STOPS if stops or size <= 0.0 else _ROUNDED for stops in moves.stops.tolist()
             ]
             if _ROUNDED in corners[-2:-1]:
-                # a delay must not extend beyond the end of the corner
+                # a lead must not reach back past the end of the corner
                 self._switched(
                     moves, float(moves.duration[-1] - size / moves.speed[-1]), corner=True
                 )
@@ -302,12 +306,12 @@ class Lines:
         return marked
 
     def _external_speeds(self, share: int) -> str:
-        """Settings of the speed share, percent, of the external axes; empty without such axes."""
+        """Return the settings of the external axis speeds, percent; empty without external axes."""
         return self._shares % ((share,) * self._shares.count("%"))
 
     def _percent(self, moves: Moves, values: Array) -> list[int]:
-        """Whole percents of the maximum joint speeds at which the slowest axis finishes its step in
-        the time of the move.
+        """Return the whole percents of the maximum joint speeds that give the moves their planned
+        times.
         """
         previous = values[:1] if self._before is None else self._before[None]
         share = (np.abs(np.diff(values, axis=0, prepend=previous)) / self._nominal).max(axis=1)
@@ -316,8 +320,8 @@ class Lines:
         percent = np.where(share > 0.0, percent, 100.0)
         if self._before is None:
             percent[0] = 100.0 * FIRST_SHARE
-        # a rapid that is slow only because it is short was planned with a minimum time:
-        # it runs at the smallest share
+        # a rapid that is slow only because it is short has a minimum planned time; it runs at the
+        # lowest percentage
         tame = moves.duration <= SHORTEST_RAPID * (1.0 + 1e-9)
         wrong = ~((percent <= 100.5) & (tame | (percent >= 0.5 * LEAST_PERCENT)))
         if wrong.any():
@@ -331,17 +335,17 @@ class Lines:
             )
         percents = np.clip(np.rint(percent), LEAST_PERCENT, 100)
         if self._before is not None or len(moves) > 1:
-            # rounding to whole percents may speed a move up and shorten it
+            # rounding to whole percents may speed a move up and shorten its time
             self._switched(moves, float(100.0 * share[-1] / percents[-1]))
         return [int(value) for value in percents]
 
     def _switched(self, moves: Moves, seconds: float, corner: bool = False) -> None:
-        """Store the time left in the last move if it switches the deposit."""
+        """Store the time left in the last move if this move switches the deposit."""
         if id(moves) in self._leads:
             self.ahead.append(Ahead(moves, self._leads[id(moves)], seconds, corner, MILLISECOND))
 
     def _rounding(self, moves: Moves) -> float:
-        """Size of corner rounding, mm: at most half the shortest move of the bead."""
+        """Return the corner rounding distance, mm: at most half the shortest move of the bead."""
         shortest = (
             float(np.nan_to_num(moves.speed * moves.duration).min())
             if moves.kind == DEPOSIT
@@ -351,8 +355,9 @@ class Lines:
 
 
 def spoken(words: Sequence[str], current_settings: dict[str, str]) -> list[str]:
-    """The lines of moves, with the settings before them that differ from `current_settings`, which
-    is updated.
+    """Return the lines of moves, preceded by the settings that differ from `current_settings`.
+
+    Updates `current_settings`.
     """
     lines: list[str] = []
     for word in words:
@@ -361,7 +366,7 @@ def spoken(words: Sequence[str], current_settings: dict[str, str]) -> list[str]:
             if setting.startswith(TRIGGER):
                 lines += setting.splitlines()
                 if CALL in setting:
-                    current_settings.clear()  # the settings that ArcTech leaves are unknown
+                    current_settings.clear()  # ArcTech leaves unknown settings
                 continue
             key = setting[: max(setting.find("="), 8)]
             if current_settings.get(key) != setting:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""LinuxCNC: programs of linear moves (.ngc) for tables and heads with two rotary axes.
+"""Write LinuxCNC programs of linear moves (.ngc) for tables and heads with two rotary axes.
 
-Joint motion is written in axes with the time of each move (G93) or the speed of the linear axes
-(G94), under identity kinematics (M429). Cartesian motion is written in positions on the part and
-rotary axes under the kinematics of the machine (M428), except the rapids between beads. Output,
-machine configuration and confirmations: docs/posts/linuxcnc.md.
+Joint motion is written as axis values with the time of each move (G93) or the speed of the linear
+axes (G94), under identity kinematics (M429). Cartesian motion is written as positions on the part
+and rotary axis values, under the kinematics of the machine (M428). Rapids between beads always use
+axis values. Output, machine configuration and confirmations: docs/posts/linuxcnc.md.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ NAMING = Naming(str.lower, "[a-z]", "a letter", longest=30, spare=3, prefix="am_
 _NO_END = 10**9
 CONTROLLER = Controller(point_bytes=67)
 PENDANT = None  # not for robots
-NO_WIRE = ""  # the speed of the wire can follow the torch speed
+NO_WIRE = ""  # the wire feed can follow the travel speed
 NO_WEAVE = "programs of five-axis machines have no weave"
 NO_TRIGGER = (
     "programs of five-axis machines switch the deposit between blocks only, not ahead of time"
@@ -65,19 +65,19 @@ ON_CONTROLLER = controller_checks(
     "The digital and analogue pins are connected to the process",
     "The feed override is 100 %",
 )
-# pins motion.digital-out, -in and analog-out, counted from 0 there
+# the pins motion.digital-out, -in and analog-out; HAL counts them from 0
 LAST_PIN = 64
-# the work offset that this program sets to zero, for moves of the axes themselves
+# work offset that the program sets to zero for moves in axis values
 MACHINE_OFFSET = "G59.3"
 OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2")
 # the machine stops at the end of every move
 EXACT_STOP = "G61.1"
-# mm/min or deg/min: the interpreter raises slower moves with a programmed time to 0.1, which
-# would be too fast
+# mm/min or deg/min: the interpreter raises slower moves with a programmed time to 0.1, which would
+# be too fast
 SLOWEST = 0.2
-# s: if the input does not come, the program stops for good
+# s; timeout of an input, after which the program stops for good
 LONGEST_WAIT = 10_000_000
-# comments of this kind would be executed
+# LinuxCNC executes comments of this form
 _ACTIVE = re.compile(
     r"(?:abort|debug|error|log\w*|msg|print|probe\w*|py|warning)\s*,", re.IGNORECASE
 )
@@ -92,14 +92,14 @@ _TAKEN = frozenset(
 
 
 def write(program: Program) -> dict[str, bytes]:
-    """The files of a program, name -> content; the same bytes for the same program.
+    """Write the files of a program, name -> content; the same program always gives the same bytes.
 
-    One file name.ngc if its points fit; otherwise name.ngc calls the subs name01.ngc, name02.ngc
-    and so on, each with whole beads. A bead with more points gets its own part.
+    If all points fit into one file, write only name.ngc. Otherwise name.ngc calls the subs
+    name01.ngc, name02.ngc and so on, each with whole beads. An oversized bead gets its own part.
 
-    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, UNSUPPORTED_FRAME, MOVE_TIME, MOVE_SPEED,
-    NO_POSITIONS, NO_TIP_KINEMATICS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, DEPOSIT_WORD, WIRE_OUTPUT, UNREACHABLE,
-    NOTHING_TO_WRITE.
+    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, UNSUPPORTED_FRAME,
+    MOVE_TIME, MOVE_SPEED, NO_POSITIONS, NO_TIP_KINEMATICS, DEPOSIT_OUTPUT, DEPOSIT_INPUT,
+    DEPOSIT_WORD, WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
@@ -140,8 +140,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name of file and sub, in lower case as LinuxCNC looks for it. Raises InputError
-    PROGRAM_NAME with a valid proposal.
+    """Return the name of file and sub in lower case, which LinuxCNC searches for.
+
+    Raises InputError PROGRAM_NAME with a valid proposal.
     """
     return NAMING.checked(name, where)
 
@@ -152,8 +153,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError UNSUPPORTED_SETUP for a set-up that this controller does not support; it
-    supports both motions of five-axis machines.
+    """Reject unsupported set-ups; both motions of five-axis machines are supported.
+
+    Raises InputError UNSUPPORTED_SETUP.
     """
     nc_numbers.refuse_setup("linuxcnc", motion, setup)
     if carried is not None and motion == "cartesian":
@@ -224,8 +226,8 @@ def _refuse_cartesian(program: Program) -> None:
 
 
 def _refuse_tilt(carried: tuple[float, ...]) -> None:
-    """Raises InputError UNSUPPORTED_FRAME if the program's origin, X Y Z RX RY RZ (mm, rad), is
-    tilted on the table.
+    """Raise InputError UNSUPPORTED_FRAME if the program origin, X Y Z RX RY RZ (mm, rad), is tilted
+    relative to the table.
     """
     if max(abs(angle) for angle in carried[3:5]) > 1e-9:
         x, y, z, rx, ry, rz = (*carried[:3], *(math.degrees(angle) for angle in carried[3:]))
@@ -259,13 +261,13 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 
 def _remark(text: str) -> str:
-    """A comment of one line that cannot be executed."""
+    """Return a one-line comment that LinuxCNC does not execute."""
     inside = text.replace("(", "[").replace(")", "]")
     return f"(remark: {inside})" if _ACTIVE.match(inside) else f"({inside})"
 
 
 def _modes(program: Program) -> list[str]:
-    """Return the header: mm, absolute, tool length, exact stop, axes in the machine's own frame."""
+    """Return the header: mm, absolute, tool length, exact stop, axes in the machine frame."""
     zeros = " ".join(f"{name}0" for name in program.axis_names)
     return [
         "G21 G17 G90 G94 G40 G49 G80", "G92.2", EXACT_STOP, f"G43 H{program.tool_frame}",
@@ -284,7 +286,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
             *(["M428", OFFSETS[program.user_frame - 1]] if cartesian else []),
             _through(program),
         ]
-        # immediate at rest
+        # M68 acts immediately, while the machine stands still
         wire = (
             []
             if block.wire is None
@@ -306,7 +308,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         ]
     if isinstance(
         block, Schedule
-    ):  # immediate at rest; within a bead queued until the next move begins
+    ):  # immediate at standstill; within a bead queued until the next move starts
         return [f"M6{7 if block.inside else 8} E{program.schedule_output - 1} Q{block.number}"]
     if isinstance(block, LayerStart):
         return [_remark(f"layer {block.layer}")]
@@ -314,7 +316,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
         return _dwell(block.seconds)
     if isinstance(block, WaitInput):
         return [f"M66 P{block.number - 1} L3 Q{LONGEST_WAIT}"]
-    if isinstance(block, WaitBelow):  # for analogue inputs M66 only reads the value into #5399
+    if isinstance(block, WaitBelow):  # M66 only reads an analogue input into #5399
         sample, loop = f"M66 E{block.number - 1} L0", f"o<cool{block.layer}_{block.bead}>"
         return [
             sample,
@@ -329,8 +331,10 @@ def _instructions(program: Program, block: Block) -> list[str]:
 
 
 def _output(program: Program, on: bool) -> str:
-    """Switch immediately, not queued: the words wait for the end of the motion, so the machine
-    stops before the deposit switches.
+    """Return the command that switches the deposit immediately.
+
+    The command is not queued: it waits for the end of the motion, so the machine stops before the
+    deposit switches.
     """
     if program.nc.deposit_on:
         return program.nc.deposit_on if on else program.nc.deposit_off
@@ -338,12 +342,12 @@ def _output(program: Program, on: bool) -> str:
 
 
 def _through(program: Program) -> str:
-    """Round corners within the tolerance from here on."""
+    """Return the command that starts corner rounding within the tolerance."""
     return f"G64 P{program.nc.tolerance:.5f} Q{program.nc.tolerance:.5f}"
 
 
 def _wire(program: Program) -> str:
-    """Template of the statement that sets the analogue output."""
+    """Return the format string of the statement that sets the analogue output."""
     return f"E{program.nc.wire_output - 1} Q{{}}"
 
 
@@ -356,7 +360,7 @@ def _lines(program: Program, piece_list: Sequence[Piece]) -> list[str]:
 
 
 def _motion(program: Program, run: Run) -> list[str]:
-    """Moves through all points of a run; the line after a run waits for its end."""
+    """Return the moves through all points of a run. The line after a run waits for its end."""
     moves, rows = run.moves, slice(run.start, run.stop)
     names = list(program.axis_names)
     values = nc_numbers.controller_values(moves.joints[rows], program.axis_kinds)
@@ -374,7 +378,7 @@ def _motion(program: Program, run: Run) -> list[str]:
     ahead = len(blocks) - len(values)
     for row in np.flatnonzero(moves.halt[rows]).tolist():
         blocks[ahead + row] = f"{EXACT_STOP}\n{blocks[ahead + row]}\n{_through(program)}"
-    # queued: it takes effect when the next move begins, and corners stay rounded
+    # M67 is queued until the next move starts, so corners stay rounded
     text = nc_numbers.insert_wire_statements(program, moves, blocks, f"M67 {_wire(program)}")
     return [line for block in text for line in block.split("\n")]
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads LinuxCNC programs back: models the controller from the text of the program alone.
+"""Read LinuxCNC programs back: model the controller from the program text alone.
 
-Shares no code with the writer. Accepts the plain lines that a path needs and rejects all others, so
-that unknown text cannot hide motion.
+Shares no code with the writer. Accepts only the lines that a path needs and rejects everything
+else, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _SCHEDULE = re.compile(r"M6([78]) E(\d+) Q(\d+)$")
 _OFFSETS = ("G54", "G55", "G56", "G57", "G58", "G59", "G59.1", "G59.2", "G59.3")
 _FEEDS, _UNITS = {"G93", "G94"}, {"G21", "G90"}
 _PLAIN = {"G17", "G40", "G80"}
-# M words that stop or end a program, change tools or modes, or move a spindle to an angle
+# M words that stop or end a program, change tools or modes, or orient a spindle
 _TAKEN = {
     *[
         "0",
@@ -67,7 +67,7 @@ _TIP_ON, _TIP_OFF = "M428", "M429"
 
 @dataclass
 class _State:
-    """The settings while the programs are followed."""
+    """The modal state while programs are executed."""
 
     files: dict[str, list[tuple[str, str]]]
     track: Track = field(default_factory=Track)
@@ -79,7 +79,7 @@ class _State:
     kinematics: str = ""
     zeroed: set[str] = field(default_factory=set)
     output: str = ""
-    switched: str = ""  # place of the last switch of the output
+    switched: str = ""  # file and line of the last switch of the output
     on_word: str = ""
     off_word: str = ""
     sampled: str = ""
@@ -88,7 +88,7 @@ class _State:
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
-    """All moves of the files in the order of execution, beginning with the one that is not a sub.
+    """Read all moves in the order of execution, starting with the program that is not a sub.
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
@@ -114,7 +114,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _is_sub(name: str, lines: list[tuple[str, str]]) -> bool:
-    """Whether the lines of a program form a single sub with its name."""
+    """Whether the lines of a program form a single sub with the program's name."""
     begin, end = f"O<{name}> SUB", f"O<{name}> ENDSUB"
     if not any(text == begin for _, text in lines):
         return False
@@ -125,7 +125,7 @@ def _is_sub(name: str, lines: list[tuple[str, str]]) -> bool:
 
 
 def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
-    """The place of each line, and its words without comments."""
+    """Return file and line number of each line, and its words without comments."""
     located_lines = []
     for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
         layer = _LAYER.match(line.strip())
@@ -143,7 +143,7 @@ def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
 def _follow(
     name: str, lines: list[tuple[str, str]], state: _State, callers: tuple[str, ...]
 ) -> None:
-    """Execute the lines of a program in order, and those of the subs that it calls."""
+    """Execute the lines of a program in order, and the subs that it calls."""
     if name in callers:
         raise unreadable(name, "it calls itself")
     for where, text in lines:
@@ -163,8 +163,10 @@ def _follow(
 
 
 def _tells_schedule(schedule: re.Match[str], state: _State) -> bool:
-    """Whether an analogue output selects schedules: unlike that of the wire, it is set at rest
-    before corners are rounded; within beads this is already known.
+    """Whether an analogue output selects a schedule.
+
+    Unlike the wire output, a schedule output is set at standstill before corners are rounded.
+    Within a bead, the outputs for schedules are already known.
     """
     if schedule[1] == "8" and state.track.exact:
         state.schedules.add(schedule[2])
@@ -183,12 +185,12 @@ def _carry_out(where: str, text: str, state: _State) -> None:
 
 
 def _zero(zero: re.Match[str], where: str, state: _State) -> None:
-    """Set the offsets of axes to zero."""
+    """Set the axis offsets to zero."""
     state.zeroed = {word[0] for word in zero.string.split()[3:]}
 
 
 def _analogue(output: re.Match[str], where: str, state: _State) -> None:
-    """Set an analogue output, which selects a schedule or the speed of the wire."""
+    """Set an analogue output, which selects a schedule or sets the wire feed."""
     schedule = _SCHEDULE.match(output.string)
     if schedule and _tells_schedule(schedule, state):
         state.track.happens("schedule", float(schedule[2]) + 1.0, float(schedule[3]))
@@ -205,10 +207,9 @@ def _layer(layer: re.Match[str], where: str, state: _State) -> None:
 
 
 def _corners(corners: re.Match[str], where: str, state: _State) -> None:
-    """Set how corners are rounded."""
+    """Set the corner rounding."""
     state.track.exact = corners[0] == "G61.1"
-    # G61 stops only where needed; we never write a point tolerance that differs from the corner
-    # tolerance
+    # G61 stops only where needed; our programs use the same tolerance for corners and points
     is_known = corners[2] and corners[2] == corners[3]
     state.track.rounding = float(corners[2]) if is_known else 0.0 if corners[1] else float("inf")
 
@@ -228,7 +229,7 @@ def _dwell(dwell: re.Match[str], where: str, state: _State) -> None:
 
 
 def _cooled(where: str, text: str, state: _State) -> bool:
-    """Whether a line belongs to a loop that reads an analogue input until it is below a value."""
+    """Whether a line belongs to a loop that waits until an analogue input is below a value."""
     sampled, state.sampled = state.sampled, ""
     loop = _LOOP.match(text)
     if sample := _SAMPLE.match(text):
@@ -257,7 +258,7 @@ def _call(where: str, name: str, state: _State, callers: tuple[str, ...]) -> Non
     if name in state.files:
         _follow(name, state.files[name][1:-1], state, callers)
     else:
-        # a program on the controller; the settings it leaves are unknown
+        # a program on the controller leaves unknown settings
         state.units, state.offset, state.zeroed, state.linear, state.kinematics = (
             set(),
             "",
@@ -317,8 +318,9 @@ def _move(where: str, words: dict[str, str], state: _State) -> None:
 
 
 def _switch(output: re.Match[str], where: str, state: _State) -> None:
-    """Switch the kinematics or the deposit: by the number of an output, or by two M words, the
-    first for on.
+    """Switch the kinematics or the deposit.
+
+    The deposit is switched by an output, or by two M words of which the first switches on.
     """
     text = output.string
     if text in (_TIP_ON, _TIP_OFF):
@@ -343,7 +345,7 @@ def _switch(output: re.Match[str], where: str, state: _State) -> None:
         )
     state.switched = where
     state.output, state.track.on = name, on
-    if output[1] not in ("62", "63"):  # these take effect with the next move instead
+    if output[1] not in ("62", "63"):  # M62 and M63 take effect with the next move instead
         state.track.rests()
     state.track.happens("on" if on else "off", float(output[2]) + 1.0 if output[1] else 0.0, text)
 

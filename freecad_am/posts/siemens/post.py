@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Siemens: SINUMERIK 840D programs of linear blocks, for tables and heads with two rotary axes.
+"""Write SINUMERIK 840D programs of linear blocks for tables and heads with two rotary axes.
 
-Joint motion is written in plain axes with the time of each move (G93) or the speed of the linear
-axes (G94); Cartesian motion in positions and direction vectors of the torch with the transformation
-TRAORI, except the rapids between beads, which stay in plain axes, so that every bead begins with
+Joint motion is written as axis values with the time of each move (G93) or the speed of the linear
+axes (G94). Cartesian motion is written as positions and direction vectors of the torch with the
+transformation TRAORI. Rapids between beads always use axis values, so that every bead begins with
 known turns. Output, controller settings and confirmations: docs/posts/siemens.md.
 """
 
@@ -51,7 +51,7 @@ __all__ = ["read", "write"]
 _NO_END = 10**9
 CONTROLLER = Controller(point_bytes=80)
 PENDANT = None  # not for robots
-NO_WIRE = ""  # the speed of the wire can follow the torch speed
+NO_WIRE = ""  # the wire feed can follow the travel speed
 NO_WEAVE = "programs of five-axis machines have no weave"
 NO_TRIGGER = (
     "programs of five-axis machines switch the deposit between blocks only, not ahead of time"
@@ -66,14 +66,15 @@ ON_CONTROLLER = controller_checks(
     "The PLC handles the words that switch the deposit, and the inputs",
     "The feed override is 100 %",
 )
-# deg; a continuous axis takes the shorter way
+# deg; maximum step of a continuous axis, which rotates the shorter way
 LARGEST_TURN = 180.0 - 0.001
-# address extensions of H words, numbers of inputs the controller reads itself, and of analogue inputs and outputs
+# highest address extension of H words, highest digital input that the controller reads itself, and
+# highest analogue input and output
 LAST_OUTPUT, LAST_INPUT, LAST_ANALOGUE = 99, 32, 8
 
 # M words that stop or end a program, change the tool or set the spindle
 _TAKEN = frozenset(f"M{n}" for n in (0, 1, 2, 3, 4, 5, 6, 17, 19, 30, 40, 41, 42, 43, 44, 45, 70))
-# words of the language that look like a name; trials on the controller find others
+# reserved words that look like names; trials on the controller reveal further words
 _RESERVED = INSTRUCTIONS | frozenset(
     (
         "AND",
@@ -148,13 +149,14 @@ NAMING = Naming(
 
 
 def write(program: Program) -> dict[str, bytes]:
-    """The files of a program, name -> content; the same bytes for the same program.
+    """Write the files of a program, name -> content; the same program always gives the same bytes.
 
-    One main program NAME.MPF if its points fit; otherwise NAME.MPF calls NAME01.SPF, NAME02.SPF and
-    so on, each with whole beads. A bead with more points gets its own part.
+    If all points fit into one file, write only the main program NAME.MPF. Otherwise NAME.MPF calls
+    NAME01.SPF, NAME02.SPF and so on, each with whole beads. An oversized bead gets its own part.
 
-    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_STEP, MOVE_TIME, MOVE_SPEED,
-    NO_POSITIONS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
+    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_STEP, MOVE_TIME,
+    MOVE_SPEED, NO_POSITIONS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, WIRE_OUTPUT, UNREACHABLE,
+    NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
@@ -189,8 +191,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller, upper case. Raises InputError PROGRAM_NAME with the reason and a
-    valid proposal.
+    """Return the name on the controller in upper case.
+
+    Raises InputError PROGRAM_NAME with the reason and a valid proposal.
     """
     return NAMING.checked(name, where)
 
@@ -201,8 +204,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError UNSUPPORTED_SETUP for a set-up that this controller does not support; it
-    supports both motions of five-axis machines.
+    """Reject unsupported set-ups; both motions of five-axis machines are supported.
+
+    Raises InputError UNSUPPORTED_SETUP.
     """
     nc_numbers.refuse_setup("siemens", motion, setup)
 
@@ -251,7 +255,9 @@ def _refuse_schedules(program: Program) -> None:
 
 
 def _refuse_continuous_steps(program: Program) -> None:
-    """Reject moves of half a turn or more of a continuous axis: C=DC(...) takes the shorter way."""
+    """Reject steps of half a turn or more of a continuous axis, because C=DC(...) takes the shorter
+    way.
+    """
     axes = np.flatnonzero(program.continuous)
     degrees = np.degrees(np.concatenate([run.joints for run in program.moves])[:, axes])
     steps = np.abs(np.diff(degrees, axis=0))
@@ -284,8 +290,8 @@ def _own_remarks(program: Program) -> Iterator[str]:
 
 
 def _rpy(bryant: Sequence[float]) -> tuple[str, ...]:
-    """Angles, degrees, of the rotation Rx Ry Rz about Z, the new Y and the new X, as work offsets
-    have them.
+    """Convert the rotation Rx Ry Rz to angles, degrees, about Z, the new Y and the new X, as in
+    work offsets.
     """
     (sa, sb, sc), (ca, cb, cc) = np.sin(bryant).tolist(), np.cos(bryant).tolist()
     across = math.hypot(cb * cc, ca * sc + sa * sb * cc)
@@ -349,7 +355,7 @@ def _output(program: Program, on: bool) -> str:
 
 
 def _offset(number: int) -> str:
-    """The settable work offset: G500 for none, G54 to G57, G505 and on."""
+    """Return the settable work offset: G500 for none, G54 to G57, G505 and higher."""
     return "G500" if number == 0 else f"G{53 + number}" if number <= 4 else f"G{500 + number}"
 
 
@@ -362,7 +368,7 @@ def _lines(program: Program, entries: Sequence[Piece]) -> list[str]:
 
 
 def _motion(program: Program, run: Run) -> list[str]:
-    """Blocks through all points of a run, with an exact stop where the machine halts."""
+    """Return the blocks through all points of a run, with an exact stop where the machine halts."""
     moves, rows = run.moves, slice(run.start, run.stop)
     if moves.interpolation == LINEAR_MOVE:
         assert moves.position is not None and moves.direction is not None
@@ -377,11 +383,11 @@ def _motion(program: Program, run: Run) -> list[str]:
     ahead = len(blocks) - len(words)
     for row in np.flatnonzero(moves.stops[rows]).tolist():
         blocks[ahead + row] = f"G9 {blocks[ahead + row]}"
-    # a synchronized action of one block: it takes effect when the block begins, without a stop
+    # a synchronized action of one block takes effect when the block starts, without a stop
     worded = nc_numbers.insert_wire_statements(
         program, moves, blocks, "DO " + _WIRE.format(program.nc.wire_output, "{}")
     )
-    # the time and the wire speed of one block would apply to all blocks compressed with it
+    # COMPCAD would apply the time and wire feed of one block to all blocks that it merges
     by_speed = all(feed.startswith(nc_numbers.PATH) for feed in run.words[rows])
     if program.nc.compress and by_speed and len(worded) == len(blocks):
         return [blocks[0], "COMPCAD", *blocks[1:], "COMPOF"]
@@ -389,9 +395,9 @@ def _motion(program: Program, run: Run) -> list[str]:
 
 
 def _axis_words(program: Program, joints: Array) -> tuple[str, Array]:
-    """Return the template and the values of the axes, with continuous axes in [0, 360).
+    """Return the format string and the axis values, with continuous axes in [0, 360).
 
-    The controller turns them the shorter way.
+    The controller rotates continuous axes the shorter way.
     """
     values = nc_numbers.controller_values(joints, program.axis_kinds)
     continuous = np.array(program.continuous)
@@ -408,7 +414,7 @@ def _axis_words(program: Program, joints: Array) -> tuple[str, Array]:
 
 
 def _file(lines: list[str]) -> bytes:
-    """The lines with block numbers, except remarks."""
+    """Number all lines except remarks."""
     numbered, number = [], 0
     for line in lines:
         if line.startswith(";"):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads SINUMERIK programs back: models the controller from the text of the program alone.
+"""Read SINUMERIK programs back: model the controller from the program text alone.
 
-Shares no code with the writer. Accepts the plain blocks that a path needs and rejects all others,
-so that unknown text cannot hide motion.
+Shares no code with the writer. Accepts only the blocks that a path needs and rejects everything
+else, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _FEEDS = {"G93", "G94"}
 _UNITS = {"G710", "G90"}
 _COMPRESS = {"COMPCAD": True, "COMPCURV": True, "COMPON": True, "COMPOF": False}
 _HARMLESS = re.compile(r"(?:G17|G40|G9|ORIVECT|STOPRE|FGROUP\(X,Y,Z\))$")
-# rounding of corners with the jerk limit and feed forward that belong to it
+# corner rounding, with the jerk limit and feed forward that it requires
 _CORNERS = re.compile(r"G60|G64\d?|SOFT|BRISK|FFWON|FFWOF")
 _SMOOTH, _HARD = {"SOFT", "FFWON"}, {"BRISK", "FFWOF"}
 _PAIRED = {"G642": _SMOOTH, "G64": _HARD}
@@ -46,8 +46,8 @@ _DWELL = re.compile(rf"G4 F({_NUMBER})$")
 
 @dataclass
 class _State:
-    """The settings while the programs are followed. switching: words set to a number that switch
-    the deposit.
+    """The modal state while programs are executed. switching: H words and outputs that switch the
+    deposit.
     """
 
     files: dict[str, list[tuple[str, str]]]
@@ -65,13 +65,13 @@ class _State:
     waiting: bool = False
     shape: Shape | None = None
     output: str = ""
-    switched: str = ""  # place of the last switch of the output
+    switched: str = ""  # file and line of the last switch of the output
     on_word: str = ""
     off_word: str = ""
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
-    """All moves of the files in the order of execution, beginning with the one main program.
+    """Read all moves in the order of execution, starting with the main program.
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
@@ -84,8 +84,8 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         name.upper().rpartition(".")[0]: _blocks(name, content) for name, content in files.items()
     }
     words = {text for blocks in programs.values() for _, text in blocks}
-    # an H word that is 0 somewhere switches the deposit; others select schedules, which begin
-    # with 1
+    # an H word that is 0 somewhere switches the deposit; other H words select schedules, which
+    # count from 1
     state = _State(
         programs, switching={text.partition("=")[0] for text in words if text.endswith("=0")}
     )
@@ -97,7 +97,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _blocks(file: str, content: bytes) -> list[tuple[str, str]]:
-    """The position of each block and its words, without comments and block numbers."""
+    """Return file and line of each block, and its words without comments and block numbers."""
     blocks, last_number = [], 0
     for number, line in enumerate(content.decode("latin-1").upper().split("\n"), 1):
         text = line.partition(";")[0].strip() if not _LAYER.match(line) else line.strip()
@@ -113,7 +113,7 @@ def _blocks(file: str, content: bytes) -> list[tuple[str, str]]:
 
 
 def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
-    """Execute the blocks of a program in order, and those of the programs that it calls."""
+    """Execute the blocks of a program in order, and the programs that it calls."""
     end = "M17" if callers else "M30"
     blocks = state.files[name]
     if not blocks or blocks[-1][1] != end or name in callers:
@@ -210,7 +210,7 @@ def _words(where: str, text: str, state: _State, callers: tuple[str, ...]) -> No
 
 
 def _mode(token: str, state: _State) -> bool:
-    """Set a mode; return whether the word is one."""
+    """Set a mode; return whether the word is a mode."""
     if token in _FEEDS:
         state.feed = token
     elif token in _UNITS:
@@ -295,7 +295,7 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
     ):
         raise unreadable(where, Text("{!r} is not understood", token))
     else:
-        # a program on the controller; the settings it leaves are unknown
+        # a program on the controller leaves unknown settings
         state.units, state.offset, state.group, state.linear, state.corners = (
             set(),
             "",
@@ -308,8 +308,9 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
 
 
 def _switch(where: str, token: str, output: re.Match[str], state: _State) -> None:
-    """Switch the deposit: by an output or H word with its value, or by two M words, the first for
-    on.
+    """Switch the deposit.
+
+    An output or H word switches by its value. Of two M words, the first switches on.
     """
     if output[5]:
         state.on_word = state.on_word or token

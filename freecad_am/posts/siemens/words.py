@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Words of SINUMERIK that may stand alone in a block: they look like a subprogram call but are
-none.
-"""
+"""SINUMERIK words that may stand alone in a block: they look like subprogram calls but are not."""
 
 from __future__ import annotations
 

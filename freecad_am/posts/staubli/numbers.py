@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Numbers of a VAL 3 application: joint values, frames, motion descriptors."""
+"""Format the numbers of a VAL 3 application: joint values, frames, motion descriptors."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from ...core.types import Array
 from ..parts import place
 
 ANGLE_DECIMALS, LENGTH_DECIMALS = 5, 4
-# mm/s and deg/s beyond any arm, for descriptors without a limit
+# mm/s and deg/s; limit above any arm's speed, for descriptors without a limit
 UNLIMITED = "99999"
-# mm/s, and percent of the nominal joint speed
+# mm/s, and percent of the nominal joint speed: minimum values that are written
 SLOWEST, LEAST_PERCENT = 0.01, 0.001
 
 
 def degrees(joints: Array) -> Array:
-    """Return joint values as the text has them.
+    """Convert joint values to rounded degrees.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ def degrees(joints: Array) -> Array:
 
 
 def frames(position: Array, rotation: Array) -> Array:
-    """Return poses as the text has them; the rotation is Rx Ry Rz.
+    """Convert poses to rounded VAL 3 values; the rotation is Rx Ry Rz.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def frames(position: Array, rotation: Array) -> Array:
 
 
 class Descriptors:
-    """Motion descriptors of the moves of a program, built block by block in the order of motion."""
+    """Build motion descriptors of a program's moves, block by block in the order of motion."""
 
     def __init__(self, program: Program) -> None:
         self.cartesian, self.blend = program.motion == "cartesian", program.blend
@@ -74,7 +74,9 @@ class Descriptors:
         self.before: Array | None = None
 
     def __call__(self, moves: Moves) -> Sequence[str]:
-        """The attributes of one descriptor per move. Raises InputError MOVE_SPEED or JOINT_SPEED."""
+        """Return the attributes of one descriptor per move. Raises InputError MOVE_SPEED or
+        JOINT_SPEED.
+        """
         displayed = degrees(moves.joints)
         blends = self._blends(moves)
         if moves.interpolation == LINEAR_MOVE:
@@ -97,8 +99,8 @@ class Descriptors:
         return words
 
     def _percent(self, moves: Moves, steps: Array) -> Array:
-        """Percent of the nominal joint speed, (n,), at which the slowest axis finishes its step in
-        the time of the move.
+        """Return the percent (n,) of the nominal joint speeds that give the moves their planned
+        times.
         """
         share = (np.abs(steps) / self.nominal).max(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -120,8 +122,10 @@ class Descriptors:
         return np.where(share > 0.0, np.clip(percent, LEAST_PERCENT, 100.0), 100.0)
 
     def _blends(self, moves: Moves) -> list[str]:
-        """How each move ends. Corners within a bead are rounded by at most half its shortest move,
-        except at halts; the program waits at its end.
+        """Return the blend attributes of each move.
+
+        Corners within a bead are rounded by at most half its shortest move, except at halts. The
+        program waits at the end of a bead.
         """
         distance = 0.0
         if moves.kind == DEPOSIT:

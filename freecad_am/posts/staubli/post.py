@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Stäubli: VAL 3 applications of joint moves, or of linear moves with the speed held at the deposition point.
+"""Write Stäubli VAL 3 applications of joint moves, or of linear moves at a constant speed at the
+deposition point.
 
-With the part on the robot linear moves have a fixed target, the deposition point, and each its own
-tool: the point of the part that moves there (Chalvin 2019, III.A, "jauges outil").
+With the part on the robot, linear moves have a fixed target, the deposition point. Each move has
+its own tool, the point of the part that moves to the target (Chalvin 2019, III.A, "jauges outil").
 Output, controller settings and confirmations: docs/posts/staubli.md.
 """
 
@@ -47,7 +48,7 @@ from . import numbers
 from .numbers import ANGLE_DECIMALS, LENGTH_DECIMALS
 from .read import read
 
-# ---- The text of the files: project (.pjx), data (.dtx) and programs (.pgx), UTF-8 with BOM
+# ---- File formats: project (.pjx), data (.dtx) and programs (.pgx), UTF-8 with BOM
 
 _HEAD = '<?xml version="1.0" encoding="utf-8"?>\n'
 _XSI = 'xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance"'
@@ -91,14 +92,14 @@ _FRAME = " ".join(
 
 
 def _project_file(name: str, programs: Sequence[str], libraries: dict[str, str]) -> bytes:
-    """Return the project of an application.
+    """Return the project file of an application.
 
     Parameters
     ----------
     name : str
         Name of the application.
     programs : sequence of str
-        Names of its programs.
+        Names of the application's programs.
     libraries : dict[str, str]
         Path of each library by alias.
 
@@ -115,7 +116,9 @@ def _project_file(name: str, programs: Sequence[str], libraries: dict[str, str])
 
 
 def _data_file(arrays: dict[str, tuple[str, list[str]]]) -> bytes:
-    """The data of an application: type and the attributes of each value, by name."""
+    """Return the data file of an application. arrays: type and value attributes of each array, by
+    name.
+    """
     return _file(
         _DATA.format(data="".join(_data_element(name, *arrays[name]) for name in sorted(arrays)))
     )
@@ -131,7 +134,7 @@ def _data_element(name: str, kind: str, values: list[str]) -> str:
 
 
 def _program_file(name: str, lines: Iterable[str]) -> bytes:
-    """A program with the given lines."""
+    """Return the file of a program with the given lines."""
     lines = [f"  {line}\n" for line in lines]
     variables = _LOCALS if any("l_nI" in line for line in lines) else ""
     return _file(_PROGRAM.format(name=name, locals=variables, code="".join(lines)))
@@ -142,7 +145,7 @@ def _file(body: str) -> bytes:
 
 
 def _joint_rows(values: Array) -> list[str]:
-    """Return the attributes of joint values.
+    """Format joint values as attributes.
 
     Parameters
     ----------
@@ -152,25 +155,25 @@ def _joint_rows(values: Array) -> list[str]:
     Returns
     -------
     list of str
-        n texts.
+        n strings.
     """
     return _rows(_JOINTS, values)
 
 
 def _frame_rows(values: Array, attributes: str) -> list[str]:
-    """Return the attributes of points, frames or tools.
+    """Format points, frames or tools as attributes.
 
     Parameters
     ----------
     values : (n, 6) array
         Coordinates, mm, and angles, degrees.
     attributes : str
-        Further attributes to add to each.
+        Further attributes to append to each.
 
     Returns
     -------
     list of str
-        n texts.
+        n strings.
     """
     return _rows(f"{_FRAME} {attributes}", values)
 
@@ -180,14 +183,14 @@ def _rows(template: str, values: Array) -> list[str]:
 
 
 def _remark(text: str) -> list[str]:
-    """A comment in plain characters, on as many lines as it needs."""
+    """Wrap a comment in ASCII characters to lines of at most 80 characters."""
     decomposed = unicodedata.normalize("NFKD", text.replace("ß", "ss"))
     plain = decomposed.encode("ascii", "ignore").decode("ascii").replace("]]>", "")
     return [f"// {line}" for line in textwrap.wrap(plain, 80)]
 
 
 def _delay(seconds: float) -> list[str]:
-    """The lines of a wait, to 0.001 s; none for 0 s."""
+    """Return the line of a wait, to 0.001 s; empty for 0 s."""
     return [f"delay({max(seconds, 0.001):.3f})"] if seconds > 0.0 else []
 
 
@@ -199,7 +202,6 @@ __all__ = ["read", "write"]
 NO_ANALOGUE = (
     "links of analogue inputs differ between controllers, and the post staubli cannot know them"
 )
-# why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(point_bytes=250, whole_beads=True)
 PENDANT = Pendant("Stäubli", ("Rx", "Ry", "Rz"), MOVING_XYZ)
 NO_WIRE = "VAL 3 sets outputs while earlier moves are still in the queue"
@@ -219,9 +221,9 @@ ON_CONTROLLER = controller_checks(
 )
 AXES = 6
 SETUPS = ("part-on-robot", "tool-on-robot")
-PART = "prog"  # alias of the part that is loaded
+PART = "prog"  # alias of the loaded part
 
-# words of the language that cannot be aliases of a library; case does not matter in file names
+# reserved words that cannot be library aliases; file names are case-insensitive
 _RESERVED = frozenset(
     (
         "AND",
@@ -275,13 +277,16 @@ call {alias}:start()"""
 
 
 def write(program: Program) -> dict[str, bytes]:
-    """The files of a program, path with slashes -> content; the same bytes for the same program.
+    """Write the files of a program, path with slashes -> content; the same program always gives the
+    same bytes.
 
-    One application NAME/ if its points fit; otherwise NAME/ loads NAME/NAME01/, NAME/NAME02/ and so
-    on in turn, each with whole beads. The duration of the first move is not used.
+    If all points fit into one application, write only NAME/. Otherwise NAME/ loads NAME/NAME01/,
+    NAME/NAME02/ and so on in turn, each with whole beads. The duration of the first move is not
+    used.
 
-    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, NO_JOINT_SPEED, JOINT_SPEED,
-    MOVE_SPEED, NO_POSITIONS, BEAD_TOO_LONG, NO_WIRE_OUTPUT, UNREACHABLE, NOTHING_TO_WRITE.
+    Raises InputError: PROGRAM_NAME, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS,
+    NO_JOINT_SPEED, JOINT_SPEED, MOVE_SPEED, NO_POSITIONS, BEAD_TOO_LONG, NO_WIRE_OUTPUT,
+    UNREACHABLE, NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
@@ -294,7 +299,8 @@ def write(program: Program) -> dict[str, bytes]:
     if size([entry for group in groups for entry in group])[0] <= program.max_points:
         (entries,) = packed(groups, program.max_points, _NO_END, unbroken)
         return _application(program, name, name, remarks, entries)
-    # one point is reserved for the retract from the last bead: the next part is loaded away from it
+    # one point is reserved for the retract from the last bead, so that the next part is loaded
+    # there
     part_pieces = move_retracts(packed(groups, program.max_points - 1, _NO_END, unbroken))
     names = NAMING.parts(name, len(part_pieces))
     load = [
@@ -309,12 +315,13 @@ def write(program: Program) -> dict[str, bytes]:
     return files
 
 
-_NO_END = 10**9  # programs are short: moves are in the data
+_NO_END = 10**9  # no line limit: moves are in the data, so programs are short
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller. Raises InputError PROGRAM_NAME with the reason and a valid
-    proposal.
+    """Return the name on the controller.
+
+    Raises InputError PROGRAM_NAME with the reason and a valid proposal.
     """
     return NAMING.checked(name, where)
 
@@ -325,8 +332,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError UNSUPPORTED_SETUP for a set-up that this controller does not support; it
-    supports both motions.
+    """Reject unsupported set-ups; both motions are supported.
+
+    Raises InputError UNSUPPORTED_SETUP.
     """
     if setup not in SETUPS:
         raise InputError(
@@ -440,7 +448,10 @@ def _files(
 
 
 def _motion(program: Program, run: Run, arrays: dict[str, tuple[str, list[str]]]) -> list[str]:
-    """Lines through all points of a run, with a stop at the last; the points and descriptors go to the arrays."""
+    """Return the lines through all points of a run, with a stop at the last point.
+
+    Appends points and motion descriptors to the arrays.
+    """
     moves, rows = run.moves, slice(run.start, run.stop)
     if moves.interpolation == JOINT_MOVE:
         pattern, array, kind = "movej(jPath[{point}],tCarried,mPath[{speed}])", "jPath", "jointRx"
@@ -482,7 +493,7 @@ def _motion(program: Program, run: Run, arrays: dict[str, tuple[str, list[str]]]
 def _appended(
     arrays: dict[str, tuple[str, list[str]]], name: str, kind: str, values: list[str]
 ) -> int:
-    """The index of the first of the values added to an array."""
+    """Append values to an array and return the index of the first appended value."""
     array_values = arrays.setdefault(name, (kind, []))[1]
     array_values += values
     return len(array_values) - len(values)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads VAL 3 applications back, file by file: models the controller from the text of the program
-alone.
+"""Read VAL 3 applications back, file by file: model the controller from the program text alone.
 
-Shares no code with the writer. Accepts the plain instructions that a path needs and rejects all
-others, so that unknown text cannot hide motion.
+Shares no code with the writer. Accepts only the instructions that a path needs and rejects
+everything else, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -34,7 +33,7 @@ _DECIMALS = re.compile(r"\.([0-9]+) ")
 
 @dataclass(frozen=True)
 class Data:
-    """One array of an application: its type and the attributes of its values, by index."""
+    """An array of an application: its type, and the attributes of its values by index."""
 
     kind: str
     values: tuple[dict[str, str], ...]
@@ -42,7 +41,9 @@ class Data:
 
 @dataclass(frozen=True)
 class Application:
-    """A folder with a project: its programs' statements with their line numbers, its data and its libraries' paths."""
+    """A folder with a project: statements with line numbers by program, data, and paths of
+    libraries.
+    """
 
     folder: str
     programs: dict[str, list[tuple[int, str]]]
@@ -51,7 +52,7 @@ class Application:
 
 
 def applications(files: dict[str, bytes]) -> dict[str, Application]:
-    """The applications by folder. Raises InputError UNREADABLE_PROGRAM."""
+    """Parse the applications by folder. Raises InputError UNREADABLE_PROGRAM."""
     projects = [file for file in sorted(files) if file.endswith(".pjx")]
     by_folder = {_folder(file): _application(file, files) for file in projects}
     listed = sum(1 + len(by_folder[folder].programs) for folder in by_folder) + len(projects)
@@ -100,7 +101,7 @@ def _parsed(file: str, files: dict[str, bytes]) -> ElementTree.Element:
         return ElementTree.fromstring(files[file])
     except ElementTree.ParseError as error:
         raise unreadable(file, Text("it is not well-formed XML ({})", error)) from None
-    except (LookupError, ValueError):  # another encoding is declared
+    except (LookupError, ValueError):  # the file declares another encoding
         raise unreadable(file, "it is not text in UTF-8") from None
 
 
@@ -141,14 +142,14 @@ def _data(file: str, files: dict[str, bytes]) -> dict[str, Data]:
 
 
 def numbers(data: Data, names: Sequence[str], where: str) -> tuple[Array, float]:
-    """Return attributes of values as numbers.
+    """Parse attributes of values as numbers.
 
     Parameters
     ----------
     data : Data
         The values.
     names : sequence of str
-        Names of the attributes; absent ones are 0.
+        Names of the attributes; missing attributes are 0.
     where : str
         Position of the data, for messages.
 
@@ -157,7 +158,7 @@ def numbers(data: Data, names: Sequence[str], where: str) -> tuple[Array, float]
     values : (n, names) array
         The numbers.
     digits : float
-        Half of the last digit written.
+        Half of the last digit.
 
     Raises
     ------
@@ -173,7 +174,7 @@ def numbers(data: Data, names: Sequence[str], where: str) -> tuple[Array, float]
 
 
 def rotations(degrees: Array) -> Array:
-    """Return the rotations Rx Ry Rz.
+    """Compute the rotations Rx Ry Rz.
 
     Parameters
     ----------
@@ -196,7 +197,7 @@ def rotations(degrees: Array) -> Array:
 
 
 def poses(values: Array) -> Array:
-    """Return poses of six numbers each.
+    """Convert coordinates and angles to poses.
 
     Parameters
     ----------
@@ -218,7 +219,7 @@ def poses(values: Array) -> Array:
 
 
 def unreadable(where: str, why: str) -> InputError:
-    """The error for text that is not understood."""
+    """Return the error for text that is not understood."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)
 
 
@@ -227,7 +228,7 @@ _UNLIMITED = 99999.0
 
 @dataclass(frozen=True, eq=False)
 class Step:
-    """Moves of one statement: letter j or l, and the rows of the arrays that they use."""
+    """The moves of one statement: letter j or l, and the array rows that they use."""
 
     app: Application
     where: str
@@ -241,7 +242,7 @@ class Step:
 
 
 class _Values:
-    """The values of the arrays, each read once."""
+    """The parsed values of arrays; each array is parsed once."""
 
     def __init__(self) -> None:
         self._read: dict[tuple[str, str, tuple[str, ...]], tuple[Array, float]] = {}
@@ -258,27 +259,29 @@ class _Values:
         return self._read[key][0]
 
     def digits(self, columns: tuple[str, ...]) -> float:
-        """Half of the last digit of the values in these columns, 0 if none were read. A single
-        value, such as the only frame of a part, is an exact setting: it is used only if no array of
-        several values has these columns.
+        """Return half of the last digit of the values in these columns; 0 if none were read.
+
+        A single value, such as the only frame of a part, is an exact setting. It counts only if no
+        array of several values has these columns.
         """
         halves = self._half_digits.get(columns, {})
         return halves.get(True, halves.get(False, 0.0))
 
     def six(self, app: Application, name: str) -> Array:
-        """(n, 6) x y z rx ry rz, mm and degrees."""
+        """Return x y z rx ry rz (n, 6), mm and degrees."""
         return np.hstack((self(app, name, _LENGTHS), self(app, name, _ANGLES)))
 
     def father(self, app: Application, name: str) -> str:
-        """The common father of an array's values; '' if they differ."""
+        """Return the common father of an array's values; '' if the fathers differ."""
         key = (app.folder, name)
         if key not in self._fathers:
             self._fathers[key] = {value.get("fatherId", "") for value in app.data[name].values}
         return next(iter(self._fathers[key])) if len(self._fathers[key]) == 1 else ""
 
     def frame(self, app: Application, name: str, where: str) -> Array:
-        """The frame (4, 4) of the points of an array; it must be fixed in the world, and the arm
-        must keep its configuration.
+        """Return the frame (4, 4) of the points of an array.
+
+        The frame must be fixed in the world, and the arm must keep its configuration.
         """
         for value in app.data[name].values:
             if any(
@@ -296,7 +299,7 @@ class _Values:
         )
 
     def carrier(self, app: Application, name: str, where: str) -> Array:
-        """(4, 4) the father of the tools of an array: the flange, or one other tool on the flange."""
+        """Return the father (4, 4) of the tools of an array: the flange, or one tool on the flange."""
         if self.father(app, name) == _FLANGE:
             return np.eye(4)
         return self._one(
@@ -332,7 +335,9 @@ class _Values:
 
 
 def _corners(values: _Values, app: Application, descriptor: str, step: Step) -> Array:
-    """Distances (n,), mm, from their ends within which moves may round corners, 0 where they stop."""
+    """Return the distances (n,), mm, from the move ends within which corners may be rounded; 0 at
+    stops.
+    """
     leave, reach = values(app, descriptor, _CORNERS)[step.speed].T
     words = np.array([value.get("blend", "") for value in app.data[descriptor].values])[step.speed]
     full = values(app, descriptor, _ACCELERATION)[step.speed]
@@ -349,7 +354,7 @@ _FLANGE = "flange[0]"
 
 
 def moves_of(steps: list[Step]) -> ReadMoves:
-    """The moves of all steps, in order; without events between them."""
+    """Convert the moves of all steps, in order, without events."""
     total = sum(len(step.point) for step in steps)
     values = _Values()
     joints, point = np.full((total, 6), np.nan), np.full((total, 6), np.nan)
@@ -438,7 +443,7 @@ _NUMBER = re.compile(r".*%[IQ](\d+)$")
 
 @dataclass
 class _Run:
-    """The state while the programs are followed."""
+    """The state while programs are executed."""
 
     applications: dict[str, Application]
     steps: list[Step] = field(default_factory=list)
@@ -455,7 +460,7 @@ class _Run:
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
-    """All moves of the files in the order of execution, beginning with `start` of the outermost application.
+    """Read all moves in the order of execution, starting with `start` of the outermost application.
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
@@ -504,7 +509,7 @@ def _check_stop(app: Application, output: str) -> None:
 
 
 def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, str], ...]) -> None:
-    """Execute the statements of a program in order, and those of the programs that it calls."""
+    """Execute the statements of a program in order, and the programs that it calls."""
     caller = (app.folder, name)
     if name not in app.programs or caller in callers:
         raise unreadable(
@@ -544,7 +549,7 @@ def _call(
     where: str,
     callers: tuple[tuple[str, str], ...],
 ) -> None:
-    """Follow a program of the application or of a library; note one elsewhere on the controller."""
+    """Execute a program of the application or of a library; record a call of any other program."""
     called = app if alias is None else _library(app, alias, run, where)
     if called is not None:
         _follow(called, name, run, callers)
@@ -566,7 +571,7 @@ def _load(
     run: _Run,
     where: str,
 ) -> None:
-    """Load a part; the program must stop if that fails, and the robot must not deposit meanwhile."""
+    """Load a part; the program must stop on failure, and the robot must not deposit meanwhile."""
     next_statements = [next(statements, (0, ""))[1] for _ in range(3)]
     if not next_statements[0].startswith("popUpMsg(") or next_statements[1:] != ["return", "endIf"]:
         raise unreadable(where, "the program does not stop if a part cannot be loaded")
@@ -583,7 +588,7 @@ def _load(
 
 
 def _library(app: Application, alias: str, run: _Run, where: str) -> Application | None:
-    """The application of an alias; None if it is elsewhere on the controller."""
+    """Return the application of an alias; None if it is elsewhere on the controller."""
     if alias not in app.libraries:
         raise unreadable(where, Text("{} is not a library of the project", alias))
     if (app.folder, alias) in run.loaded:
@@ -625,7 +630,7 @@ def _link(app: Application, name: str, letter: str, where: str) -> str:
 
 
 def _number(link: str, where: str) -> float:
-    """The number of an input or output, from 1."""
+    """Return the number of an input or output, from 1."""
     number = _NUMBER.match(link)
     if number is None:
         raise unreadable(where, Text("{!r} has no number", link))
@@ -669,7 +674,7 @@ def _move(app: Application, line: str, counter: Integers, run: _Run, where: str)
 
 
 def _indices(index: str | None, counter: Integers) -> Integers | None:
-    """The rows that an index selects for each value of the counter; None for a counter outside its
+    """Return the rows that an index selects for each counter value; None for a counter outside its
     loop.
     """
     if index is None or index.isdigit():

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Universal Robots: URScript of joint moves by time, or of beads in process moves (movep) with the tool on the robot.
+"""Write URScript of joint moves by time, or of beads in process moves (movep) with the tool on the
+robot.
 
-Rapids are joint moves that stop at every point, in either. A script is one file: parts are
-functions in it, for URScript cannot load another file. Output, controller settings and
+In both cases rapids are joint moves that stop at every point. A script is one file, because
+URScript cannot load another; parts are functions in this file. Output, controller settings and
 confirmations: docs/posts/ur.md.
 """
 
@@ -49,27 +50,28 @@ from ..refusals import (
 )
 from .read import INSTRUCTIONS, read
 
-DECIMALS = 7  # of rad and m
-# largest share of the shorter move at a point: overlapping blends make the controller skip points
+DECIMALS = 7  # decimals of rad and m
+# maximum blend radius as a fraction of the shorter adjacent move; the controller skips points if
+# blends overlap
 LARGEST_SHARE = 0.4
-MICRON = 1e-6  # m, the step of a blend radius
-# s: the controller's own step, and the shortest time that is written
+MICRON = 1e-6  # m; resolution of a blend radius
+# s: controller cycle, and minimum time that is written
 CYCLE, MIN_TIME_S = 0.002, 0.001
-# mm/s: a path speed is written to 0.001 mm/s
+# mm/s: range of path speeds, which are written to 0.001 mm/s
 SLOWEST, FASTEST = 0.01, 1000.0
-# mm on the flange: candidate tool points, to which blends of joint moves refer if the robot
-# carries the part
+# mm on the flange: candidate tool points, to which blends of joint moves refer if the robot carries
+# the part
 TOOL_POINTS = np.array(
     [[0, 0, 0], [200, 0, 0], [-200, 0, 0], [0, 200, 0], [0, -200, 0], [0, 0, 200]], dtype=np.float64
 )
 
 
 class Words:
-    """The time or speed and the blend of each move, built block by block, and the tool point of the
+    """Build time or speed and blend of each move, block by block, and choose the tool point for the
     blends.
 
-    tool_point: mm on the flange, if the robot carries the part; None if the tip itself is the tool.
-    Raises InputError MOVE_TIME, MOVE_SPEED, BLEND_RADIUS.
+    tool_point: mm on the flange if the robot carries the part; None if the tip itself is the tool.
+    Raises InputError MOVE_TIME, MOVE_SPEED or BLEND_RADIUS.
     """
 
     def __init__(self, program: Program) -> None:
@@ -82,7 +84,7 @@ class Words:
         }
 
     def __call__(self, moves: Moves) -> list[str]:
-        """`t=..., r=...` of joint moves, `v=..., r=...` of straight ones."""
+        """Return `t=..., r=...` for joint moves and `v=..., r=...` for linear moves."""
         if moves.interpolation == LINEAR_MOVE:
             texts = [f"v={speed:.6f}" for speed in (_speeds(moves) * 0.001).tolist()]
         else:
@@ -93,7 +95,7 @@ class Words:
 
 
 def _ways(program: Program) -> tuple[Array | None, Array]:
-    """Return the tool point, and its path length (n,) mm on each move of a bead."""
+    """Return the tool point and its path length (n,), mm, on each move of a bead."""
     moves = program.moves
     if not program.holds_part:  # the tip is the tool
         return None, np.concatenate([run.speed * run.duration for run in moves])
@@ -109,8 +111,8 @@ def _ways(program: Program) -> tuple[Array | None, Array]:
 
 
 def _radii(program: Program, tip_steps: Array) -> Array:
-    """Blend radii (n,), m, at the end of each move, 0 where it stops: a share of the shorter of the
-    two adjacent moves.
+    """Return the blend radii (n,), m, at the move ends: a fraction of the shorter adjacent move, 0
+    at stops.
     """
     moves = program.moves
     stops = np.concatenate([run.stops for run in moves])
@@ -135,7 +137,7 @@ def _radii(program: Program, tip_steps: Array) -> Array:
 
 
 def _times(moves: Moves) -> Array:
-    """(n,) s. Raises InputError MOVE_TIME."""
+    """Return the times (n,), s. Raises InputError MOVE_TIME."""
     seconds = np.where(np.isfinite(moves.duration), moves.duration, 0.0)
     if moves.kind != RAPID and seconds.min() < CYCLE:
         raise InputError(
@@ -165,7 +167,7 @@ def _speeds(moves: Moves) -> Array:
 
 
 def poses(position: Array, rotation: Array) -> Array:
-    """Return poses as the program has them.
+    """Convert poses to URScript values.
 
     Parameters
     ----------
@@ -189,7 +191,6 @@ __all__ = ["read", "write"]
 
 
 AXES = 6
-# why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(
     point_bytes=140, configurations=False, flange=True, least_step=2.0001e-3, least_blend=2.6e-3
 )
@@ -209,10 +210,10 @@ ON_CONTROLLER = controller_checks(
     "Payload is set, safety limits allow the speeds, and the speed slider is at 100 %",
     "The deposit output switches the process",
 )
-LAST_PIN = 16  # digital inputs and outputs: 1 to 8 are the standard ones 0 to 7, 9 to 16 the configurable ones
+LAST_PIN = 16  # digital inputs and outputs: 1 to 8 are the standard pins 0 to 7, 9 to 16 the configurable pins
 LAST_ANALOGUE = 2
 
-# words of the language, and library functions that our programs or others on the controller use
+# reserved words, and library functions that programs on the controller use
 _RESERVED = INSTRUCTIONS | frozenset(
     (
         "AND",
@@ -304,15 +305,16 @@ _INDENT = "  "
 
 
 def write(program: Program) -> dict[str, bytes]:
-    """The script of a program, file name -> content; the same bytes for the same program.
+    """Write the script of a program, file name -> content; the same program always gives the same
+    bytes.
 
-    One file: a function of the program's name, which calls functions inside it, NAME01, NAME02 and
-    so on, where it has more than max_points. The first move has no planned duration and takes
-    `FIRST_TIME`.
+    The file contains one function with the program's name. If the program exceeds max_points, this
+    function calls inner functions NAME01, NAME02 and so on. The first move has no planned duration
+    and takes `FIRST_TIME`.
 
-    Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, MOVE_TIME, MOVE_SPEED,
-    BLEND_RADIUS, NO_POSITIONS, DEPOSIT_OUTPUT, DEPOSIT_INPUT, NO_WIRE_OUTPUT, ANALOGUE_INPUT, UNREACHABLE,
-    NOTHING_TO_WRITE.
+    Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS,
+    MOVE_TIME, MOVE_SPEED, BLEND_RADIUS, NO_POSITIONS, DEPOSIT_OUTPUT, DEPOSIT_INPUT,
+    NO_WIRE_OUTPUT, ANALOGUE_INPUT, UNREACHABLE, NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
@@ -337,8 +339,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name of file and function. Raises InputError PROGRAM_NAME with the reason and a valid
-    proposal.
+    """Return the name of file and function.
+
+    Raises InputError PROGRAM_NAME with the reason and a valid proposal.
     """
     return NAMING.checked(name, where)
 
@@ -349,8 +352,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for a set-up that this controller does not
-    support.
+    """Reject a set-up that this controller does not support.
+
+    Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP.
     """
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
@@ -417,7 +421,7 @@ def _own_remarks(program: Program, names: Sequence[str]) -> Iterator[str]:
 
 
 def _frames(program: Program, tool_point: Array | None) -> list[str]:
-    """The tool, and in Cartesian programs the frame of the positions."""
+    """Return the lines that set the tool, and in Cartesian programs the frame of the positions."""
     tool = program.carried if tool_point is None else (*tool_point.tolist(), 0.0, 0.0, 0.0)
     lines = [f"set_tcp({_pose(tool)})"]
     if program.motion == "cartesian":
@@ -426,7 +430,7 @@ def _frames(program: Program, tool_point: Array | None) -> list[str]:
 
 
 def _pose(six: Six | None) -> str:
-    """X Y Z mm, RX RY RZ rad (Rx Ry Rz) as a pose of URScript."""
+    """Convert X Y Z mm, RX RY RZ rad (Rx Ry Rz) to a URScript pose."""
     x, y, z, rx, ry, rz = six or (0.0,) * 6
     rotation = MOVING_XYZ.rotations(np.array([[rx, ry, rz]]))
     return "p" + _JOINTS % tuple(poses(np.array([[x, y, z]]), rotation)[0].tolist())
@@ -476,7 +480,7 @@ def _lines(entries: Sequence[Piece]) -> list[str]:
 
 
 def _motion(run: Run) -> list[str]:
-    """Moves through all points of a run."""
+    """Return the moves through all points of a run."""
     moves, rows = run.moves, slice(run.start, run.stop)
     if moves.interpolation == LINEAR_MOVE:
         pattern, values = f"movep({_POSE_ON_PLATFORM}, a=1.2, %s)", _poses(moves, rows)

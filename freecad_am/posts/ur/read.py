@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads URScript back: models the controller from the text of the program alone.
+"""Read URScript back: model the controller from the program text alone.
 
-Shares no code with the writer and evaluates nothing: each line must be one of the few that a path
-needs. All others are rejected, so that unknown text cannot hide motion.
+Shares no code with the writer and evaluates nothing. Accepts only the lines that a path needs and
+rejects everything else, so that unknown text cannot hide motion.
 """
 
 from __future__ import annotations
@@ -76,14 +76,14 @@ class _Line:
 
 @dataclass
 class _Function:
-    """A function: its first line, its lines, and its inner functions by name."""
+    """A function: its first line number, its lines, and its inner functions by name."""
 
     begins: int
     lines: list[_Line] = field(default_factory=list)
     inside: dict[str, _Function] = field(default_factory=dict)
 
 
-# of each move: pose, joints, time, speed, radius
+# columns of each move: pose, joints, time, speed, radius
 _COLUMNS = {
     "pose": slice(0, 6),
     "joints": slice(6, 12),
@@ -97,7 +97,7 @@ _NONE = ("nan",) * 6
 
 @dataclass
 class _Run:
-    """The state while the functions are followed, packed. decimals: the fewest in each column."""
+    """The state while functions are executed. decimals: the fewest decimals in each column."""
 
     file: str
     numbers: array[float] = field(default_factory=lambda: array("d"))
@@ -116,12 +116,15 @@ class _Run:
 
 
 def unreadable(where: str, why: str) -> InputError:
-    """The error for a text that is not understood."""
+    """Return the error for text that is not understood."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
-    """All moves of the script in the order of execution. Raises InputError UNREADABLE_PROGRAM, naming file and line."""
+    """Read all moves of the script in the order of execution.
+
+    Raises InputError UNREADABLE_PROGRAM, naming file and line.
+    """
     if len(files) != 1:
         raise unreadable("program", Text("{} files, but exactly one script is needed", len(files)))
     ((file, content),) = files.items()
@@ -136,7 +139,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
 
 
 def _parsed(file: str, content: bytes) -> tuple[str, _Function]:
-    """The function of a script, with its name."""
+    """Return the name of the script's function, and the function."""
     try:
         lines = content.decode("ascii").split("\n")
     except UnicodeDecodeError:
@@ -174,7 +177,7 @@ def _follow(
     run: _Run,
     callers: tuple[str, ...],
 ) -> None:
-    """Execute the lines of a function in order, and those of the functions that it calls."""
+    """Execute the lines of a function in order, and the functions that it calls."""
     lines = iter(function.lines)
     functions = {**functions, **function.inside}
     for line in lines:
@@ -241,14 +244,14 @@ _INSTRUCTIONS: dict[re.Pattern[str], Callable[[re.Match[str], _Run, str], None]]
 
 
 def _loop(lines: Iterator[_Line], where: str) -> None:
-    """Read a waiting loop: it has one line, which takes time."""
+    """Consume a waiting loop, whose only line must take time."""
     inside, end = (next(lines, _Line(0, "")).text for _ in range(2))
     if not re.fullmatch(r"  sleep\(0\.\d*[1-9]\d*\)", inside) or end != "end":
         raise unreadable(where, "only a loop that waits is understood")
 
 
 def _move(text: str, run: _Run, where: str) -> bool:
-    """Execute a move, or a setting that moves need before them; return whether the line is one."""
+    """Execute a move, or a setting that must precede moves; return whether the line is either."""
     columns_read: tuple[str, ...]
     if move := _BY_JOINTS.match(text):
         columns_read = (*_NONE, *move.groups()[:6], move[7], "nan", move[8])
@@ -322,12 +325,12 @@ def _moves(run: _Run) -> ReadMoves:
 
 
 def _decimals(texts: tuple[str, ...]) -> int:
-    """The fewest decimals of numbers; a large value without numbers."""
+    """Return the fewest decimals of any number; a large value without numbers."""
     return 99 if texts[0] == "nan" else min(len(text) - text.index(".") - 1 for text in texts)
 
 
 def _poses(values: Array) -> Array:
-    """(n, 4, 4) mm of m and rotation vectors (n, 6), by Rodrigues' formula."""
+    """Convert positions, m, and rotation vectors (n, 6) to poses (n, 4, 4), mm, by Rodrigues' formula."""
     angle = np.linalg.norm(values[:, 3:], axis=1)
     x, y, z = (values[:, 3:] / np.where(angle > 0.0, angle, 1.0)[:, None]).T
     none = np.zeros(len(values))

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Yaskawa: INFORM jobs (.JBI) of joint moves, or of beads in linear moves with the tool on the robot, all to pulses.
+"""Write Yaskawa INFORM jobs (.JBI) of joint moves, or of beads in linear moves with the tool on the
+robot, with positions in pulses.
 
-Rapids are joint moves that stop at every point, in either. Pulses need no controller option and
-define the arm's configuration and turns; the machine file has the pulses per degree, which depend
-on the robot. Output, controller settings and confirmations: docs/posts/yaskawa.md.
+In both cases rapids are joint moves that stop at every point. Pulses need no controller option and
+define the arm's configuration and turns. Pulses per degree depend on the robot and come from the
+machine file. Output, controller settings and confirmations: docs/posts/yaskawa.md.
 """
 
 from __future__ import annotations
@@ -54,12 +55,12 @@ from ..refusals import (
 )
 from .read import read
 
-AXES, BASE = "SLURBT", "BS1"  # of a robot, and the group of the track that carries it
+AXES, BASE = "SLURBT", "BS1"  # robot axes, and the motion group of the track that carries the robot
 END_OF_LINE = "\r\n"
 
 
 def pulses(program: Program, joints: Array) -> Integers:
-    """Return joint values as whole pulses.
+    """Convert joint values to whole pulses.
 
     Parameters
     ----------
@@ -145,20 +146,19 @@ def job(program: Program, name: str, head: Sequence[str], entries: Sequence[Piec
 __all__ = ["read", "write"]
 
 NO_ANALOGUE = "the instruction that waits for an analogue input depends on options of the controller, which the post yaskawa cannot know"
-# why the speed of the wire cannot follow the torch speed
 CONTROLLER = Controller(point_bytes=75, external=True, positioner="ST1", pulses=True)
 PENDANT = Pendant("Yaskawa", ("Rx", "Ry", "Rz"), FIXED_XYZ)
 NO_WIRE = "INFORM sets AOUT between two moves when it reaches the line, and rounded corners shift that moment"
 NO_WEAVE = ""  # linear moves can be woven
 NO_TRIGGER = "it is unconfirmed how an INFORM job switches an output ahead of a point"
 refuse_process = refuse_no_process
-LAST_WEAVE = 255  # files of weaving conditions
-NO_SCHEDULE: dict[str, str] = {}  # schedules are supported in every way
+LAST_WEAVE = 255  # highest number of weaving condition files
+NO_SCHEDULE: dict[str, str] = {}  # all methods of selecting schedules are supported
 LAST_GROUP, LAST_SCHEDULE, LAST_FILE = (
     512,
     255,
     1000,
-)  # groups of eight outputs; files of arc conditions
+)  # groups of eight outputs, schedules, and arc condition files
 MOVE_LINE = re.compile(rb"MOV[JL] ")
 ON_CONTROLLER = controller_checks(
     "Pulses per degree in the machine file match the controller, and zero pulses are zero degrees",
@@ -169,11 +169,11 @@ ON_CONTROLLER = controller_checks(
 MOST_EXTERNAL = 6
 MOST_LINES = 9999
 OUTPUTS = 4096
-LONGEST_WAIT = 600.0  # s of one TIMER
-# percent of the maximum joint speed: its step, and the lowest value in a bead, accurate to 10 %
+LONGEST_WAIT = 600.0  # s; longest wait of one TIMER
+# percent of the maximum joint speed: resolution, and minimum in a bead (accurate to 10 %)
 STEP_PERCENT, LEAST_PERCENT = 0.01, 0.05
-LEVELS = 8  # of rounded corners
-# what a unit of path speed is in mm/s, and its decimals
+LEVELS = 8  # number of corner-rounding levels
+# path speed units in mm/s, and their decimals
 UNITS = {"mm/s": (1.0, 1), "cm/min": (1.0 / 6.0, 0), "mm/min": (1.0 / 60.0, 0)}
 FASTEST = 1500.0  # mm/s
 _COMMENT = 32
@@ -182,14 +182,16 @@ NAMING = Naming(str.upper, "[A-Z]", "a letter", longest=32, spare=4, prefix="AM_
 
 
 def write(program: Program) -> dict[str, bytes]:
-    """The jobs of a program, file name -> content; the same bytes for the same program.
+    """Write the jobs of a program, file name -> content; the same program always gives the same
+    bytes.
 
-    One job if the program fits; otherwise NAME.JBI calls NAME01.JBI and so on. Jobs are cut between
-    beads unless a bead is longer than a job. The duration of the first move is not used.
+    If the program fits, write one job. Otherwise NAME.JBI calls NAME01.JBI and so on. Jobs are
+    split between beads; only an oversized bead is split between its moves. The duration of the
+    first move is not used.
 
-    Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS, NO_PULSES, NO_SPEED_UNIT,
-    NO_JOINT_SPEED, JOINT_SPEED, MOVE_SPEED, DEPOSIT_OUTPUT, NO_WIRE_OUTPUT, NO_ANALOGUE_INPUT, UNREACHABLE,
-    NOTHING_TO_WRITE.
+    Raises InputError: PROGRAM_NAME, REMOTE_TCP, UNSUPPORTED_SETUP, UNSUPPORTED_AXES, ENDLESS_AXIS,
+    NO_PULSES, NO_SPEED_UNIT, NO_JOINT_SPEED, JOINT_SPEED, MOVE_SPEED, DEPOSIT_OUTPUT,
+    NO_WIRE_OUTPUT, NO_ANALOGUE_INPUT, UNREACHABLE, NOTHING_TO_WRITE.
     """
     name = program_name(program.name, "name")
     _refuse(program)
@@ -226,8 +228,9 @@ def write(program: Program) -> dict[str, bytes]:
 
 
 def program_name(name: str, where: str) -> str:
-    """The name on the controller, upper case. Raises InputError PROGRAM_NAME with the reason and a
-    valid proposal.
+    """Return the name on the controller in upper case.
+
+    Raises InputError PROGRAM_NAME with the reason and a valid proposal.
     """
     return NAMING.checked(name, where)
 
@@ -238,8 +241,9 @@ def refuse_setup(
     external: tuple[str, ...] = (),
     carried: tuple[float, ...] | None = None,
 ) -> None:
-    """Raises InputError REMOTE_TCP or UNSUPPORTED_SETUP for a set-up that this controller does not
-    support.
+    """Reject a set-up that this controller does not support.
+
+    Raises InputError REMOTE_TCP, UNSUPPORTED_SETUP or COORDINATED_MOTION.
     """
     if motion == "cartesian" and setup == "part-on-robot":
         raise InputError(
@@ -261,8 +265,8 @@ def refuse_setup(
 
 
 def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
-    """Raises InputError COORDINATED_MOTION for a motion that is not supported with external axes of
-    the given kinds.
+    """Raise InputError COORDINATED_MOTION for Cartesian motion with external axes of the given
+    kinds.
     """
     if motion != "cartesian":
         return
@@ -335,7 +339,7 @@ def _own_remarks(program: Program, off: float) -> Iterator[str]:
 
 
 def _meaning(program: Program) -> Iterator[str]:
-    """The meaning of the numbers in a job, which its words do not state."""
+    """Yield the units of pulses and speeds, which the job's words do not state."""
     external = [f"E{number + 1}" for number in range(len(program.external_kinds))]
     for axis, slides, count in zip(
         [*AXES, *external], program.slides.tolist(), program.pulses_per_degree, strict=True
@@ -346,14 +350,14 @@ def _meaning(program: Program) -> Iterator[str]:
 
 
 def _remark(text: str) -> list[str]:
-    """A comment on as many lines as it needs."""
+    """Wrap a comment to the width of comment lines."""
     return [f"'{line}" for line in textwrap.wrap(plain(text), _COMMENT)]
 
 
 class _Words:
-    """The words after the position of each move, built in the order of motion.
+    """Build the words after the position of each move, in the order of motion.
 
-    off: largest relative error of the speed of a joint move of a bead, from the steps of VJ.
+    off: maximum relative speed error of joint moves in beads, due to the resolution of VJ.
     """
 
     def __init__(self, program: Program) -> None:
@@ -380,9 +384,7 @@ class _Words:
 
 
 def _percent(program: Program, moves: Moves, steps: Array, is_first: bool) -> Array:
-    """Percent of the maximum joint speeds, (n,), at which the slowest axis finishes its step in the
-    time of the move.
-    """
+    """Return the percent (n,) of the maximum joint speeds that give the moves their planned times."""
     share = (np.abs(steps) / np.array(program.max_speed)).max(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
         percent = 100.0 * share / moves.duration
@@ -449,7 +451,7 @@ def _instructions(program: Program, block: Block) -> list[str]:
 
 
 def _timer(seconds: float) -> list[str]:
-    """The lines of a wait, to 0.01 s; none for 0 s."""
+    """Return the lines of a wait, to 0.01 s; empty for 0 s."""
     hundredths = max(round(100.0 * seconds), int(seconds > 0.0))
     max_hundredths = round(100.0 * LONGEST_WAIT)
     full_waits, remainder = divmod(hundredths, max_hundredths)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads INFORM jobs back: models the controller from the text of the program alone.
+"""Read INFORM jobs back: model the controller from the program text alone.
 
-Shares no code with the writer. The pulses per degree and the unit of V come from remarks in the
-text. Accepts the plain instructions that a path needs and rejects all others, so that unknown text
+Shares no code with the writer. Pulses per degree and the unit of V come from remarks in the text.
+Accepts only the instructions that a path needs and rejects everything else, so that unknown text
 cannot hide motion.
 """
 
@@ -50,15 +50,17 @@ _LAYER = re.compile(r"'layer (\d+)$")
 _PER_UNIT = re.compile(r"'pulses/(deg [SLURBT]|(?:deg|mm) E[1-7]) (-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)$")
 _UNIT = re.compile(r"'V in (mm/s|cm/min|mm/min)$")
 _MM_PER_S = {"mm/s": 1.0, "cm/min": 10.0 / 60.0, "mm/min": 1.0 / 60.0}
-_ROBOT_AXES = 6  # axes of a robot
-_LINE = 34  # characters of a remark with its sign, plus one
+_ROBOT_AXES = 6  # number of robot axes
+_LINE = 34  # maximum characters of a remark including its sign, plus one
 
 
 @dataclass
 class _Job:
-    """One job: its tool, its positions (n, 6 + track + station) in pulses, and its lines from NOP
-    to END with the number of the first; whether its group has a track, and its station, '' for
-    none.
+    """A job: its tool, its positions (n, 6 + track + station) in pulses, and its lines from NOP to
+    END.
+
+    first_line: number of the first line. track: whether the motion group has a track. station: ''
+    for none.
     """
 
     file: str
@@ -72,9 +74,11 @@ class _Job:
 
 @dataclass
 class _Run:
-    """The state while the jobs are followed. moves: share, V, corner level and tool, and pulses of
-    each. external: track and station of all moves, None before the first. per_unit: pulses per degree
-    or mm of axes, and slides the axes in mm.
+    """The state while jobs are executed.
+
+    moves: fraction, V, corner level, tool and pulses of each move. external: track and station of
+    all moves; None before the first move. per_unit: pulses per degree or mm of each axis. slides:
+    axes in mm.
     """
 
     moves: array[float] = field(default_factory=lambda: array("d"))
@@ -91,23 +95,23 @@ class _Run:
     external: tuple[bool, str] | None = None
     output: str = ""
     on: bool = False
-    weaves: str = ""  # start of the current weave
+    weaves: str = ""  # file and line where the current weave starts
 
     def happens(self, kind: str, *value: float | str, digits: float = 0.0) -> None:
         """Record an event before the next move."""
         self.events.append(Event(len(self.deposit), kind, value, digits))
 
 
-_WORDS = 4  # of a move besides its pulses
+_WORDS = 4  # number of values of a move before its pulses
 
 
 def unreadable(where: str, why: str) -> InputError:
-    """The error for a text that is not understood."""
+    """Return the error for text that is not understood."""
     return InputError("UNREADABLE_PROGRAM", where, "{}; write the program again", why)
 
 
 def read(files: dict[str, bytes]) -> ReadMoves:
-    """All moves of the files in the order of execution, beginning with the job that no other one calls.
+    """Read all moves in the order of execution, starting with the job that no other job calls.
 
     Raises InputError UNREADABLE_PROGRAM, naming file and line.
     """
@@ -142,7 +146,7 @@ def _moves(run: _Run) -> ReadMoves:
     per_unit = np.array([run.per_unit[axis] for axis in names])
     slides = np.array([axis in run.slides for axis in names])
     pulses = table[:, _WORDS:]
-    if slides.any():  # the track comes before the station in a job, independent of its axis number
+    if slides.any():  # in a job, the track precedes the station, whatever its axis number
         track, column = pulses[:, _ROBOT_AXES], int(np.argmax(slides))
         pulses = np.insert(np.delete(pulses, _ROBOT_AXES, axis=1), column, track, axis=1)
     values, per_mm = pulses / per_unit, float(np.abs(per_unit[slides]).min(initial=np.inf))
@@ -171,7 +175,7 @@ def _moves(run: _Run) -> ReadMoves:
 
 
 def _job(file: str, content: bytes) -> tuple[str, _Job]:
-    """The name and the content of one job."""
+    """Return name and content of a job."""
     try:
         lines = content.decode("ascii").split("\r\n")
     except UnicodeDecodeError:
@@ -241,7 +245,7 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
 
 
 def _external_pulses(file: str, letters: str, lines: list[str], line_index: int) -> Array:
-    """Pulses (n, k) of a track or station at the positions, on the lines after `line_index`."""
+    """Return the pulses (n, k) of a track or station on the lines after `line_index`."""
     rows: list[list[float]] = []
     for number, line in enumerate(lines):
         point = _EXTERNAL[letters].match(line)
@@ -259,12 +263,12 @@ def _external_pulses(file: str, letters: str, lines: list[str], line_index: int)
 
 
 def _axes(count: int) -> list[str]:
-    """Names of the axes of the robot and of a station."""
+    """Return the axis names of robot and station."""
     return [*"SLURBT", *(f"E{number + 1}" for number in range(count - _ROBOT_AXES))]
 
 
 def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...]) -> None:
-    """Execute the lines of a job in order, and those of the jobs that it calls."""
+    """Execute the lines of a job in order, and the jobs that it calls."""
     job = jobs[name]
     if name in callers:
         raise unreadable(job.file, "it calls itself")
@@ -285,7 +289,7 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
 
 
 def _check_units(job: _Job) -> None:
-    """Check that a job says what its numbers mean. Raises InputError UNREADABLE_PROGRAM."""
+    """Check that a job states its units. Raises InputError UNREADABLE_PROGRAM."""
     units = [ratio[1].split() for line in job.lines if (ratio := _PER_UNIT.match(line))]
     named = sorted(axis for _, axis in units)
     slides = [axis for unit, axis in units if unit == "mm"]
@@ -359,7 +363,7 @@ _INSTRUCTIONS: dict[re.Pattern[str], Callable[[re.Match[str], _Run, str], None]]
 
 
 def _remark(text: str, run: _Run, where: str) -> None:
-    """Read a remark: the meaning of the numbers, equal in all jobs, or the start of a layer."""
+    """Read a remark: units, which must be equal in all jobs, or the start of a layer."""
     if layer := _LAYER.match(text):
         run.happens("layer", float(layer[1]))
     elif ratio := _PER_UNIT.match(text):
@@ -379,7 +383,7 @@ def _remark(text: str, run: _Run, where: str) -> None:
 
 
 def _numbers(move: re.Match[str]) -> tuple[str | None, str | None]:
-    """The numbers of the track and station positions in a move."""
+    """Return the numbers of the track and station positions in a move."""
     return move[2] or None, move[3] or None
 
 
