@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The macro interface: every stage as a function on document objects.
+"""Macro interface: functions that make, change and export the stages of a document.
 
     import FreeCAD as App
     import freecad_am.api as am
@@ -13,11 +13,11 @@
     program = am.make_program(doc, joint_path, name="hemisphere")
     am.export(program, "out")
 
-Parameters are the keys of the job file with `_` for nested keys (`nozzle_half_angle`, `seam_step`).
-Numbers are in mm, deg, mm/s and s, texts are quantities such as "360 mm/min", poses are six numbers
-x y z RX RY RZ. Each function is one undo step. Errors are `core.issues.InputError` and
-`InfeasibleError`; a function that raises leaves nothing behind. What a function alone needs is
-imported when it is called: most of the time of a small job is imports.
+Parameters are the job file's keys, with `_` for nested keys (`nozzle_half_angle`, `seam_step`).
+Numbers are in mm, deg, mm/s and s. Strings are quantities such as "360 mm/min". A pose is six
+numbers, x y z RX RY RZ. Each function is one undo step. Functions raise `core.issues.InputError` or
+`InfeasibleError`; a function that raises leaves the document unchanged. Functions import rarely
+used modules when called, because imports dominate the run time of a small job.
 """
 
 from __future__ import annotations
@@ -137,8 +137,8 @@ def make_cell(
 ) -> Any:
     """Make a cell: machine, setup, platform and nozzle.
 
-    A robot other than the default one gets a suitable deposition point and branch, as a new job
-    does, unless they are given.
+    A robot other than the default robot gets a suitable deposition point and branch, as in a new
+    job, unless `values` sets them.
 
     Parameters
     ----------
@@ -147,10 +147,10 @@ def make_cell(
     label : str, optional
         Label of the cell.
     parameters : CellParameters or None, optional
-        All parameters of the cell; None for the defaults.
+        Complete cell parameters; None for the defaults.
     **values : Any
-        Single parameters by key. external="urdf" uses the robot of the machine's URDF with
-        its track and positioner.
+        Individual parameters by key. external="urdf" uses the robot, track and positioner of
+        the machine's URDF.
 
     Returns
     -------
@@ -160,7 +160,7 @@ def make_cell(
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
@@ -191,32 +191,32 @@ def make_toolpath(
     fitting: ScanParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Make the layers and beads of a feature.
+    """Make the toolpath of one or more features: their layers and beads.
 
     Parameters
     ----------
     doc : App.Document
         The document.
     feature : App.DocumentObject or list
-        The feature, or all features.
+        The feature, or a list of features in print order.
     cell : App.DocumentObject, optional
-        The cell; its nozzle is kept clear.
+        The cell; planning keeps its nozzle clear of the part.
     label : str, optional
         Label of the toolpath.
     further : sequence of Any, optional
-        Features to print after it in the same program.
+        Features to print after `feature` in the same program.
     sequence : str, optional
-        "feature" for their order, "height" for the lowest layer first.
+        "feature" to print feature by feature, "height" to print the lowest layer first.
     processes : sequence of ProcessParameters, optional
-        Process of each feature, for the settings that differ.
+        Process of each feature; only settings that differ from `process` take effect.
     scan : App.DocumentObject, optional
-        From `make_scan`: the surface that the first layers are fitted to.
+        Scan from `make_scan` to which the first layers are fitted.
     process : ProcessParameters or None, optional
-        All parameters of the process; None for the defaults.
+        Complete process parameters; None for the defaults.
     fitting : ScanParameters or None, optional
-        How layers are fitted to the scan; None for the defaults.
+        Complete parameters for fitting layers to the scan; None for the defaults.
     **values : Any
-        Single parameters by key.
+        Individual parameters by key.
 
     Returns
     -------
@@ -226,13 +226,13 @@ def make_toolpath(
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
     >>> am.make_toolpath(doc, doc.Feature)
     """
-    if "bead_width" in values:  # it is meant, even where it is the default
+    if "bead_width" in values:  # an explicit bead width applies to the fill, even at its default
         values.setdefault("fill_width", "bead_width")
     features = list(feature) if isinstance(feature, (list, tuple)) else [feature]
     main, *later = [*(features or [None]), *checked_list(further, "further")]
@@ -260,7 +260,7 @@ def make_joint_path(
     joints: JointParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Plan the joint values of a toolpath in a cell.
+    """Plan the joint path of a toolpath in a cell.
 
     Parameters
     ----------
@@ -273,20 +273,20 @@ def make_joint_path(
     label : str, optional
         Label of the joint path.
     joints : JointParameters or None, optional
-        All parameters of the plan; None for the defaults.
+        Complete planning parameters; None for the defaults.
     **values : Any
-        Single parameters by key.
+        Individual parameters by key.
 
     Returns
     -------
     App.DocumentObject
-        The joint path. A sound job that cannot be carried out has the status 'infeasible'
-        and its issues.
+        The joint path. If the job is valid but infeasible, its status is 'infeasible' and its
+        issues give the reasons.
 
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
@@ -306,7 +306,7 @@ def make_program(
     program: ProgramParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Write the controller's files of a joint path, read back and checked.
+    """Write the controller files of a joint path, read them back and verify them.
 
     Parameters
     ----------
@@ -317,12 +317,12 @@ def make_program(
     label : str, optional
         Label of the program.
     name : str, optional
-        Name on the controller; empty for the label.
+        Program name on the controller; empty for the label.
     program : ProgramParameters or None, optional
-        All parameters of the program; None for the defaults.
+        Complete program parameters; None for the defaults.
     **values : Any
-        Single parameters by key. Without `motion` the program has the motion that its post
-        writes: joint where it writes both.
+        Individual parameters by key. Without `motion`, the post's motion type is used: joint
+        motion if the post supports both types.
 
     Returns
     -------
@@ -332,7 +332,7 @@ def make_program(
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
@@ -360,16 +360,16 @@ def inspect(
     doc : App.Document
         The document.
     planned : App.DocumentObject
-        A feature, a toolpath, or an object with a shape or mesh; the points are registered
-        to it.
+        A feature, a toolpath, or an object with a shape or mesh. The points are registered to
+        this object.
     file : str
-        Points in CSV, TXT, XYZ or ASC, or vertices of STL, OBJ or PLY.
+        File of points (CSV, TXT, XYZ, ASC), or a mesh (STL, OBJ, PLY) whose vertices are used.
     label : str, optional
         Label of the inspection.
     inspection : InspectionParameters or None, optional
-        All parameters of the inspection; None for the defaults.
+        Complete inspection parameters; None for the defaults.
     **values : Any
-        Single parameters by key.
+        Individual parameters by key.
 
     Returns
     -------
@@ -379,7 +379,7 @@ def inspect(
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
@@ -418,11 +418,11 @@ def make_all(
     bead_spacing: Any = None,
     platform_diameter: Any = None,
 ) -> tuple[Any, ...]:
-    """Make all stages of a part at their defaults, in one step and one group.
+    """Make all stages of a part with default parameters, in one undo step and one group.
 
-    A robot other than the default one gets a suitable deposition point and branch, and another
-    branch if the job needs it. With `setup="tool-on-robot"` it gets a positioner if the torch
-    would lean more than max_from_vertical.
+    A robot other than the default robot gets a suitable deposition point and branch; the branch
+    changes if the job needs another branch. With `setup="tool-on-robot"`, the robot gets a
+    positioner if the torch would lean more than max_from_vertical.
 
     Parameters
     ----------
@@ -431,58 +431,58 @@ def make_all(
     source : App.DocumentObject
         The part.
     faces : sequence of str, optional
-        Names of its faces or edges; empty for all.
+        Names of the part's faces or edges; empty for all.
     kind : str, optional
-        revolution, surface (a wall of the source's faces on the substrate), developable
-        (source and further solids on the substrate, on its base_faces), solid (source and
-        further solids) or curves (edges of the source, named in faces).
+        revolution, surface (wall on the substrate, from the source's faces), developable
+        (source and further solids on base_faces of the substrate), solid (source and further
+        solids) or curves (edges of the source, named in faces).
     layers : str, optional
-        Kind of the layers of solids; empty for planes.
+        Layer kind of solids; empty for planes.
     substrate : App.DocumentObject, optional
         The object below the part.
     further : sequence of Any, optional
         More objects to print.
     base_faces : sequence of str, optional
-        Faces of the hub on which solids grow; empty for those that they touch.
+        Hub faces on which solids grow; empty for the faces that the solids touch.
     name : str, optional
-        Name of the program; empty for a proposal.
+        Program name; empty for a proposed name.
     machine : str, optional
-        Id or file of the machine; empty for the default one.
+        Id or file of the machine; empty for the default machine.
     cell : str, optional
         Path of a saved cell, which replaces the machine.
     post : str, optional
         Post that writes the program, if the machine's controller reads its format; empty
-        for the machine's own.
+        for the machine's default post.
     process : Mapping[str, Any] or None, optional
-        Parameters of the toolpath by key.
+        Toolpath parameters by key.
     then : Sequence[Mapping[str, Any]], optional
-        Features to print after it, in this order and in one program, each with the keys of
-        the first one (`source`, `kind`, `layers`, `faces` ...).
+        Features to print after the first feature, in this order and in the same program. Each
+        has the keys of the first feature (`source`, `kind`, `layers`, `faces` ...).
     mend : float, optional
-        Diameter of the largest hole of a mesh to close, mm; 0 for the default.
+        Maximum diameter of a mesh hole to close, mm; 0 for the default.
     setup : str, optional
-        Set-up of the cell; empty for the usual one.
+        Cell set-up; empty for the default set-up.
     max_from_vertical : float or str, optional
-        Largest angle of the torch to the vertical; None for the default.
+        Maximum angle between torch and vertical; None for the default.
     layers_otherwise : str, optional
-        Replaces the `layers` of the feature if they are infeasible.
+        Layer kind to use if `layers` is infeasible.
     layer_height : float or str, optional
-        Layer height of the feature; None for the default.
+        Feature layer height; None for the default.
     bead_spacing : float or str, optional
         Bead spacing of solids and cladding; None for the default.
     platform_diameter : float or str, optional
-        Diameter of the platform; None fits it to the first layer.
+        Platform diameter; None to fit the platform to the first layer.
 
     Returns
     -------
     tuple of App.DocumentObject
-        Cell, feature, the features of `then`, toolpath, joint path and program. No program
-        is made without a post for this setup, or with an infeasible toolpath or joint path.
+        Cell, feature, the features of `then`, toolpath, joint path and program. The program is
+        missing if no post supports the set-up, or if the toolpath or joint path is infeasible.
 
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
@@ -563,7 +563,7 @@ def make_all(
 
 
 def _suited_path(doc: Any, toolpath: Any, cell: Any, setup: str, saved: bool) -> Any:
-    """The joint path of a new job, in a cell that suits it unless that is a saved one."""
+    """Make the joint path of a new job. Adapt the cell to the job unless the cell was saved."""
     if setup or not (saved or is_held_apart(cell, toolpath)):
         suit(cell, toolpath)
     path = make_joint_path(doc, toolpath, cell)
@@ -573,12 +573,12 @@ def _suited_path(doc: Any, toolpath: Any, cell: Any, setup: str, saved: bool) ->
 
 
 def read_cell(file: str) -> CellParameters:
-    """Read a cell from a file of its own, as `export_cell` writes it and jobs name it.
+    """Read a cell file, as written by `export_cell` and named in jobs.
 
     Parameters
     ----------
     file : str
-        Path of the file; paths in it are relative to it.
+        Path of the cell file; paths inside the file are relative to its folder.
 
     Returns
     -------
@@ -588,7 +588,7 @@ def read_cell(file: str) -> CellParameters:
     Raises
     ------
     InputError
-        About a key of the file.
+        If a key of the file is invalid.
 
     Examples
     --------
@@ -600,7 +600,10 @@ def read_cell(file: str) -> CellParameters:
 
 
 def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
-    """A feature at its defaults by the keys that `make_all` takes. Raises InputError BAD_VALUE for another key."""
+    """Make a feature with default parameters from the keys that `make_all` takes.
+
+    Raises InputError BAD_VALUE for any other key.
+    """
     allowed = (
         "source",
         "kind",
@@ -641,27 +644,27 @@ def _feature_of_job(doc: Any, given_keys: Mapping[str, Any]) -> Any:
 
 @one_thread()
 def place(path: Any, cell: Any = None, *, parameters: Any = None, **values: Any) -> Any:
-    """Find poses for the part of a joint path or a toolpath, in its cell or in another one.
+    """Search for part poses for a joint path or toolpath, in its own cell or another cell.
 
-    The candidates form a box of poses about the present one. Each has the share of points that
-    the machine serves, the least margin, the time, and the clearance of the arm. The document
-    does not change.
+    The candidate poses form a box about the current pose. Each candidate is rated by the fraction
+    of points that the machine can reach, the minimum margin, the time and the arm clearance. The
+    document does not change.
 
     Parameters
     ----------
     path : App.DocumentObject
         The joint path or toolpath.
     cell : App.DocumentObject, optional
-        Another cell; None for its own.
+        Another cell; None for the cell of `path`.
     parameters : PlaceParameters, optional
-        All parameters; None for the defaults.
+        Complete placement parameters; None for the defaults.
     **values : Any
-        Single parameters by key, as in the job section `place`.
+        Individual parameters by key, as in the job section `place`.
 
     Returns
     -------
     core.placement.place.Placed
-        The poses; `best` is None if no pose serves.
+        The rated poses; `best` is None if no pose is feasible.
 
     Raises
     ------
@@ -682,7 +685,7 @@ def place(path: Any, cell: Any = None, *, parameters: Any = None, **values: Any)
 
 
 def result(obj: Any) -> Any:
-    """Return the data of a stage; it is read from the document, nothing is computed.
+    """Return the stored result of a stage, without computing it.
 
     Parameters
     ----------
@@ -708,7 +711,7 @@ def result(obj: Any) -> Any:
 
 
 def issues(obj: Any) -> tuple[Issue, ...]:
-    """Return the findings about a stage.
+    """Return the issues of a stage.
 
     Parameters
     ----------
@@ -734,16 +737,16 @@ def issues(obj: Any) -> tuple[Issue, ...]:
 
 
 def stages_of(doc: Any, kind: str = "") -> list[Any]:
-    """Return the stages of a document, inputs first.
+    """Return the stages of a document, inputs before dependent stages.
 
-    Stages that a FreeCAD without the workbench saved as plain objects become stages again.
+    If FreeCAD saved stages as plain objects because the workbench was missing, restore them.
 
     Parameters
     ----------
     doc : App.Document
         The document.
     kind : str, optional
-        Kind of the stages; empty for all.
+        Stage kind to return; empty for all.
 
     Returns
     -------

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Started by the launcher: looks whether this Python serves, and runs the command in the same process.
+"""Entry point of the launcher: check this Python and run the command in the same process.
 
-Where FreeCAD, numpy, scipy or yaml is missing it hands over to the next Python of FREECAD_AM_NEXT. Runs in plain
-Python and in freecadcmd, which imports a script as a module, may run it twice after an exception and ends with 0
-then: nothing is let out of here.
+If FreeCAD, numpy, scipy or yaml is missing, continue in the next Python of FREECAD_AM_NEXT. The
+script runs in plain Python and in freecadcmd. freecadcmd imports a script as a module, and after an
+exception may run it again and exit with 0, so no exception may leave this script.
 """
 
 import os
@@ -17,7 +17,7 @@ OPTIONAL_MODULES = (
     "PyKDL",
     "shapely",
     "matplotlib",
-)  # that jobs beyond the demo need: of programs, solids, plots
+)  # modules that jobs beyond the demo need for programs, solids and plots
 SCRIPTS = {
     "test": os.path.join("tests", "run.py"),
     "bench": os.path.join("bench", "run.py"),
@@ -27,14 +27,14 @@ SCRIPTS = {
 
 
 def arguments():
-    """The words after the script; freecadcmd passes on only words after a double dash."""
+    """Return the arguments of the script; freecadcmd only passes arguments after a double dash."""
     return (
         sys.argv[sys.argv.index("--") + 1 :] if "FREECAD_AM_HOSTED" in os.environ else sys.argv[1:]
     )
 
 
 def hand_over(missing, words):
-    """Go on in the next Python of the list; the exit status if the list is exhausted."""
+    """Continue in the next Python of the list; return the exit status if no Python is left."""
     next_pythons = os.environ.get("FREECAD_AM_NEXT", "").split("\n")[1:]
     if not next_pythons:
         print(
@@ -54,7 +54,7 @@ def hand_over(missing, words):
 
 
 def run(words):
-    """The exit status of a command."""
+    """Run a command and return its exit status."""
     sys.path[:] = [ROOT] + [
         entry for entry in sys.path if os.path.abspath(entry or ".") != SCRIPT_FOLDER
     ]
@@ -63,7 +63,7 @@ def run(words):
     from freecad_am.batch import host
     from freecad_am.core.one_thread import ENVIRONMENT
 
-    os.environ.update(ENVIRONMENT)  # before numpy is loaded, and for the processes that are started
+    os.environ.update(ENVIRONMENT)  # before importing numpy, and for child processes
     host.provide_home()
     missing = host.missing_modules()
     if missing:
@@ -93,16 +93,18 @@ def run(words):
 
 
 def open_streams():
-    """Where a shell has closed a stream (`>&-`) nothing is read from it and nothing written; the next file that is opened
-    would take its place."""
+    """Replace streams that the shell has closed (`>&-`) by the null device.
+
+    Otherwise the next opened file would get the descriptor of the stream.
+    """
     for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
         if getattr(sys, name) is None:
-            os.open(os.devnull, os.O_RDWR)  # the lowest number that is free
-            setattr(sys, name, open(number, mode, closefd=False))  # noqa: SIM115 - for as long as we run
+            os.open(os.devnull, os.O_RDWR)  # gets the lowest free descriptor
+            setattr(sys, name, open(number, mode, closefd=False))  # noqa: SIM115 - open until exit
 
 
 def main():
-    """Run and end the process with the status; FreeCAD's own clean-up at exit is not waited for."""
+    """Run the command and exit with its status, skipping FreeCAD's clean-up."""
     status = 1
     open_streams()
     try:
@@ -124,5 +126,5 @@ def main():
 if __name__ in (
     "__main__",
     "boot",
-):  # as a script; freecadcmd imports scripts under their own name, without the package
+):  # run as a script; freecadcmd imports scripts under their name, without the package
     main()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drives an existing program, edited or from another source, in a cell, and reports its behaviour.
+"""Simulate an existing program, edited or from another source, in a cell, and write a report.
 
-No plan is needed: the moves come from the text, read by the post of its controller.
+No plan is needed: the controller's post reads the moves from the program text.
 """
 
 from __future__ import annotations
@@ -41,17 +41,18 @@ from . import output_folder as outputs
 from .host import require_freecad
 from .job import job
 
-# of the promises about joints and rapids, in their order, where one is not kept
+# issue codes of broken promises about joints and rapids, in the order of the promises
 CODES = ("LIMIT", "UNREACHABLE", "SPEED", "SINGULAR", "RAPID_COLLISION")
 LARGEST_MB, MOST_FILES = 200, 2_000
 RAPID_PLACES = 20_000
-LONGEST_STATEMENT = 80  # characters of a statement that a message shows
-DIGITS = 0.5  # % of an axis's largest speed: by so much a move is quicker that a text has with few digits
+LONGEST_STATEMENT = 80  # maximum number of characters of a statement in a message
+DIGITS = 0.5  # % of maximum axis speed; speed tolerance for rounded numbers in the text
 
 
 class Known(NamedTuple):
-    """Context of a program in addition to its text: the cell, program and joint parameters, and the
-    width and height of beads; None for all but the cell if only a cell is given.
+    """Context of a program text: cell, program and joint parameters.
+
+    program: None if only a cell is given. bead: bead width and height, mm; None without a job.
     """
 
     cell: CellParameters
@@ -61,7 +62,7 @@ class Known(NamedTuple):
 
 
 class Result(NamedTuple):
-    """Absolute paths of the written files, the issues, and the exit status, 0 or 3."""
+    """Absolute paths of the written files, issues, and exit status, 0 or 3."""
 
     paths: list[str]
     issues: list[Issue]
@@ -71,12 +72,12 @@ class Result(NamedTuple):
 def check(
     programs: Sequence[str], cell_file: str, post: str | None, folder: str | None, session: Any
 ) -> Result:
-    """Drive the program in given files, or in the files of a folder, in a cell and write a report.
+    """Simulate a program in a cell and write a report.
 
-    cell_file: a job file, or a file with only a cell. post: the name of the post that reads the
-    program, by default the job's, else the first of the machine's posts that understands it.
-    Outputs go into `folder`, by default out/<name>-check next to the program. Raises InputError;
-    then nothing is written.
+    programs: program files, or a folder. cell_file: a job file or a cell file. post: name of the
+    post that reads the program; the default is the job's post, else the machine's first post that
+    accepts the text. folder: output folder; the default is out/<name>-check next to the program.
+    Raises InputError and then writes nothing.
     """
     require_freecad()
     from freecad_am.objects import user_machines
@@ -134,7 +135,7 @@ def check(
 
 
 def _add_line(issue: Issue, line: tuple[str, int] | None) -> Issue:
-    """The issue with the line of the program that it is about, where that is known."""
+    """Return the issue with its program line appended to the message, if the line is known."""
     return (
         issue
         if line is None
@@ -143,7 +144,7 @@ def _add_line(issue: Issue, line: tuple[str, int] | None) -> Issue:
 
 
 def _files(programs: Sequence[str]) -> dict[str, bytes]:
-    """The files by their names as controllers know them; files of a folder by their relative paths."""
+    """Read the program files. Return contents by file name, or by relative path in a folder."""
     paths: dict[str, str] = {}
     for program in programs:
         if os.path.isdir(program):
@@ -189,7 +190,7 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
 
 
 def _known(path: str) -> Known:
-    """The context from a job file, or a file with only a cell."""
+    """Read the context from a job file or a cell file."""
     values = tree.read(path).values
     if not {"part", "features", "cell"} & set(values):
         return Known(job_cell.read_cell_file(os.path.abspath(path)), None, JointParameters(), None)
@@ -210,7 +211,7 @@ def _known(path: str) -> Known:
 
 
 def _posts(cell: Cell, context: Known, post: str | None) -> tuple[str, ...]:
-    """The names of the posts that may read a program, the most likely one first."""
+    """Return the names of the posts that may read a program, the most likely post first."""
     if post is not None:
         return (post,)
     if context.program is not None and context.program.post != "none":
@@ -220,7 +221,10 @@ def _posts(cell: Cell, context: Known, post: str | None) -> tuple[str, ...]:
 
 
 def _read(files: dict[str, bytes], posts: Sequence[str]) -> tuple[str, ReadMoves]:
-    """The post that understands the files, and their moves. Raises InputError of the one that came first."""
+    """Return the first post that can read the files, and the moves.
+
+    If no post can, raise the InputError of the first post.
+    """
     refusals = []
     for name in posts:
         try:
@@ -237,7 +241,7 @@ def _read(files: dict[str, bytes], posts: Sequence[str]) -> tuple[str, ReadMoves
 
 
 def _add_statement(error: InputError, files: dict[str, bytes]) -> InputError:
-    """The error with the statement on its line, unless it shows the statement already."""
+    """Return the error with the program statement appended, unless the message contains it."""
     file, _, number = error.where.rpartition(" line ")
     lines = files.get(file, b"").decode("latin-1").splitlines()
     if not number.isdigit() or not 0 < int(number) <= len(lines):
@@ -249,7 +253,7 @@ def _add_statement(error: InputError, files: dict[str, bytes]) -> InputError:
 
 
 def _promises(motion: Motion, cell: Cell, context: Known) -> list[Promise]:
-    """The preflight promises that the text of a program can keep or break, in the order of CODES."""
+    """Return the preflight promises that apply to a program text, in the order of CODES."""
     rows = np.flatnonzero(motion.deposit)
     condition, thresholds = np.full(len(rows), np.nan), np.full(len(rows), np.nan)
     reached = motion.reachable[rows]
@@ -287,8 +291,9 @@ def _promises(motion: Motion, cell: Cell, context: Known) -> list[Promise]:
 
 
 def _condition(cell: Cell, serial: Any, length: float) -> Any:
-    """Inverse condition numbers (n,) of the robot without external axes at the deposition point,
-    for joints (n, axes).
+    """Return inverse condition numbers (n,) at the deposition point for joints (n, axes).
+
+    External axes are excluded. length: characteristic length, mm.
     """
     chain = cell.robot.chain
     robot_joints = serial[:, : chain.axes]
@@ -306,7 +311,7 @@ def _report(
     issues: Sequence[Issue],
     lines: Sequence[tuple[str, int] | None],
 ) -> dict[str, Any]:
-    """The keys of a plan's report that the text of a program can fill."""
+    """Return the report keys that a program text can provide."""
     deposited, reached = motion.deposit & motion.moves, motion.reachable
     steps = np.linalg.norm(np.diff(motion.position, axis=0, prepend=motion.position[:1]), axis=1)
     displayed_joints = motion.joints[reached] / cell.machine.unit_values

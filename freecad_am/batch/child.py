@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Child processes of a command, by multiprocessing: for commands that read shapes, and for the rows
-of a batch.
+"""Child processes for commands that read shapes and for batch rows, by multiprocessing.
 
-FreeCAD may crash in a child; the parent reports the crash. A child tells the parent the folders of
-its unfinished outputs, which the parent removes after a crash, and ends with its parent.
+FreeCAD may crash in a child; the parent reports the crash. A child reports the folders of its
+unfinished outputs, which the parent removes after a crash. A child ends with its parent.
 """
 
 from __future__ import annotations
@@ -21,19 +20,19 @@ from ..core.issues import AmError, InputError
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 INTERRUPTED = 130
-GRACE_S = 0.7  # for a child to notice a signal; the geometry kernel delays signals while it works
+GRACE_S = 0.7  # s; time for a child to handle a signal, which the geometry kernel may delay
 POLL_S = 0.1
-DONE, STOPPING, OUTPUTS = "done", "stopping", "outputs"  # kinds of messages of a child
+DONE, STOPPING, OUTPUTS = "done", "stopping", "outputs"  # message kinds of a child
 
-# a fork has all modules of its parent and starts in a millisecond
+# a forked child has all modules of its parent and starts within a millisecond
 _CONTEXT: Any = multiprocessing.get_context("fork" if sys.platform.startswith("linux") else "spawn")
 
 
 class Child(_CONTEXT.Process):  # type: ignore[misc]
     """A process that runs `work(*arguments)`.
 
-    receiver: the connection of its messages. result: what `work` returned, once `is_done`.
-    is_stopping: whether the child has noticed that it is to end.
+    receiver: connection for messages of the child. result: return value of `work`, once `is_done`.
+    is_stopping: whether the child has acknowledged the request to stop.
     """
 
     def __init__(self, work: Callable[..., Any], *arguments: Any) -> None:
@@ -54,7 +53,7 @@ class Child(_CONTEXT.Process):  # type: ignore[misc]
         self.report(DONE, self._work(*self._arguments))
         sys.stdout.flush()
         sys.stderr.flush()
-        os._exit(0)  # without the clean-up of FreeCAD
+        os._exit(0)  # skip FreeCAD's clean-up
 
     def report(self, kind: str, value: Any = None) -> None:
         """In the child: send a message."""
@@ -62,7 +61,7 @@ class Child(_CONTEXT.Process):  # type: ignore[misc]
             self._sender.send((kind, value))
 
     def poll(self, timeout: float) -> bool:
-        """Wait for a message, at most `timeout` s; return whether the child has ended."""
+        """Wait at most `timeout` s for a message; return whether the child has ended."""
         if not self.receiver.poll(timeout):
             return False
         try:
@@ -80,12 +79,12 @@ class Child(_CONTEXT.Process):  # type: ignore[misc]
         return False
 
     def interrupt(self, number: int = signal.SIGINT) -> None:
-        """Send a signal and do not wait."""
+        """Send a signal without waiting."""
         if self.is_alive() and self.pid is not None:
             os.kill(self.pid, number)
 
     def stop(self) -> None:
-        """End the child; `result` is set if it had finished."""
+        """Stop the child; `result` is set if the child had finished."""
         self.interrupt()
         deadline = time.monotonic() + GRACE_S
         while not self.poll(POLL_S):
@@ -104,10 +103,10 @@ class Child(_CONTEXT.Process):  # type: ignore[misc]
 
 
 def run_in_child(work: Callable[[], int], where: str, say: Callable[[str], None]) -> int:
-    """Return the status of `work`, which runs in a child.
+    """Run `work` in a child and return its status.
 
-    `say` receives the line about a crash, which names `where`. Signals are passed on; a child that
-    does not notice them is ended.
+    `say` receives a message about a crash, which names `where`. Signals are passed on to the child;
+    a child that does not react is killed.
     """
     if not sys.platform.startswith("linux"):
         return work()
@@ -141,15 +140,14 @@ def run_in_child(work: Callable[[], int], where: str, say: Callable[[str], None]
 
 
 def report_stopping() -> None:
-    """In a child: report to the parent that the request to end was noticed."""
+    """In a child: acknowledge the request to stop to the parent."""
     process = multiprocessing.current_process()
     if isinstance(process, Child):
         process.report(STOPPING)
 
 
 def report_outputs(folder: str, made_folders: list[str]) -> None:
-    """In a child: report the folders of unfinished outputs, and those created for them, to the
-    parent."""
+    """In a child: report the folders of unfinished outputs, and new folders, to the parent."""
     process = multiprocessing.current_process()
     if isinstance(process, Child):
         process.report(OUTPUTS, (folder, made_folders))
@@ -171,8 +169,9 @@ def crash(where: str, status: int | None) -> AmError:
 
 
 def _run_interruptible(work: Callable[[], int], received: list[int]) -> int:
-    """In the child of a command: return the status of the work. received: signals before its
-    start.
+    """In the child of a command: run the work and return its status.
+
+    received: signals that arrived before the start.
     """
     for number in SIGNALS:
         signal.signal(number, _interrupt)
@@ -186,12 +185,12 @@ def _run_interruptible(work: Callable[[], int], received: list[int]) -> int:
         traceback.print_exc()
         return 1
     finally:
-        for number in SIGNALS:  # the work is done
+        for number in SIGNALS:  # ignore signals after the work
             signal.signal(number, signal.SIG_IGN)
 
 
 def _interrupt(*_: Any) -> None:
-    """Raise KeyboardInterrupt once: a terminal sends Ctrl-C to the child and to its parent."""
+    """Raise KeyboardInterrupt once, because a terminal sends Ctrl-C to the child and its parent."""
     for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
     report_stopping()
@@ -199,7 +198,7 @@ def _interrupt(*_: Any) -> None:
 
 
 def _end_with_parent(parent: int) -> None:
-    """Have Linux end this process when the process `parent` ends, for any reason."""
+    """Make Linux kill this process when the process `parent` ends for any reason."""
     import ctypes
 
     with contextlib.suppress(OSError, AttributeError):

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command line of the headless commands: plan, export, batch, inspect, check, place,
-machines.
+"""Command line of the headless commands plan, export, batch, inspect, check, place and machines.
 
-What a command needs is imported when it runs: starting is most of the time of a small job, and a
-slip on the command line should be reported at once.
+Each command imports its modules when it runs. Start-up dominates the run time of a small job, and
+command line errors should appear immediately.
 """
 
 from __future__ import annotations
@@ -21,9 +20,9 @@ SHAPES = ("plan", "export", "inspect", "place")  # commands that read shapes
 
 
 def main(argv: list[str]) -> int:
-    """Run one command; the exit status. Messages go to stderr, results to stdout.
+    """Run one command and return its exit status. Messages go to stderr, results to stdout.
 
-    A command that reads shapes runs in a child process, which may crash.
+    Commands that read shapes run in a child process, because the geometry kernel may crash.
     """
     from freecad_am.batch import console
 
@@ -46,9 +45,9 @@ def _main(argv: list[str]) -> int:
         except KeyboardInterrupt:
             return _interrupted(session)
         except BrokenPipeError:
-            return SUCCESS  # the reader has closed the pipe, which is no error
+            return SUCCESS  # the reader closed the pipe, which is not an error
         except Exception as error:
-            # modules of FreeCAD 1.0 that are interrupted while they are imported raise something else, or end up empty
+            # FreeCAD 1.0 modules interrupted during import raise other errors or stay empty
             return _interrupted(session) if session.interrupted else _failed(error, session)
 
 
@@ -238,16 +237,16 @@ if __name__ == "__main__":
     status = main(sys.argv[1:])
     sys.stdout.flush()
     sys.stderr.flush()
-    os._exit(status)  # FreeCAD takes its time to tear down what the end of the process frees anyway
+    os._exit(status)  # skip FreeCAD's slow teardown; the process exit frees the resources
 
 
-# ---- The command line of the headless commands, by subparsers of argparse
+# ---- Command line of the headless commands, with argparse subparsers
 
 PROGRAM = "freecad-am"
 
 
 class Parser(argparse.ArgumentParser):
-    """A parser that raises its errors as errors of user input, with the help command to use."""
+    """A parser that raises InputError for usage errors and names the help command."""
 
     def error(self, message: str) -> NoReturn:
         """Raise InputError USAGE."""
@@ -255,10 +254,9 @@ class Parser(argparse.ArgumentParser):
 
 
 def command_parsers() -> tuple[Parser, dict[str, Parser]]:
-    """Return the parser of the whole command line, and the commands' parsers by name.
+    """Return the parser of the whole command line and the command parsers by name.
 
-    Help is not an action of the parsers: the session prints it, with escapes where the terminal
-    needs them.
+    The parsers have no help action: the session prints help with escapes that the terminal needs.
     """
     command_line_parser = Parser(prog=PROGRAM, allow_abbrev=False, add_help=False)
     command_line_parser.usage = f"{PROGRAM} COMMAND"
@@ -389,13 +387,13 @@ def _add_machines(parser: Parser) -> None:
 
 
 def _process_count(text: str) -> int:
-    """The number of processes that a user asks for. argparse names the option in its error."""
+    """Parse the number of processes. argparse adds the option name to the error."""
     if not text.isdecimal() or not 1 <= int(text) <= 256:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number of processes from 1 to 256")
     return int(text)
 
 
-# for each command: its purpose, whether it writes outputs, and the function that adds its arguments
+# for each command: summary, whether it writes outputs, and the function that adds its arguments
 COMMANDS: dict[str, tuple[str, bool, Callable[[Parser], None]]] = {
     "plan": ("plan one job, from part to programs", True, _add_plan),
     "export": ("recompute a saved document and write its programs", True, _add_export),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rows of a batch planned by the workers of a Dask cluster, a third-party engine (decision 0018).
+"""Plan batch rows on the workers of a Dask cluster, a third-party engine (decision 0018).
 
-Code and files are sent with the rows, and outputs come back with the results, so workers need no
-access to our folders. Dask repeats the rows of a lost worker.
+Code and files are sent with the rows, and outputs return with the results. So workers do not need
+access to the local folders. Dask repeats the rows of a lost worker.
 """
 
 from __future__ import annotations
@@ -24,20 +24,22 @@ from .row_table import Journal, Row
 
 WHERE, CODE = "--scheduler", "SCHEDULER"
 WORKER = "freecad_am_row_worker"
-ANSWER = 10.0  # s for a scheduler to answer
-START_TIMEOUT_S = 180.0  # s for every worker to have FreeCAD loaded
-LOSS_TIMEOUT_S = 60.0  # s without scheduler or without workers that are waited
-POLL_S = 0.5  # s between polls
-AHEAD = 2  # rows given out for each that can be planned at the same time
-MAX_FILE_BYTES = 1 << 30  # bytes of a file that goes along
+ANSWER = 10.0  # s; timeout for an answer of the scheduler
+START_TIMEOUT_S = 180.0  # s; timeout for all workers to load FreeCAD
+LOSS_TIMEOUT_S = 60.0  # s; timeout after the scheduler or all workers are lost
+POLL_S = 0.5  # s; polling interval
+AHEAD = 2  # number of submitted rows per worker thread
+MAX_FILE_BYTES = 1 << 30  # bytes; maximum size of a file sent to the cluster
 
 
 class Cluster:
-    """The workers of a scheduler, ready for the rows of one batch; a context manager."""
+    """Context manager of the workers of a scheduler, ready for the rows of one batch."""
 
     def __init__(self, address: str, session: Session) -> None:
-        """Raises InputError NO_DASK, or SCHEDULER if it does not answer, if it or a worker has
-        another version of Dask, or if a worker has no FreeCAD.
+        """Connect to the scheduler and prepare the workers.
+
+        Raises InputError NO_DASK without Dask; SCHEDULER if the scheduler does not answer, if the
+        Dask versions differ, or if a worker has no FreeCAD.
         """
         self._address, self._session = address, session
         self._reported: set[str] = set()
@@ -63,8 +65,11 @@ class Cluster:
     def planned(
         self, rows: list[Row], folder: str, dry: bool, journal: Journal
     ) -> Iterator[tuple[Row, dict[str, Any]]]:
-        """Rows with their results, as they end; their outputs are in place below `folder`, and written down. Raises
-        InputError SCHEDULER where scheduler or workers are gone for a minute."""
+        """Yield rows with their results as rows finish.
+
+        The outputs of a yielded row are stored below `folder` and recorded in the journal. Raises
+        InputError SCHEDULER if the scheduler or all workers are lost for LOSS_TIMEOUT_S.
+        """
         waiting, running = list(reversed(rows)), {}
         since = time.monotonic()
         try:
@@ -86,7 +91,7 @@ class Cluster:
                 self._client.cancel(list(running), force=True)
 
     def _submit(self, rows: list[Row], dry: bool) -> dict[Any, Row]:
-        """The rows by their futures."""
+        """Submit rows; return the rows by future."""
         orders = [_order(row, dry) for row in rows]
         contents = [[self._package, *map(self._file, order["files"])] for order in orders]
         futures = self._client.map(
@@ -101,7 +106,7 @@ class Cluster:
         return dict(zip(futures, rows, strict=True))
 
     def _file(self, path: str) -> Any:
-        """A local file on the cluster, sent once for all rows."""
+        """Return the future of a local file, which is sent once for all rows."""
         if path not in self._kept:
             if os.path.getsize(path) > MAX_FILE_BYTES:
                 raise InputError(
@@ -114,13 +119,16 @@ class Cluster:
         return self._kept[path]
 
     def _sent(self, content: bytes, name: str) -> Any:
-        """A result on the cluster that is made of the content again if the worker that has it is lost."""
+        """Send content to the cluster; return its future. Dask restores it if a worker is lost."""
         return self._client.submit(
             self._module.keep_content, content, pure=False, key=f"freecad-am-{name}-{self._token}"
         )
 
     def _make_ready(self) -> None:
-        """Report the versions of every worker. Raises InputError without workers, or if one cannot plan."""
+        """Report the versions of every worker.
+
+        Raises InputError without workers, or if a worker cannot plan.
+        """
         from distributed import wait
 
         workers = sorted(self._workers())
@@ -158,7 +166,7 @@ class Cluster:
                 self._report_versions(worker, future.result())
 
     def _report_versions(self, worker: str, worker_versions: dict[str, str]) -> None:
-        """The versions of a worker, the first time."""
+        """Report the versions of a worker once, and warn if they differ from local versions."""
         if worker in self._reported:
             return
         self._reported.add(worker)
@@ -180,7 +188,7 @@ class Cluster:
     def _result(
         self, future: Any, row: Row, folder: str, dry: bool, journal: Journal
     ) -> dict[str, Any]:
-        """Return the result of a row; its outputs are moved and recorded even on Ctrl-C."""
+        """Return the result of a row. The outputs are stored and recorded even on Ctrl-C."""
         if future.status != "finished":
             if future.status == "error" and type(future.exception()).__name__ == "KilledWorker":
                 message = (
@@ -252,8 +260,8 @@ def _connected(address: str) -> Any:
             error,
         ) from None
     try:
-        return Client(address, timeout=ANSWER)  # which `wait` goes by
-    except Exception as error:  # of sockets, of names, of messages that are not understood
+        return Client(address, timeout=ANSWER)  # `wait` uses this timeout too
+    except Exception as error:  # socket errors, name resolution, unreadable messages
         why = " ".join(str(error).split()) or type(error).__name__
         raise InputError(
             CODE,
@@ -266,7 +274,10 @@ def _connected(address: str) -> Any:
 
 
 def _refuse_versions(address: str, client: Any) -> None:
-    """Dask promises nothing between versions: results come late, not at all, or end in errors of its own."""
+    """Raise InputError SCHEDULER if scheduler or workers have another Dask version.
+
+    With mixed versions, results arrive late, never, or as Dask errors.
+    """
     reported_versions = client.get_versions()
     ours = reported_versions["client"]["packages"]["distributed"]
     for where, info in (
@@ -287,9 +298,7 @@ def _refuse_versions(address: str, client: Any) -> None:
 
 
 def _sent_module(client: Any) -> Any:
-    """The module of workers, sent to present and future workers, and imported here under the same
-    name.
-    """
+    """Send the worker module to current and future workers; import it under the same name here."""
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), f"{WORKER}.py")
     client.upload_file(path)
     if WORKER not in sys.modules:
@@ -301,7 +310,7 @@ def _sent_module(client: Any) -> Any:
 
 
 def _order(row: Row, dry: bool) -> dict[str, Any]:
-    """What a worker needs to plan a row: the job, and the files and links that it names."""
+    """Return the order for a worker: the job of a row, with the files and links that it names."""
     names = [name for name in sorted(row.files) if os.path.isfile(name)]
     links = [(name, os.path.realpath(name)) for name in names if os.path.realpath(name) != name]
     return {
@@ -324,14 +333,15 @@ def _settings() -> dict[str, Any]:
 
 
 def _first_done(futures: list[Any]) -> list[Any]:
-    """The futures that have ended in any way, after a short wait. A result that was lost with its
-    worker before it was fetched has not ended: Dask makes it again.
+    """Wait briefly; return the futures that have ended in any way.
+
+    A result lost with its worker has not ended, because Dask computes it again.
     """
     from distributed import wait
 
     try:
         wait(futures, timeout=POLL_S, return_when="FIRST_COMPLETED")
-    except Exception:  # nothing yet, or some cancelled at once, which their status shows
+    except Exception:  # timeout, or cancelled futures, which their status shows
         time.sleep(0.02)
     return [future for future in futures if future.status not in ("pending", "lost")]
 

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command that plans a row for a worker of a cluster: the word `row` of the launcher.
+"""Command that plans a row for a cluster worker: the launcher's command `row`.
 
-It reads a line of JSON from stdin: the folder of the batch and the order, if any. It writes a line
-of JSON to stdout: the versions of the software and the result. Its environment says where the files
-of the job are (`core.geometry.job_files`). It ends at SIGTERM, and when stdin ends, because then the
-worker is lost and cannot remove the folder of the batch.
+The command reads one line of JSON from stdin: the batch folder and the order, if any. It writes one
+line of JSON to stdout: the software versions and the result. The environment specifies the location
+of the job files (`core.geometry.job_files`). The command ends at SIGTERM, and when stdin closes,
+because then the worker is lost and cannot remove the batch folder.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ def main() -> None:
     """Answer one request."""
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     null_device = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(null_device, 1)  # FreeCAD and OpenCASCADE write there as well
+    os.dup2(null_device, 1)  # discard output of FreeCAD and OpenCASCADE
     request = json.loads(sys.stdin.readline())
     planning.import_all()
-    os.dup2(null_device, 2)  # errors until now are the message of the worker
+    os.dup2(null_device, 2)  # the worker reports stderr up to this point
     answer = {"versions": versions.found_versions()}
     if request["order"] is not None:
         answer["result"] = _plan(request["folder"], row.Order(**request["order"]))
@@ -37,7 +37,7 @@ def main() -> None:
 
 
 def _plan(folder: str, order: row.Order) -> dict[str, Any]:
-    """Return the result of an order. folder: of the batch."""
+    """Plan an order and return its result. folder: the batch folder."""
     child = row.start_row(order)
 
     def end(*_: Any) -> None:

@@ -15,18 +15,19 @@ from typing import Any
 from ..core.issues import ERROR, Issue, summarised
 from .child import report_stopping
 
-DEBOUNCE_S = 1.0  # s within which a second Ctrl-C is the first: a terminal sends it, and the process that waits for us
+DEBOUNCE_S = 1.0  # s; repeated Ctrl-C within this time is one, from the terminal and the parent
 LEADING_CODES = ("REMEDY", "NO_REMEDY")  # codes of remedies, listed first
-_MAX_ISSUES = 12  # on stderr; the report has them all
-MAX_LINE_LENGTH = 4000  # signs of a line: a value in it may be as long as a file
-# signs that move the cursor, end a line or turn the direction of writing: in a name they could forge what we say
+_MAX_ISSUES = 12  # maximum number of issues on stderr; the report lists all issues
+MAX_LINE_LENGTH = 4000  # characters; a message may contain a very long value
+# characters that move the cursor, end a line or change the writing direction; names with such
+# characters could forge messages
 _UNSEEN = re.compile(
     "[\\x00-\\x1f\\x7f-\\x9f\\u061c\\u200e\\u200f\\u2028\\u2029\\u202a-\\u202e\\u2066-\\u2069\\ufeff\\ud800-\\udfff]"
 )
 
 
 def escaped(text: str) -> str:
-    """The text on one line, with control signs, ends of lines and what turns writing round as Python would write them."""
+    """Return the text on one line, with control characters escaped as in Python."""
     return _UNSEEN.sub(
         lambda match: repr(match[0])[1:-1] if match[0].isascii() else f"\\u{ord(match[0]):04x}",
         text,
@@ -34,15 +35,15 @@ def escaped(text: str) -> str:
 
 
 class Session:
-    """The console of one command. Between `__enter__` and `__exit__` the libraries underneath cannot write to it.
+    """Console of one command. Within the context, libraries cannot write to the console.
 
-    FreeCAD and OpenCASCADE write to the file descriptors 1 and 2, which would mix with what the user asked for.
+    FreeCAD and OpenCASCADE write to file descriptors 1 and 2, which would mix with the results.
     """
 
     def __init__(self) -> None:
         self.interrupted = False  # whether Ctrl-C was pressed
         self._when = 0.0
-        self.outcome = "nothing was written"  # message when the command is interrupted
+        self.outcome = "nothing was written"  # message if the command is interrupted
         self._progress = ""
 
     def __enter__(self) -> Session:
@@ -68,15 +69,13 @@ class Session:
             os.close(saved)
 
     def out(self, text: str) -> None:
-        """Write to stdout; control signs other than ends of lines and tabs as `escaped` writes them."""
+        """Write to stdout, with control characters escaped except line ends and tabs."""
         self._clear()
         lines = ("\t".join(map(escaped, line.split("\t"))) for line in text.split("\n"))
         _write(self._saved[0], "\n".join(lines))
 
     def say(self, line: str) -> None:
-        """Write one line to stderr, with control signs escaped; a very long line is shortened in
-        its middle.
-        """
+        """Write one line to stderr, with control characters escaped and long lines shortened."""
         self._clear()
         text = escaped(line)
         if len(text) > MAX_LINE_LENGTH:
@@ -84,9 +83,10 @@ class Session:
         _write(self._saved[1], text + "\n")
 
     def issues(self, findings: Iterable[Issue], elsewhere: str = "stand in report.json") -> None:
-        """Write findings to stderr, first remedies, then errors.
+        """Write issues to stderr, remedies first, then errors.
 
-        Findings of one kind in several layers are one line. After a dozen lines the rest is counted, with where it is.
+        Issues of one kind in several layers share a line. After _MAX_ISSUES lines, only the number
+        of remaining issues is given, with `elsewhere`.
         """
         ordered = sorted(
             summarised(findings),
@@ -100,7 +100,7 @@ class Session:
             self.say(f"note[MORE] job: {len(ordered) - _MAX_ISSUES} more findings {elsewhere}")
 
     def progress(self, text: str) -> None:
-        """Show the current activity, only on a terminal; ends the command if Ctrl-C was pressed."""
+        """Show the current activity on a terminal; end the command if Ctrl-C was pressed."""
         self.check()
         if self._tty:
             self._clear()
@@ -108,7 +108,7 @@ class Session:
             self._progress = text
 
     def check(self) -> None:
-        """Raise KeyboardInterrupt if FreeCAD has swallowed a Ctrl-C while it was working."""
+        """Raise KeyboardInterrupt if FreeCAD swallowed a Ctrl-C."""
         if self.interrupted:
             raise KeyboardInterrupt
 
@@ -118,7 +118,7 @@ class Session:
             self._progress = ""
 
     def _handle(self, number: int) -> None:
-        # set also where the shell that started us in the background had it ignored
+        # set the handler even if a shell that started the command in the background ignores signals
         if threading.current_thread() is threading.main_thread():
             signal.signal(number, self._interrupt)
 
@@ -134,7 +134,7 @@ class Session:
 def _duplicate(descriptor: int) -> int:
     try:
         return os.dup(descriptor)
-    except OSError:  # closed by who started us
+    except OSError:  # closed by the parent process
         return os.open(os.devnull, os.O_WRONLY)
 
 

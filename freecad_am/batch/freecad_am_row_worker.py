@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a Dask worker does for a batch. The file is sent to workers separately and imports nothing of
-the package.
+"""Dask worker functions of a batch. The file is sent separately and imports nothing of the package.
 
-Our code comes as an archive, which is unpacked in the worker's own folder, next to the files of the
-jobs. The launcher in the archive plans each row as a command of its own: a worker's Python needs
+The package arrives as an archive, which is unpacked in the worker's folder next to the job files.
+The launcher in the archive plans each row as a separate command, so the worker's Python needs
 neither FreeCAD nor numpy.
 """
 
@@ -21,13 +20,13 @@ import time
 import zipfile
 from typing import Any
 
-MAX_MESSAGE_LENGTH = 2000  # characters of the message of a process that does not start
+MAX_MESSAGE_LENGTH = 2000  # characters; maximum length of a start-up error message
 ENDED = "the batch has ended"
-_ATTRIBUTE = "_freecad_am_batches"  # of the worker: another batch may send this module again
+_ATTRIBUTE = "_freecad_am_batches"  # worker attribute: another batch may send this module again
 
 
 class Batch:
-    """The folder and the processes of one batch on one worker."""
+    """Folder and processes of one batch on one worker."""
 
     def __init__(self, folder: str) -> None:
         self.path = os.path.realpath(tempfile.mkdtemp(prefix="freecad-am-", dir=folder))
@@ -42,7 +41,7 @@ class Batch:
     def unpack(
         self, package: bytes, files: list[tuple[str, bytes]], links: list[tuple[str, str]]
     ) -> None:
-        """Write missing code and files to their places."""
+        """Write missing code and files to the batch folder."""
         with self._lock:
             if not os.path.isdir(self.code):
                 with zipfile.ZipFile(io.BytesIO(package)) as archive:
@@ -61,9 +60,9 @@ class Batch:
                     os.symlink(self.copies + link_target, target)
 
     def run(self, settings: dict[str, Any], order: dict[str, Any] | None) -> dict[str, Any]:
-        """Return the versions of the software and, for an order, its result.
+        """Return the software versions and, for an order, its result.
 
-        Raises RuntimeError, with the message of the process, if it ends without an answer.
+        Raises RuntimeError, with the message of the process, if the process ends without an answer.
         """
         process = self._start(settings)
         try:
@@ -83,7 +82,7 @@ class Batch:
         raise RuntimeError(_message(process))
 
     def stop(self) -> None:
-        """End the processes, even during work, and remove the folder."""
+        """Stop the processes, even during work, and remove the folder."""
         with self._lock:
             self._stopped, running = True, list(self._running)
         for process in running:
@@ -95,7 +94,7 @@ class Batch:
             process.kill()
         until = time.monotonic() + 5.0
         while os.path.exists(self.path) and time.monotonic() < until:
-            shutil.rmtree(self.path, ignore_errors=True)  # a row that ends may still write there
+            shutil.rmtree(self.path, ignore_errors=True)  # an ending row may still write there
 
     def _start(self, settings: dict[str, Any]) -> subprocess.Popen[str]:
         relocation = {
@@ -126,12 +125,12 @@ class Batch:
 
 
 def keep_content(content: bytes) -> bytes:
-    """Return the content: a file of a batch as a result, which Dask recreates if it is lost."""
+    """Return the content, so that a batch file is a Dask result, which Dask recreates if lost."""
     return content
 
 
 def check_worker(token: str, settings: dict[str, Any], package: bytes) -> dict[str, str]:
-    """Return the versions of the software on the worker; RuntimeError if FreeCAD is missing."""
+    """Return the software versions on the worker. Raises RuntimeError if FreeCAD is missing."""
     batch = _batch(token)
     batch.unpack(package, [], [])
     versions: dict[str, str] = batch.run(settings, None)["versions"]
@@ -141,9 +140,9 @@ def check_worker(token: str, settings: dict[str, Any], package: bytes) -> dict[s
 def plan_row(
     order: dict[str, Any], contents: list[bytes], token: str, settings: dict[str, Any]
 ) -> dict[str, Any]:
-    """Return the result of a row, with its outputs as `files`, the worker's address and versions.
+    """Plan a row; return its result with outputs as `files`, worker address and versions.
 
-    contents: the archive of our code, then each file that the order names.
+    contents: the package archive, then each file that the order names.
     """
     from distributed import get_worker
 
@@ -164,10 +163,10 @@ def plan_row(
 
 
 def stop(token: str, dask_worker: Any) -> None:
-    """End what this worker does for a batch. Dask passes `dask_worker`."""
+    """Stop the work of a batch on this worker. Dask passes `dask_worker`."""
     with _lock:
         batches: dict[str, Batch | None] = dask_worker.__dict__.setdefault(_ATTRIBUTE, {})
-        batch, batches[token] = batches.get(token), None  # submitted rows may still begin
+        batch, batches[token] = batches.get(token), None  # submitted rows may still start
     if batch is not None:
         batch.stop()
 
@@ -200,7 +199,7 @@ def _message(process: subprocess.Popen[str]) -> str:
 
 
 def _files(folder: str) -> Any:
-    """Names, with slashes, and contents of the files in a folder."""
+    """Yield names, with slashes, and contents of the files in a folder."""
     for subfolder, _, names in os.walk(folder):
         for name in names:
             path = os.path.join(subfolder, name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Finds FreeCAD's modules for a Python that is not FreeCAD's own, or says that it is missing."""
+"""Find FreeCAD's modules for a Python other than FreeCAD's own, or report FreeCAD as missing."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ LIBRARY_FOLDERS = (
 
 
 def library_folders() -> list[str]:
-    """Folders that may hold FreeCAD.so, the user's own choice (FREECAD_LIB) first."""
+    """Return folders that may contain FreeCAD.so, the user's choice (FREECAD_LIB) first."""
     user_folders = [os.environ[name] for name in ("FREECAD_LIB",) if os.environ.get(name)]
     python_folders = [
         os.path.join(sys.prefix, "lib"),
@@ -30,7 +30,7 @@ def library_folders() -> list[str]:
 
 
 def find_freecad() -> bool:
-    """Put FreeCAD on sys.path; True when it can be imported afterwards. Imports nothing itself."""
+    """Add FreeCAD to sys.path, without importing it. Return whether FreeCAD can be imported."""
     if "FreeCAD" in sys.modules or importlib.util.find_spec("FreeCAD") is not None:
         return True
     for folder in library_folders():
@@ -42,10 +42,11 @@ def find_freecad() -> bool:
 
 
 def _add_shims(folder: str) -> None:
-    # Debian's plain import takes the library's folder as FreeCAD's home: its Qt shim and Python modules stand elsewhere
+    # on Debian, a plain import uses the library folder as FreeCAD's home, but the Qt shim and the
+    # Python modules are elsewhere
     for share in ("/usr/share/freecad", os.path.dirname(folder)):
         modules = os.path.join(share, "Mod")
-        # the folder of all modules too: PartDesign is a package there, and its objects are lost from a file without it
+        # add the folder of all modules too: without the PartDesign package, files lose its objects
         extra = [
             os.path.join(share, "Ext"),
             *sorted(glob.glob(os.path.join(modules, "*", ""))),
@@ -57,8 +58,9 @@ def _add_shims(folder: str) -> None:
 
 
 def provide_home() -> None:
-    """Give FreeCAD another home folder if the user cannot enter the present one (sudo keeps
-    root's): FreeCAD would abort.
+    """Set another home folder for FreeCAD if the user cannot access the current home folder.
+
+    FreeCAD would abort otherwise, for example with root's home folder after sudo.
     """
     home = os.path.expanduser("~")
     closed = os.path.isdir(home) and not os.access(home, os.R_OK | os.W_OK | os.X_OK)
@@ -67,10 +69,10 @@ def provide_home() -> None:
 
 
 def _private_folder(name: str) -> str:
-    """A folder that only the current user can enter, below the temporary one, with the given name
-    or, if taken by another user, a derived one.
+    """Return a folder in the temporary folder that only the current user can enter.
 
-    FreeCAD runs the code that it finds in its home, and any user may make a folder there.
+    The folder has the given name, or a derived name if another user has taken the name. FreeCAD
+    runs code from its home folder, and any user may make folders in the temporary folder.
     """
     top = tempfile.gettempdir()
     path = os.path.join(top, name)
@@ -83,7 +85,7 @@ def _private_folder(name: str) -> str:
 
 
 def _is_private(path: str) -> bool:
-    """Whether a path is a folder, not a link, that only the current user can enter."""
+    """Whether a path is a folder, not a link, that only the current user can access."""
     try:
         status = os.lstat(path)
     except OSError:
@@ -96,18 +98,18 @@ def _is_private(path: str) -> bool:
 
 
 def missing_modules() -> list[str]:
-    """Names of the modules this Python lacks to run the headless commands."""
+    """Return the names of missing modules that headless commands need."""
     missing = [] if find_freecad() else ["FreeCAD"]
     return missing + [
         name for name in ("numpy", "scipy", "yaml") if importlib.util.find_spec(name) is None
     ]
 
 
-# ---- Makes FreeCAD importable, or raises an error that says it is missing
+# ---- Make FreeCAD importable, or raise an error
 
 
 def require_freecad() -> None:
-    """Make FreeCAD importable. Raises InputError NO_FREECAD where this Python has none."""
+    """Make FreeCAD importable. Raises InputError NO_FREECAD if this Python has no FreeCAD."""
     if not find_freecad():
         from ..core.issues import InputError
 

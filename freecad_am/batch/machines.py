@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The table of known machines, and one machine in the formats of other programs."""
+"""List known machines, and export a machine to formats of other programs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .host import require_freecad
 
 
 def listing() -> str:
-    """One line per machine, built in or the user's: its id for the job file and its title."""
+    """Return a line per built-in or user-defined machine, with its id for job files and title."""
     require_freecad()
     from freecad_am.objects import user_machines
 
@@ -22,9 +22,10 @@ def listing() -> str:
 
 
 def chosen(maker: str | None, reach: str | None, payload: str | None, post: str | None) -> str:
-    """The lines of `listing` for the machines that `machine.select_machines` finds, each with the
-    reach, payload and posts of its file. `reach` is a length and `payload` a mass as users write
-    them; raises InputError for others.
+    """Return the lines of `listing` for selected machines, with reach, payload and posts.
+
+    `machine.select_machines` selects the machines. reach, payload: length and mass as user input;
+    raises InputError for invalid input.
     """
     require_freecad()
     from freecad_am.core.parameters import field
@@ -70,9 +71,10 @@ def _mass(text: str) -> float:
 
 
 def export_text(name: str, form: str) -> str:
-    """A machine, given by its id or file, as `urdf`, or as the table `dh` or `modified-dh`: figures
-    in mm and degrees, one line per row, between the base pose and the tool pose (x y z and roll
-    pitch yaw as in URDF).
+    """Export a machine, given by id or file, as `urdf`, or as a table `dh` or `modified-dh`.
+
+    Tables are in mm and degrees, one line per row, between the base pose and the tool pose (x y z
+    and roll pitch yaw as in URDF).
     """
     require_freecad()
     from freecad_am.objects import user_machines
@@ -101,5 +103,5 @@ def _pose(pose: Any) -> list[float]:
 
 
 def _words(values: list[float]) -> str:
-    # the noise of their computation left out
+    # round off numerical noise
     return " ".join(f"{round(value, 10) + 0.0:.13g}" for value in values)

@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Compares files of measured points with the plan of a job or a saved document, and writes the
-results.
-"""
+"""Inspect measured points against a job or saved document, and export programs of documents."""
 
 from __future__ import annotations
 
@@ -20,12 +18,13 @@ _PROGRAMS, _PATHS = ("program",), ("joint path", "toolpath", "program")
 def export(
     path: str, folder: str | None, names: tuple[str, ...], session: Any, wires: str = ""
 ) -> list[str]:
-    """The paths of the files written: the programs of the document, or of the objects called `names` (Name or Label).
+    """Export the programs of a document and return the paths of the written files.
 
-    They go into program/ of `folder`, by default out/<document> next to the document, which is not
-    changed. wires: 'step' or 'dxf' writes into wires/ instead, a file for each joint path, or for
-    each toolpath, joint path or program that is named. Raises InputError and InfeasibleError; then
-    nothing is written.
+    names: Names or Labels of the objects to export; empty for all programs. Files are written to
+    program/ in `folder`, by default out/<document> next to the document. The document does not
+    change. wires: 'step' or 'dxf' writes to wires/ instead, one file for each joint path, or for
+    each named toolpath, joint path or program. Raises InputError and InfeasibleError and then
+    writes nothing.
     """
     label = os.path.basename(path)
     if not os.path.isfile(path):
@@ -58,7 +57,7 @@ def export(
                 ).items():
                     files.write(f"{outputs.PROGRAMS}/{name}", content)
         finally:
-            # linked documents were opened with it
+            # close linked documents, which FreeCAD opened with the document
             for name in set(FreeCAD.listDocuments()) - open_before:
                 FreeCAD.closeDocument(name)
         earlier = set() if names or wires else outputs.earlier_programs(files.folder)
@@ -68,8 +67,9 @@ def export(
 def _chosen(
     document: Any, label: str, names: tuple[str, ...], kinds: tuple[str, ...], code: str
 ) -> list[Any]:
-    """The objects called `names` among objects of some kinds, else all objects of the first kind
-    present.
+    """Return the stages called `names` of the given kinds.
+
+    Without names, return all stages of the first kind that exists.
     """
     from freecad_am import api
     from freecad_am.objects.shapes import linked_files
@@ -100,7 +100,7 @@ def _chosen(
 
 
 def _write_wires(paths: list[Any], kind: str, files: outputs.Outputs, session: Any) -> None:
-    """Raises InputError where two paths want the same file."""
+    """Write the wires of paths. Raises InputError if two paths have the same file name."""
     from freecad_am import api
 
     written: set[str] = set()
@@ -118,7 +118,7 @@ def _write_wires(paths: list[Any], kind: str, files: outputs.Outputs, session: A
 
 
 def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
-    """File name -> content. Raises InputError where two programs want the same file."""
+    """Return file contents by name. Raises InputError if two programs have the same file name."""
     from freecad_am import api
 
     files: dict[str, bytes] = {}
@@ -127,7 +127,7 @@ def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
         session.progress(f"computing {program.Label} ...")
         try:
             api.recompute(program, force=True)
-        except InfeasibleError:  # what one ends with may be the fault of what another warns about
+        except InfeasibleError:  # warnings of other stages may explain the error
             _report_findings(program, reported, session)
             raise
         session.check()
@@ -141,7 +141,7 @@ def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
 
 
 def _report_findings(program: Any, reported: dict[Issue, None], session: Any) -> None:
-    """Report findings of a program and its inputs, except those in `reported`, and add them to it."""
+    """Report the issues of a program and its inputs that are not in `reported`; add them to it."""
     from freecad_am import api
 
     inputs = [
@@ -176,12 +176,13 @@ def inspect(
     name: str,
     session: Any,
 ) -> list[str]:
-    """The paths of the files written: figures of every file of measured points, and over them mean and standard deviation.
+    """Inspect files of measured points and return the paths of the written files.
 
-    source: a job file, whose part is compared, or an FCStd document, compared by its object `name`
-    (Name or Label), by default its one feature. settings: key=value, parameters of an inspection.
-    They go into `folder`, by default out/<name>-inspection next to the source. Raises InputError
-    and InfeasibleError; then nothing is written.
+    Write results for each file, and mean and standard deviation over all files. source: a job file,
+    or an FCStd document with the nominal object `name` (Name or Label), by default its only
+    feature. settings: inspection parameters as key=value. folder: output folder, by default
+    out/<name>-inspection next to the source. Raises InputError and InfeasibleError and then writes
+    nothing.
     """
     values = _values(settings)
     require_freecad()
@@ -228,7 +229,7 @@ def _values(settings: tuple[str, ...]) -> dict[str, str]:
 
 
 def _labels(measured: tuple[str, ...]) -> list[str]:
-    """What the files are called in tables and names of files, each another way."""
+    """Return distinct labels of the measured files, for tables and file names."""
     labels: list[str] = []
     for path in measured:
         label = os.path.splitext(os.path.basename(path))[0] or "points"
@@ -240,7 +241,7 @@ def _labels(measured: tuple[str, ...]) -> list[str]:
 
 
 def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
-    """A document, and the object in it that was measured."""
+    """Open the source; return the document and the measured object."""
     if source.lower().endswith(".fcstd"):
         return _open_document(source, name)
     if name:
@@ -265,7 +266,7 @@ def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
 
 
 def _feature(document: Any, job_read: Any, session: Any) -> Any:
-    """The feature of a job; its toolpath need not be made."""
+    """Make the feature of a job, without its toolpath."""
     from .job.shapes import Shapes
 
     session.progress("feature ...")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The folder of outputs: files appear completely or not at all, only inside it, and only our own
-are ever removed.
+"""Output folder: files appear completely or not at all, and only files of this program are removed.
+
+Nothing is written or removed outside the folder.
 """
 
 from __future__ import annotations
@@ -24,15 +25,15 @@ WAYPOINTS, REPORT, PAGE, PROGRAMS, WIRES = (
     "wires",
 )
 DOCUMENT_ENDING = ".FCStd"
-LARGEST_REPORT = 1 << 28  # bytes of a report that is looked into for what an earlier run wrote
+LARGEST_REPORT = 1 << 28  # bytes; maximum size of an earlier report to read for its outputs
 
 
 class Outputs:
-    """Collects the files of a run in a hidden folder of the target and moves them into place at the end.
+    """Collect the files of a run in a hidden folder of the target, then move them into place.
 
-    Use it as a context manager: leaving it without `publish` removes everything that was collected
-    and leaves the target folder unchanged. Raises InputError UNWRITABLE at once if the target is
-    not writable or a link leads outside. `session` receives messages about other runs in the same
+    Context manager: leaving the context without `publish` removes all collected files and leaves
+    the target folder unchanged. Raises InputError UNWRITABLE immediately if the target is not
+    writable or a link leads outside. `session` receives messages about other runs in the same
     folder, and about the files.
     """
 
@@ -65,13 +66,13 @@ class Outputs:
         self._remove_made()
 
     def path(self, name: str) -> str:
-        """The path for writing the file `name` (slashes for folders) of the run."""
+        """Return the path for writing the file `name` of the run; `name` uses slashes."""
         path = os.path.join(self._staging.files, *name.split("/"))
         os.makedirs(os.path.dirname(path), exist_ok=True)
         return path
 
     def write(self, name: str, data: bytes | Iterable[str]) -> None:
-        """Write a file of the run; text in chunks, as UTF-8 with unchanged line ends."""
+        """Write a file of the run. Text chunks are written as UTF-8 with unchanged line ends."""
         try:
             with open(self.path(name), "wb") as stream:
                 stream.writelines(
@@ -81,10 +82,10 @@ class Outputs:
             raise self._unwritable(os.path.join(self.folder, *name.split("/")), error) from None
 
     def publish(self, earlier: set[str]) -> list[str]:
-        """Move every file into place; the names, sorted. Ctrl-C and requests to end wait meanwhile.
+        """Move all files into place and return their sorted names. Signals wait until the end.
 
-        Files in `earlier` without a successor are removed first: no program must stay next to a
-        report that does not list it. The report comes last.
+        Files in `earlier` without a successor are removed first, because no program may stay next
+        to a report that does not list it. The report is moved last.
         """
         names = sorted(_files(self._staging.files))
         with staging.uninterrupted():
@@ -118,19 +119,19 @@ class Outputs:
                 os.mkdir(path)
                 self._made.append(path)
             except FileExistsError:
-                if not os.path.isdir(path):  # else another row of the batch was quicker
+                if not os.path.isdir(path):  # another row of the batch may have made the folder
                     raise
 
     def _remove_made(self) -> None:
         for path in reversed(self._made):
             try:
-                os.rmdir(path)  # fails where something was published, which is what keeps it
+                os.rmdir(path)  # fails for a folder with published files, which must stay
             except OSError:
                 return
 
 
 def earlier_programs(folder: str) -> set[str]:
-    """Return the names of our programs and applications in program/ with their parts."""
+    """Return the names of earlier robot programs in program/, with their part files."""
     if os.path.islink(os.path.join(folder, PROGRAMS)):
         return set()
     programs_by_post = earlier_posts.programs(os.path.join(folder, PROGRAMS)).values()
@@ -138,9 +139,7 @@ def earlier_programs(folder: str) -> set[str]:
 
 
 def earlier_outputs(folder: str) -> set[str]:
-    """Return the names of the outputs of an earlier run: the files listed in its report, and our
-    programs in program/.
-    """
+    """Return the output names of an earlier run: files listed in its report, and its programs."""
     names = earlier_programs(folder)
     report = _earlier_report(folder)
     if report is None:
@@ -187,11 +186,11 @@ def _files(folder: str) -> Iterator[str]:
             yield os.path.relpath(os.path.join(root, file), folder).replace(os.sep, "/")
 
 
-# ---- A job and what its stages came to, as the report asks for them
+# ---- Job and results in the form that the report needs
 
 
 def results(stages: Any, programs: Sequence[str]) -> Any:
-    """Results of the completed stages, for the report."""
+    """Return the results of the completed stages for the report."""
     from freecad_am import api
     from freecad_am.objects.checks import preflight
 
@@ -211,7 +210,7 @@ def results(stages: Any, programs: Sequence[str]) -> Any:
 
 
 def job(read_job: Job, stages: Any) -> Any:
-    """The job in the form of its report."""
+    """Return the job in the form that the report needs."""
     from ..report import figures
 
     features = tuple(

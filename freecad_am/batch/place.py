@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Possible positions of the part of a job, its positioner or its deposition point: a table, a page,
-and the best pose.
-"""
+"""Search for poses of a job's part, positioner or deposition point; write a table and a page."""
 
 from __future__ import annotations
 
@@ -20,17 +18,17 @@ from .host import require_freecad
 from .job.features import in_words_of_job
 from .job.job import SECTIONS, Job
 
-# ---- place.html: poses as maps, height by height, and the best ones as a table; one file without
-# scripts or links
+# ---- place.html: maps of poses by height, and a table of the best poses; one self-contained file
+# without scripts
 
-_BEST = 20  # poses in the table
+_BEST = 20  # number of poses in the table
 _MOST_MAPS = 60
-_COLOURS = ("#2b5fb3", "#2f9e8f", "#8bc34a", "#f3d13b")  # of margins from the least to the largest
+_COLOURS = ("#2b5fb3", "#2f9e8f", "#8bc34a", "#f3d13b")  # margin colours in ascending order
 _OUT_OF_RANGE_COLOUR = "#b9bec8"
 
 
 def render(name: str, placement: Placed) -> str:
-    """The page of the poses of a job."""
+    """Return the page of the rated poses of a job as HTML."""
     title = f"{name}: where it can stand"
     serve = sum(pose_result.feasible for pose_result in placement.judged)
     what = placement.moves.replace("-", " ")
@@ -92,12 +90,12 @@ def _range(placement: Placed) -> tuple[float, float]:
 
 
 def _map(placement: Placed, height: float, low: float, high: float) -> str:
-    """Return the poses of one height as a table, as they are seen from above."""
+    """Return the poses of one height as a table, seen from above."""
     rows = np.flatnonzero(placement.poses[:, 2] == height)
     best_at: dict[tuple[float, float], int] = {}
     for number in sorted(rows.tolist(), key=lambda k: _rank_key(placement, k)):
         x, y, *_ = placement.poses[number].tolist()
-        best_at[x, y] = number  # the best of them stays
+        best_at[x, y] = number  # the best pose is set last
     columns = sorted({x for x, _ in best_at})
     lines = []
     for y in sorted({y for _, y in best_at}, reverse=True):
@@ -112,8 +110,10 @@ def _map(placement: Placed, height: float, low: float, high: float) -> str:
 
 
 def _map_cell(placement: Placed, number: int | None, low: float, high: float) -> str:
-    """Return the cell of a pose: its colour by margin, its share of points served, its figures as
-    a tooltip."""
+    """Return the table cell of a pose.
+
+    The colour shows the margin, the text the fraction of reachable points, the tooltip all values.
+    """
     if number is None:
         return "<td></td>"
     pose_result = placement.result_of(number)
@@ -156,7 +156,7 @@ TABLE, PAGE = "place.csv", "place.html"
 
 
 class Result(NamedTuple):
-    """The best pose as a line of a section `cell`, or ''; the issues, and the exit status, 0 or 3."""
+    """Best pose as a line for the job section `cell`, or ''; issues; exit status, 0 or 3."""
 
     line: str
     issues: list[Issue]
@@ -164,10 +164,10 @@ class Result(NamedTuple):
 
 
 def place(job: Job, folder: str | None, session: Any) -> Result:
-    """Try the poses of the section `place` of a job and write the results into `folder`, by default
-    out/<name>-place next to the job file.
+    """Rate the poses of a job's section `place` and write the results to `folder`.
 
-    Raises InputError; then nothing is written.
+    The default folder is out/<name>-place next to the job file. Raises InputError and then writes
+    nothing.
     """
     if job.cell is None:
         raise InputError(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Plans one row of a batch in a process of its own, and returns its result."""
+"""Plan one row of a batch in a child process and return its result."""
 
 from __future__ import annotations
 
@@ -20,8 +20,10 @@ CHECKED = "checked"  # status of a row that was not planned
 
 @dataclass(frozen=True)
 class Order:
-    """The task of a process: plan the job with the `values` read from the file `path` into a
-    folder, or only check it for errors (`dry`). label: the job's name in messages.
+    """Task of a row process: plan a job, or only check the job for errors if `dry`.
+
+    values: job values, read from the file `path`. folder: output folder. label: job name in
+    messages.
     """
 
     label: str
@@ -37,7 +39,7 @@ def start_row(order: Order) -> Child:
 
 
 def row_result(child: Child) -> dict[str, Any]:
-    """Return the result of a row whose process has ended: exit, message, lines, and `figures`."""
+    """Return the result of an ended row process: exit, message, lines and keys of `figures`."""
     if child.is_done:
         result: dict[str, Any] = child.result
         return result
@@ -46,7 +48,7 @@ def row_result(child: Child) -> dict[str, Any]:
 
 
 def plan_row(order: Order) -> dict[str, Any]:
-    """In the process of a row: plan it and return its result."""
+    """In the process of a row: plan the row and return its result."""
     quiet = _Quiet()
     status, message, result = 1, "", {}
     try:
@@ -65,7 +67,7 @@ def plan_row(order: Order) -> dict[str, Any]:
 
 
 def _planned(order: Order, quiet: Session) -> tuple[int, dict[str, Any]]:
-    """The exit status and the figures."""
+    """Plan or check an order; return the exit status and the summary values."""
     job_read = job.from_tree(tree.Tree(order.label, order.values), order.path)
     if order.dry:
         with planning.named_by_keys(job_read):
@@ -76,7 +78,7 @@ def _planned(order: Order, quiet: Session) -> tuple[int, dict[str, Any]]:
 
 
 def figures(report: dict[str, Any]) -> dict[str, Any]:
-    """The figures of a report for the summary of a batch."""
+    """Return the values of a report for the batch summary."""
     joints = report["joints"] or {}
     return {
         "status": report["status"],
@@ -90,7 +92,7 @@ def figures(report: dict[str, Any]) -> dict[str, Any]:
 
 
 class _Quiet(Session):
-    """Collects the messages of a row, to be written together when it is done."""
+    """Session that collects the messages of a row, to write them together at the end."""
 
     def __init__(self) -> None:
         super().__init__()

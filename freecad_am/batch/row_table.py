@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Reads the table of a batch, one job a row, and keeps the journal of finished rows.
+"""Read a batch table, one job per row, and keep the journal of finished rows.
 
-Columns are dotted job keys; an empty cell keeps the job's own value.
+Columns are dotted job keys; an empty cell keeps the value of the job file.
 """
 
 from __future__ import annotations
@@ -29,9 +29,11 @@ SETTING = "part.set."
 
 @dataclass(frozen=True)
 class Row:
-    """One row: its number (from 1), the cells by column, its folder's name, the error if it has no
-    job, and `files`, the absolute names of the files that the job names. The job itself is read
-    again when it is planned.
+    """One row of the table.
+
+    number: from 1. cells: by column. folder: name of the output folder. error: set if the row has
+    no valid job. files: absolute names of the files that the job names. The job is read again for
+    planning.
     """
 
     number: int
@@ -44,7 +46,7 @@ class Row:
     files: frozenset[str] = frozenset()
 
     def tree(self) -> tree.Tree:
-        """The values of the job. Raises InputError for a cell that is not understood."""
+        """Return the job values of the row. Raises InputError for an invalid cell."""
         changed = tree.Tree(self.label, copy.deepcopy(self.base.values))
         for column, cell in self.cells.items():
             if cell:
@@ -53,7 +55,7 @@ class Row:
 
 
 def read(table: str, job_path: str) -> tuple[list[str], list[Row]]:
-    """Columns and rows. Raises InputError for a table or job file that cannot be read at all."""
+    """Read columns and rows of a table. Raises InputError for an unreadable table or job file."""
     label = os.path.basename(table)
     base = tree.read(job_path)
     columns, cells = _cells(tree.text_of(table, label), label)
@@ -113,7 +115,7 @@ def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
 
 
 def _folders(columns: list[str], cells: list[list[str]]) -> list[str]:
-    """The rows' names where they have different ones that can name a folder, else their numbers."""
+    """Return folder names: the row names if all are distinct and valid, else the row numbers."""
     width = max(3, len(str(len(cells))))
     numbers = [f"row-{number:0{width}d}" for number in range(1, len(cells) + 1)]
     names = [row[columns.index("name")] for row in cells] if "name" in columns else []
@@ -124,7 +126,7 @@ def _folders(columns: list[str], cells: list[list[str]]) -> list[str]:
 
 
 def _checked(row: Row, files_by_cell: dict[Any, frozenset[str]]) -> Row:
-    """The row with its error or files; `files_by_cell`: files of cells met before."""
+    """Return the row with its error or files. files_by_cell: cache of the files of each cell."""
     try:
         with job_files.record_names() as named:
             job_read = job.from_tree(row.tree(), row.path)
@@ -135,11 +137,11 @@ def _checked(row: Row, files_by_cell: dict[Any, frozenset[str]]) -> Row:
     files = named | files_by_cell[job_read.cell]
     return replace(
         row, files=files_by_cell.setdefault(frozenset(files), frozenset(files))
-    )  # one set for all rows alike
+    )  # rows with equal files share one set
 
 
 def _files_of_cell(job_read: job.Job) -> frozenset[str]:
-    """Files of the machines, with the shapes of their links. Planning the row reports their errors."""
+    """Return the machine files and link shape files of a job. Planning reports their errors."""
     with job_files.record_names() as named, contextlib.suppress(InputError):
         cell = run.resolved_cell(job_read)
         for shape in () if cell is None else cell.machine.shapes:
@@ -153,7 +155,7 @@ def _put(values: dict[str, Any], column: str, value: Any, changed: tree.Tree) ->
     if column.startswith(SETTING):
         name, _, key = column[len(SETTING) :].rpartition(
             "."
-        )  # a Label may have dots, a property has none
+        )  # a Label may contain dots, a property name cannot
         if not name:
             raise InputError(
                 "UNKNOWN_KEY", changed.where(column), "write part.set.<object>.<property>"
@@ -167,14 +169,17 @@ def _put(values: dict[str, Any], column: str, value: Any, changed: tree.Tree) ->
 
 
 NAME = ".rows.jsonl"
-FINAL_STATUSES = (0, 3)  # exit statuses of rows that are not tried again
+FINAL_STATUSES = (0, 3)  # exit statuses of rows that are not planned again
 
 
 class Journal:
-    """The journal of a folder. resume: whether its entries count; else it starts empty."""
+    """Journal of a batch folder. resume: whether to use existing entries; else start empty."""
 
     def __init__(self, folder: str, made_by: str, resume: bool) -> None:
-        """made_by: what the results depend on besides jobs and their files."""
+        """Open the journal.
+
+        made_by: identifies everything except jobs and their files that results depend on.
+        """
         self._folder, self._made_by, self._path = folder, made_by, os.path.join(folder, NAME)
         self._files: dict[str, str] = {}
         self._known = dict(self._lines()) if resume else {}
@@ -183,7 +188,7 @@ class Journal:
                 os.remove(self._path)
 
     def known(self, row: Row, dry: bool) -> dict[str, Any] | None:
-        """The result of a row that was done before; None without one."""
+        """Return the stored result of a row, None if the row has none."""
         entry = self._known.get(self._digest(row, dry))
         if (
             entry is None
@@ -195,7 +200,7 @@ class Journal:
         return result
 
     def keep(self, row: Row, dry: bool, result: dict[str, Any]) -> None:
-        """Write down what a row has come to, whose outputs are in place."""
+        """Record the result of a row whose outputs are stored."""
         if result["exit"] not in FINAL_STATUSES:
             return
         stored = {name: value for name, value in result.items() if name != "lines"}
@@ -207,14 +212,14 @@ class Journal:
                 "result": stored,
             }
         )
-        with contextlib.suppress(OSError):  # then the row is done again
+        with contextlib.suppress(OSError):  # an unrecorded row is planned again
             os.makedirs(self._folder, exist_ok=True)
             flags = os.O_WRONLY | os.O_APPEND | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0)
             with open(os.open(self._path, flags, 0o644), "a", encoding="utf-8") as stream:
                 stream.write(line + "\n")
 
     def _lines(self) -> list[tuple[str, dict[str, Any]]]:
-        """The entries of the file; an unfinished line of a killed batch is left out."""
+        """Return the entries of the file, except an incomplete line of a killed batch."""
         entries = []
         try:
             with open(self._path, encoding="utf-8", errors="replace") as stream:
@@ -241,18 +246,18 @@ class Journal:
         return hashlib.sha256(content.encode()).hexdigest()
 
     def _file(self, name: str) -> str:
-        """The digest of a file, computed once per batch; '' without a file."""
+        """Return the digest of a file, computed once per batch; '' without a file."""
         if name not in self._files:
             self._files[name] = digest(name)
         return self._files[name]
 
     def _report(self, row: Row) -> str:
-        """The digest of a row's report, which is written last of its outputs."""
+        """Return the digest of a row's report, which is the last output written."""
         return digest(os.path.join(self._folder, row.folder, REPORT)) or "none"
 
 
 def digest(path: str) -> str:
-    """The SHA-256 of a file; '' if it cannot be read."""
+    """Return the SHA-256 of a file, '' if it cannot be read."""
     if not os.path.isfile(path):
         return ""
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs a batch: plans the rows of a table, several at once, each in its process (`row.py`) or on a cluster."""
+"""Run a batch: plan the rows of a table in parallel, in processes (`row.py`) or on a cluster."""
 
 from __future__ import annotations
 
@@ -33,9 +33,11 @@ _WORST_FIRST = (1, 130, 2, 3, 0)
 
 @dataclass(frozen=True)
 class How:
-    """How a batch is carried out. processes: rows at the same time on the local machine; scheduler:
-    address of a cluster's scheduler instead. resume: rows that an earlier run completed are kept.
-    dry: rows are only checked.
+    """Options of a batch run.
+
+    processes: number of parallel local processes. scheduler: address of a cluster scheduler, used
+    instead of local processes. resume: whether to keep rows completed by an earlier run. dry:
+    whether to only check rows.
     """
 
     processes: int = 1
@@ -45,8 +47,11 @@ class How:
 
 
 def run(path: str, job_path: str, output: str | None, how: How, session: Session) -> int:
-    """Plan every row; the summary goes to stdout. The exit status of the worst row: 1 over 130 over 2 over 3."""
-    planning.import_all()  # once for all rows
+    """Plan every row and write the summary to stdout. Return the worst exit status of all rows.
+
+    The order from the worst status is 1, 130, 2, 3.
+    """
+    planning.import_all()  # import once for all rows
     columns, rows = row_table.read(path, job_path)
     folder = output or os.path.join(
         os.path.dirname(os.path.abspath(job_path)),
@@ -91,7 +96,7 @@ def run(path: str, job_path: str, output: str | None, how: How, session: Session
 def _planned(
     rows: list[row_table.Row], folder: str, how: How, session: Session, journal: row_table.Journal
 ) -> Iterable[tuple[row_table.Row, dict[str, Any]]]:
-    """Rows with their results, as they end; finished rows are written to the journal."""
+    """Yield rows with their results as rows finish; record finished rows in the journal."""
     if not how.scheduler or not rows:
         return _planned_here(rows, folder, how, session, journal)
     return _planned_there(rows, folder, how, session, journal)
@@ -142,7 +147,7 @@ def _planned_here(
 
 
 def _progress(finished: int, rows: int, now: int, seconds: float) -> str:
-    """The progress, and an estimate of the remaining time."""
+    """Return the progress text with the estimated remaining time."""
     remaining_s = (rows - finished) * seconds / max(now, 1)
     text = (
         f"{remaining_s / 3600:.1f} h"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs a job: part to programs in a document, and all that is written about it."""
+"""Run a job: plan all stages in a document and write all outputs."""
 
 from __future__ import annotations
 
@@ -21,12 +21,14 @@ from .job.job import SECTIONS, Job
 
 Plan = Callable[
     [Job, str], Any
-]  # the stages of a job, given the error code of the automatic choice
+]  # returns the stages of a job, given the error code that the automatic choice caused
 
 
 def planned(job: Job, plan: Plan, close: Callable[[Any], None]) -> Any:
-    """The stages of a job. If automatically chosen curved layers end with an error, with planes; if
-    chosen walls do, with fixed build directions, provided that these succeed. close: disposes of
+    """Plan the stages of a job, with fallbacks for automatic choices that fail.
+
+    If automatically chosen curved layers fail, plan with planes. If an automatically chosen wall
+    fails, plan with a fixed build direction and keep this plan if it succeeds. close: disposes of
     unused stages.
     """
     stages = plan(job, "")
@@ -44,12 +46,12 @@ def planned(job: Job, plan: Plan, close: Callable[[Any], None]) -> Any:
 
 
 def _in_vain(stages: Any, is_chosen: bool) -> str:
-    """The code of the first error if something was chosen automatically; else ''."""
+    """Return the code of the first error if `is_chosen`, else ''."""
     return next((issue.code for issue in stages.issues if is_chosen and issue.level == ERROR), "")
 
 
 def _curved(job: Job, stages: Any) -> bool:
-    """Whether curved layers were chosen for a feature that leaves layers open."""
+    """Whether curved layers were chosen automatically for a feature."""
     feature_pairs = zip(job.features, stages.job.features, strict=True)
     return any(
         job_feature.sections is not None
@@ -60,7 +62,7 @@ def _curved(job: Job, stages: Any) -> bool:
 
 
 def _leaning(job: Job, stages: Any) -> bool:
-    """Whether a wall was chosen for a feature that leaves its directions open, and one was not yet tried in vain."""
+    """Whether a wall with free build directions was chosen automatically and a remedy may exist."""
     from freecad_am.core.planning.remedies import NO_REMEDY
 
     if stages.joint_path is None and any(issue.code == NO_REMEDY for issue in stages.issues):
@@ -73,8 +75,9 @@ def _leaning(job: Job, stages: Any) -> bool:
 
 
 def _with(feature: JobFeature, alone: bool) -> JobFeature:
-    """A feature changed to clear its nozzle: a wall gets one direction, curved layers (of a single
-    feature) become plane ones.
+    """Return a feature changed so that the nozzle clears the part.
+
+    A wall gets one build direction. Curved layers become planes if `alone`, the only feature.
     """
     from freecad_am.core.parameters.filled import PLANES
 
@@ -90,8 +93,9 @@ def _with(feature: JobFeature, alone: bool) -> JobFeature:
 
 
 def _check_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None]) -> Any:
-    """The stages with a note on whether the whole job is feasible with the remedy that its toolpath
-    reported for the nozzle; unchanged without such a remedy.
+    """Test whether the job is feasible with the nozzle remedy that its toolpath reported.
+
+    Return the stages with a note on the outcome, unchanged without such a remedy.
     """
     from freecad_am.core.planning.remedies import NO_REMEDY, REMEDY
 
@@ -120,7 +124,7 @@ def _check_remedy(job: Job, stages: Any, plan: Plan, close: Callable[[Any], None
 
 @dataclass(frozen=True)
 class Result:
-    """The files of a run (absolute paths) and its exit status, 0 or 3."""
+    """Files of a run (absolute paths), its report and its exit status, 0 or 3."""
 
     paths: list[str]
     report: dict[str, Any]
@@ -129,10 +133,10 @@ class Result:
 
 @dataclass
 class Stages:
-    """The stages as far as they got: document objects and the findings about them."""
+    """Stages planned so far: document objects and their issues."""
 
     document: Any
-    job: Any = None  # with the families chosen that it left open
+    job: Any = None  # the job with automatically chosen families filled in
     cell: Any = None
     features: list[Any] = field(default_factory=list)
     toolpath: Any = None
@@ -143,7 +147,7 @@ class Stages:
 
     @contextlib.contextmanager
     def timed(self, stage: str, session: Any) -> Iterator[None]:
-        """Report a stage and take its time."""
+        """Report the progress of a stage and record its duration."""
         from freecad_am.objects.work.progress import told_to
 
         name = stage.replace("_", " ")
@@ -164,17 +168,17 @@ def default_folder(job: Job) -> str:
 
 
 def import_all() -> None:
-    """Import what a run needs, for a process that starts others."""
+    """Import the modules of a run, in a process that forks workers."""
     require_freecad()
     from freecad_am import api  # noqa: F401
     from freecad_am.report import made  # noqa: F401
 
 
 def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
-    """Plan a job and write its outputs into `folder`, report.html only with `page`. `session`
-    receives progress and findings.
+    """Plan a job and write its outputs to `folder`, including report.html if `page`.
 
-    Raises InputError; then nothing is written. An infeasible job has a result, but no programs.
+    `session` receives progress and issues. Raises InputError and then writes nothing. An
+    infeasible job has a result but no programs.
     """
     started = time.perf_counter()
     require_freecad()
@@ -200,7 +204,7 @@ def run(job: Job, folder: str, session: Any, page: bool = True) -> Result:
 
 @contextlib.contextmanager
 def named_by_keys(job: Job) -> Iterator[None]:
-    """Errors about stages of a document as ones about keys of the job."""
+    """Convert errors about document stages to errors about job keys."""
     try:
         yield
     except InputError as found:
@@ -211,10 +215,9 @@ def named_by_keys(job: Job) -> Iterator[None]:
 
 
 def check(job: Job) -> Any:
-    """Reject errors before the long work starts: machine, limits, set-up, post, name of the
-    program.
+    """Check machine, limits, set-up, post and program name before the long computation.
 
-    The cell without its feature, or None.
+    Return the cell resolved without a feature, None for a job without a cell.
     """
     if job.program is not None:
         from freecad_am.posts import catalogue
@@ -230,7 +233,10 @@ def check(job: Job) -> Any:
 
 
 def resolved_cell(job: Job) -> Any:
-    """The cell of a job without its feature, or None. Raises InputError as `core.kinematics.cell.resolve`."""
+    """Return the job's cell resolved without a feature, None without a cell.
+
+    Raises InputError as `core.kinematics.cell.resolve`.
+    """
     if job.cell is None:
         return None
     import numpy as np
@@ -242,7 +248,7 @@ def resolved_cell(job: Job) -> Any:
 
 
 def _in_a_document(job: Job, session: Any, fails: str) -> Stages:
-    """The stages of a job in a document of its own."""
+    """Plan the stages of a job in a new document."""
     import FreeCAD
 
     document = job_document.new_document(job)
@@ -254,8 +260,10 @@ def _in_a_document(job: Job, session: Any, fails: str) -> Stages:
 
 
 def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
-    """All stages of a job in a document; stops at an infeasible stage, with the reason in `issues`.
-    fails: error code of the first automatic choice for an open setting.
+    """Plan all stages of a job in a document. Stop at an infeasible stage.
+
+    The reason is in `issues` of the result. fails: error code that the first automatic choice
+    caused, '' for the first attempt.
     """
 
     from freecad_am import api
@@ -272,7 +280,7 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
         controllers.check_beads(
             api.result(stages.toolpath), job.program.post, job.program.max_points
         )
-        # before the work that takes long; the stage of the program has the same findings
+        # report before joint planning; the program stage reports the same issues later
         session.issues(controllers.size_issues(api.result(stages.toolpath), job.program))
     with stages.timed("joint_path", session):
         stages.joint_path = api.make_joint_path(
@@ -281,7 +289,7 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
     path_issues = api.issues(stages.joint_path)
     if any(
         issue.code == HEIGHTS for issue in path_issues
-    ):  # at the speeds as run, not only as asked for
+    ):  # the joint path predicts heights at executed speeds, which replaces the earlier issue
         stages.issues = [issue for issue in stages.issues if issue.code != HEIGHTS]
     stages.issues += path_issues
     if has_errors(stages.issues):
@@ -293,7 +301,7 @@ def plan(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
 
 
 def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -> Stages:
-    """The stages of a job in a document up to its toolpath, as `plan`."""
+    """Plan the stages of a job up to the toolpath, as in `plan`."""
     from freecad_am import api
     from freecad_am.core.strategies.estimated_size import LARGE_CODE
 
@@ -322,10 +330,10 @@ def as_far_as_toolpath(job: Job, document: Any, session: Any, fails: str = "") -
         stages.issues += api.issues(feature)
     session.issues(
         issue for issue in stages.issues if issue.code == LARGE_CODE
-    )  # before the work that takes long
+    )  # report before the long computation
     with stages.timed("toolpath", session):
         stages.toolpath = toolpath_of(job, document, stages.features, stages.cell, shapes[0].scan)
-    # a toolpath repeats the findings about its wall
+    # a toolpath repeats the issues of its wall
     stages.issues += [issue for issue in api.issues(stages.toolpath) if issue not in stages.issues]
     return stages
 
@@ -344,7 +352,7 @@ def _make_program(stages: Stages) -> None:
 
 
 def _as_chosen(job: Job, shapes: Sequence[Any]) -> Job:
-    """The job with the features as they were chosen."""
+    """Return the job with its automatically chosen features."""
     features = tuple(shape.of for shape in shapes)
     return dataclasses.replace(
         job, features=features, process=features[0].process if len(features) == 1 else job.process
@@ -360,7 +368,7 @@ def _write(
     started: float,
     page: bool,
 ) -> Result:
-    """Everything but the page, which is drawn last."""
+    """Write all outputs. The page is drawn last."""
     from freecad_am import api
     from freecad_am.core.simulation import waypoints
     from freecad_am.report import figures, made

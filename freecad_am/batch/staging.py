@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The hidden folder inside the folder of outputs in which a run collects its files before it moves
-them out.
+"""Hidden staging folder in the output folder, in which a run collects its files.
 
-`.unfinished-*/` holds a mark, which its run keeps locked as long as it lives, the files, and, once
-these are complete, a list of files to move and remove. The next run in the folder carries out the
-list of a killed run and removes its remains. Nothing is written, moved or removed through a link.
+`.unfinished-*/` contains a mark file, which the run keeps locked while it is alive, and the files.
+When the files are complete, it also contains a list of files to move and remove. The next run in
+the folder executes the list of a killed run and removes its remains. Nothing is written, moved or
+removed through a link.
 """
 
 from __future__ import annotations
@@ -22,25 +22,23 @@ from typing import Any
 
 try:
     import fcntl
-except ImportError:  # Windows: runs do not know of one another there
+except ImportError:  # Windows: runs cannot detect each other
     fcntl = None  # type: ignore[assignment]
 
 PREFIX, MARK, FILES, NOTE = ".unfinished-", "run-of-freecad-am", "files", "to-publish.json"
-WAIT = 10.0  # s for another run that is moving its files, which takes milliseconds
+WAIT = 10.0  # s; timeout for another run to move its files, which takes milliseconds
 HELD_SIGNALS = ("SIGINT", "SIGTERM", "SIGHUP")
 
 
 class Linked(OSError):
-    """A link in place of one of our folders."""
+    """A link exists where a folder of the run is expected."""
 
 
 class Staging:
-    """The hidden folder of the run. `others`: whether other runs are at work in the same folder of
-    outputs.
-    """
+    """Staging folder of a run. others: whether other runs use the same output folder."""
 
     def __init__(self, folder: str) -> None:
-        """Make it. What runs that were killed have left is finished and removed first."""
+        """Make the staging folder, after finishing and removing the remains of killed runs."""
         self.folder, self.path, self._mark = folder, "", -1
         try:
             with locked(folder), uninterrupted():
@@ -57,7 +55,7 @@ class Staging:
             raise
 
     def publish(self, names: Sequence[str], old: Sequence[str]) -> None:
-        """Remove the old files and move those named into place."""
+        """Remove the files `old` and move the files `names` into place."""
         with locked(self.folder):
             refuse(self.folder, [*names, *old])
             note = os.path.join(self.path, NOTE)
@@ -68,7 +66,7 @@ class Staging:
             os.remove(note)
 
     def remove(self) -> None:
-        """Remove it with all that is in it."""
+        """Remove the staging folder with its content."""
         with uninterrupted():
             if self.path:
                 _discard(self.path)
@@ -77,8 +75,10 @@ class Staging:
 
 
 def refuse(folder: str, names: Sequence[str]) -> None:
-    """Raise OSError if files with the given names cannot be written or removed inside the folder:
-    links, files where folders belong, folders where files belong, closed folders.
+    """Raise OSError if files with the given names cannot be written or removed in the folder.
+
+    The reasons are links, files in place of folders, folders in place of files, and missing
+    permissions.
     """
     for name in names:
         target = os.path.join(folder, *name.split("/"))
@@ -96,7 +96,7 @@ def refuse(folder: str, names: Sequence[str]) -> None:
 
 
 def is_inside(name: Any) -> bool:
-    """Whether this is the name of a file inside a folder, with slashes."""
+    """Whether a name with slashes is a valid path inside a folder."""
     return (
         isinstance(name, str)
         and "\0" not in name
@@ -106,13 +106,13 @@ def is_inside(name: Any) -> bool:
 
 
 def clear(folder: str) -> None:
-    """Finish and remove what killed runs have left in a folder of outputs."""
+    """Finish and remove the remains of killed runs in an output folder."""
     with locked(folder), uninterrupted():
         _cleared(folder)
 
 
 def _cleared(folder: str) -> bool:
-    """Finish and remove what killed runs have left; whether others are at work."""
+    """Finish and remove the remains of killed runs; return whether other runs are active."""
     has_others = False
     for entry in sorted(os.listdir(folder)):
         path = os.path.join(folder, entry)
@@ -121,7 +121,9 @@ def _cleared(folder: str) -> bool:
         try:
             mark = os.open(os.path.join(path, MARK), os.O_RDWR | getattr(os, "O_NOFOLLOW", 0))
         except OSError:
-            with contextlib.suppress(OSError):  # killed before it had its mark, or not ours
+            with contextlib.suppress(
+                OSError
+            ):  # killed before making its mark, or not a staging folder
                 os.rmdir(path)
             continue
         try:
@@ -136,7 +138,7 @@ def _cleared(folder: str) -> bool:
 
 
 def _finish(folder: str, path: str) -> None:
-    """Carry out what a killed run has noted."""
+    """Execute the list of a killed run."""
     try:
         with open(os.path.join(path, NOTE), encoding="utf-8") as stream:
             note = json.load(stream)
@@ -162,7 +164,7 @@ def _carry_out(folder: str, path: str, names: Sequence[str], old: Sequence[str])
 
 
 def _remove(folder: str, name: str) -> None:
-    """Remove a file, and folders that are empty without it."""
+    """Remove a file, and parent folders that become empty."""
     path = os.path.join(folder, *name.split("/"))
     if os.path.isfile(path) or os.path.islink(path):
         os.remove(path)
@@ -173,7 +175,7 @@ def _remove(folder: str, name: str) -> None:
 
 
 def _discard(path: str) -> None:
-    """Remove a hidden folder, its mark last: it identifies the folder as ours."""
+    """Remove a staging folder, the mark last, because the mark identifies the folder."""
     with contextlib.suppress(OSError):
         for entry in os.listdir(path):
             if entry != MARK:
@@ -188,7 +190,7 @@ def _discard(path: str) -> None:
 
 @contextlib.contextmanager
 def locked(folder: str) -> Iterator[None]:
-    """While this lasts no other run makes or removes hidden folders, or moves files, in this folder."""
+    """Within the context, no other run changes staging folders or moves files in `folder`."""
     if fcntl is None:
         yield
         return
@@ -205,7 +207,7 @@ def locked(folder: str) -> Iterator[None]:
 
 
 def _lock(descriptor: int) -> bool:
-    """Whether the file is locked for this process now. File systems without locks let everybody in."""
+    """Lock a file; return whether the lock succeeded. Without lock support, every lock succeeds."""
     if fcntl is None:
         return True
     try:
@@ -219,7 +221,7 @@ def _lock(descriptor: int) -> bool:
 
 @contextlib.contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Holds Ctrl-C and requests to end back while files are moved, which takes milliseconds."""
+    """Within the context, delay termination signals, for file moves that take milliseconds."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return

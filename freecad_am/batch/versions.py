@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Inputs of a result's digits besides its job: versions of the software, and our own code."""
+"""Software versions and package code, which affect the digits of a result besides the job."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from collections.abc import Iterator
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 LAUNCHER, PACKAGE = "freecad-am", "freecad_am"
 _WINDOW = os.path.join(PACKAGE, "gui")
-_WHEN = (1980, 1, 1, 0, 0, 0)  # of every file in the archive: the same code is the same bytes
+_WHEN = (1980, 1, 1, 0, 0, 0)  # fixed date of all archive files, for reproducible archives
 
 
 def found_versions() -> dict[str, str]:
-    """Versions by the name of the program or library, in the current process, which has FreeCAD."""
+    """Return versions by program or library name, for the current process with FreeCAD."""
     import FreeCAD
     import numpy as np
     import Part
@@ -40,7 +40,7 @@ def found_versions() -> dict[str, str]:
 
 @functools.cache
 def package() -> bytes:
-    """An archive of our code and data without the window, which runs headless commands where it is unpacked."""
+    """Return an archive of code and data, without the GUI, that can run headless commands."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         for name in _files():
@@ -53,7 +53,7 @@ def package() -> bytes:
 
 @functools.cache
 def code() -> str:
-    """The digest of our code and data without the window."""
+    """Return the digest of code and data, without the GUI."""
     digest = hashlib.sha256()
     for name in _files():
         with open(os.path.join(ROOT, name), "rb") as stream:
@@ -62,7 +62,7 @@ def code() -> str:
 
 
 def _files() -> Iterator[str]:
-    """Names below ROOT, sorted."""
+    """Yield sorted file names relative to ROOT."""
     yield LAUNCHER
     for folder, _, files in sorted(os.walk(os.path.join(ROOT, PACKAGE))):
         name = os.path.relpath(folder, ROOT)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faces to be covered with layers of beads: exact surfaces and a mesh over their smooth regions."""
+"""Faces for cladding: exact surfaces, and one mesh per smooth region."""
 
 from __future__ import annotations
 
@@ -27,18 +27,20 @@ OF_RADIUS, OF_SPACING, FINEST_TRIANGLE = (
     0.25,
     0.5,
     0.1,
-)  # edges: shares of the smallest radius and the bead spacing; lower bound, mm
-MOST_NAMED = 8  # faces named in a message
+)  # edge length as a fraction of minimum radius, and its upper and lower fraction of bead spacing
+MOST_NAMED = 8  # maximum number of face names in a message
 
 
 def clad_faces(
     shape: Any, names: Sequence[str], spacing: float, back: bool, height: float, label: str
 ) -> CladFaces:
-    """The named faces of a Part.Shape (all faces of a shape without solids) for beads `spacing` mm
-    apart in layers up to `height` mm above them. back: cover their other side.
+    """Return the named faces of a Part.Shape, prepared for cladding.
 
-    InputError NO_FACES, UNKNOWN_FACE, SEVERAL_BODIES, BACK_OF_SOLID, BRANCHING_FACES, and the
-    errors of `sheet`.
+    Without names, use all faces of a shape that has no solids. spacing: bead spacing, mm. back:
+    whether to clad the back of the faces. height: height of the last layer above the faces, mm.
+
+    Raises InputError NO_FACES, UNKNOWN_FACE, SEVERAL_BODIES, BACK_OF_SOLID, BRANCHING_FACES, and
+    the errors of `sheet`.
     """
     with reported(label, shape):
         faces_of_names = faces_by_name(shape, names, label)
@@ -62,7 +64,7 @@ def clad_faces(
 
 
 def _refuse_several(shape: Any, named: Sequence[tuple[str, Any]], back: bool, label: str) -> None:
-    """InputError SEVERAL_BODIES for faces of several solids, BACK_OF_SOLID for the inside of one."""
+    """Raise InputError SEVERAL_BODIES for faces of several solids, BACK_OF_SOLID for the inside."""
     owners = {}
     for number, solid in enumerate(shape.Solids):
         codes = {face.hashCode() for face in solid.Faces}
@@ -100,8 +102,9 @@ def _flip(wall: PatchWall) -> PatchWall:
 def _smooth(
     wall: PatchWall, height: float, label: str
 ) -> tuple[tuple[PatchWall, ...], tuple[Issue, ...]]:
-    """The regions of the wall that connect without a crease, and warnings where layers gape or
-    overlap at creases.
+    """Split the wall at its creases. Return the smooth regions and crease warnings.
+
+    Layers separate or overlap at creases.
     """
     edges = Edges(wall.triangles)
     if (edges.count > 2).any():
@@ -127,8 +130,9 @@ def _smooth(
 
 
 def _turns(wall: PatchWall, ends: Index, pair: Index) -> tuple[Array, Mask]:
-    """The angles (k,) rad by which the normals of two patches differ at edges between them, 0
-    within one; and whether the faces form a hollow there.
+    """Return the crease angles (k,) rad at edges, and whether the faces form a hollow there (k,).
+
+    The crease angle is the angle between the normals of two patches, 0 inside a patch.
     """
     turn, inward = np.zeros(len(ends)), np.zeros(len(ends), dtype=bool)
     for patch, other_patch in np.unique(pair[pair[:, 0] != pair[:, 1]], axis=0):
@@ -152,7 +156,7 @@ def _middle(wall: PatchWall, patch: int) -> Array:
 
 
 def _part(wall: PatchWall, mask: Mask) -> PatchWall:
-    """The wall of a selection (m,) of its triangles."""
+    """Return the part of the wall with the triangles in `mask` (m,)."""
     used, index = np.unique(wall.triangles[mask], return_inverse=True)
     patches, patch = np.unique(wall.patch[mask], return_inverse=True)
     return PatchWall(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves from edges of a shape: beads with the normals of the faces that carry them, and guides."""
+"""Curves from shape edges: beads with the normals of adjacent faces, and guide curves."""
 
 from __future__ import annotations
 
@@ -21,16 +21,19 @@ from .shapes.tessellate import fine
 from .walls.patch_wall import sampled
 from .walls.wall import faces_by_name
 
-MIN_EDGE_MM = 1e-4  # mm; shorter edges are none
+MIN_EDGE_MM = 1e-4  # mm; shorter edges are ignored
 ON_FACE = 0.01  # mm; maximum distance of a curve from its faces
-STEP = 2.0  # mm from point to point at most where normals are taken
+STEP = 2.0  # mm; maximum point spacing on curves with face normals
 
 
 def curves_of(
     shape: Any, edges: Sequence[str], faces: Sequence[str], chord_error: float, label: str
 ) -> list[BeadCurve]:
-    """The chains that named edges form, all edges of the shape without names, as points within the chord error. faces: whose
-    normals are the directions. Raises InputError UNKNOWN_EDGE, UNKNOWN_FACE, NO_CURVES, OFF_FACE."""
+    """Return the chains of the named edges as curves of points within the chord error (mm).
+
+    Without edge names, use all edges of the shape. faces: names of faces whose normals are the
+    directions. Raises InputError UNKNOWN_EDGE, UNKNOWN_FACE, NO_CURVES, OFF_FACE.
+    """
     edges_by_name = {f"Edge{number + 1}": edge for number, edge in enumerate(shape.Edges)}
     faces_by_name = {f"Face{number + 1}": face for number, face in enumerate(shape.Faces)}
     for names, available, kind in ((edges, edges_by_name, "Edge"), (faces, faces_by_name, "Face")):
@@ -67,7 +70,7 @@ def curves_of(
 
 
 def _polyline(chain: Sequence[Any], chord_error: float, dense: bool) -> Array:
-    """Points (n, 3) of edges that follow one another."""
+    """Return the points (n, 3) of consecutive edges."""
     rows = []
     for edge in chain:
         points = np.array([tuple(point) for point in edge.discretize(Deflection=chord_error)])
@@ -96,7 +99,7 @@ def _polyline(chain: Sequence[Any], chord_error: float, dense: bool) -> Array:
 
 
 def _normals(points: Array, faces: Sequence[Any], label: str) -> Array:
-    """Unit normals (n, 3) of the faces nearest to points. Raises InputError OFF_FACE."""
+    """Return unit normals (n, 3) of the nearest face at each point. Raises InputError OFF_FACE."""
     normals = np.empty_like(points)
     for k, point in enumerate(points.tolist()):
         vertex = Part.Vertex(*point)
@@ -116,14 +119,15 @@ def _normals(points: Array, faces: Sequence[Any], label: str) -> Array:
     return np.asarray(normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
 
-# ---- A guide curve from edges of a shape
+# ---- Guide curve from shape edges
 
-MIN_GUIDE_EDGE_MM = 1e-3  # mm; shorter edges are none
+MIN_GUIDE_EDGE_MM = 1e-3  # mm; shorter edges are ignored
 
 
 def edges_of(shape: Any, names: Sequence[str], label: str) -> list[tuple[Array, Array]]:
-    """Points and unit tangents (n, 3) of named edges of a shape; of every edge without names.
-    Raises InputError UNKNOWN_EDGE, GUIDE_OPEN.
+    """Return points and unit tangents (n, 3) of the named edges, or of all edges without names.
+
+    Raises InputError UNKNOWN_EDGE; GUIDE_OPEN for a shape with faces and no edge names.
     """
     edges_by_name = {f"Edge{number + 1}": edge for number, edge in enumerate(shape.Edges)}
     wrong = [name for name in names if name not in edges_by_name]
@@ -152,12 +156,13 @@ def _nodes(edge: Any) -> tuple[Array, Array]:
     return points[distinct], tangents[distinct]
 
 
-# ---- Faces below the first layer of a solid, as triangles
+# ---- Triangles of the faces below the first layer of a solid
 
 
 def triangles_of_faces(shape: Any, names: Sequence[str], label: str, chord_error: float) -> Array:
-    """Triangles (k, 3, 3) of faces of a shape, all where none are named, with the chord error of
-    solids. Raises InputError NO_WALL, UNKNOWN_FACE.
+    """Return the triangles (k, 3, 3) of the named faces, or of all faces without names.
+
+    chord_error: chord error of the solids, mm. Raises InputError NO_WALL, UNKNOWN_FACE.
     """
     faces_of_names = faces_by_name(shape, names, label)
     selection = Part.makeCompound(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The solids on a hub and the cylinders and cones that carry them: chosen faces, a given surface,
-or detected.
+"""Solids on a hub and their bases: the cylinders and cones on which the solids grow.
+
+Bases are selected faces, a surface given by numbers, or detected surfaces.
 """
 
 from __future__ import annotations
@@ -30,16 +31,17 @@ from .shapes.no_solid import no_solid
 from .shapes.part_depths import sections_agree
 from .shapes.tessellate import WELDED, Tessellation, fine
 
-FINER = (1.0, 0.8, 1.2, 0.5)  # of the deflection asked for, in the order in which they are tried
+FINER = (1.0, 0.8, 1.2, 0.5)  # factors on the requested deflection, in the order of attempts
 MAX_DEFLECTIONS = (
-    1.5  # deflections between triangles and shape, on average over its area, that are not fault
+    1.5  # maximum mean deviation of triangles from the shape over its area, in deflections
 )
 
 
 def complete_mesh(solid: Any, chord: float, label: str) -> tuple[Tessellation, tuple[Issue, ...]]:
-    """Triangles within about `chord` mm of a Part.Solid, whose volume equals the solid's within its
-    area times a few chords; with a warning MESH_VOLUME if no attempt does and the sections differ
-    from the solid's, too.
+    """Tessellate a Part.Solid within about `chord` mm, and check the enclosed volume.
+
+    The volume may differ by about the solid's area times `chord`. If every attempt differs more,
+    and the sections differ from the solid's sections too, return a warning MESH_VOLUME.
     """
     exact, area = abs(float(solid.Volume)), float(solid.Area)
     attempts: list[tuple[float, Tessellation]] = []
@@ -53,7 +55,7 @@ def complete_mesh(solid: Any, chord: float, label: str) -> tuple[Tessellation, t
     if sections_agree(
         solid, tessellation.vertices, tessellation.triangles, chord, abs(volume - exact)
     ):
-        return tessellation, ()  # it is the kernel's integral of the volume that is off
+        return tessellation, ()  # the kernel's volume integral is wrong, not the mesh
     volume, tessellation = min(attempts, key=lambda attempt: abs(attempt[0] - exact))
     message = Text(
         "{}: its triangles enclose {:.4g} cm3 but its faces {:.4g} cm3; check the part and "
@@ -65,21 +67,21 @@ def complete_mesh(solid: Any, chord: float, label: str) -> tuple[Tessellation, t
     return tessellation, (Issue(WARNING, "MESH_VOLUME", message),)
 
 
-SHARE = 0.4  # of the chord error, between solids and their triangles
+SHARE = 0.4  # fraction of the chord error allowed between solids and their triangles
 CROSSED = (
-    5.0  # chord errors; triangles of a sound solid may cut one another by some where it is thin
+    5.0  # chord errors; allowed overlap of crossing triangles, which thin valid solids can have
 )
-TOLERANCE = 1e-6  # relative; surfaces that differ less count as one
-FITTED = 1e-3  # mm; maximum deviation of a spline from its cylinder or cone
-EDGE_SAMPLES = 361  # points of an edge, that may go round
+TOLERANCE = 1e-6  # relative; surfaces that differ by less count as the same surface
+FITTED = 1e-3  # mm; maximum deviation of a spline surface from a cylinder or cone
+EDGE_SAMPLES = 361  # sample points per edge, sufficient for a full circle
 MIN_GAP_RAD = math.radians(
     3.0
-)  # a gap narrower than this, as a keyway or between such points, is none
+)  # minimum angular gap of a face; narrower gaps (keyways, sample spacing) are ignored
 KNOWN = ("Part::GeomPlane", "Part::GeomSphere", "Part::GeomToroid")
 
 
 class Bodies(NamedTuple):
-    """Solids as triangles, and notes on repairs."""
+    """Solids as triangles, and issues about repairs."""
 
     bodies: tuple[Body, ...]
     issues: tuple[Issue, ...]
@@ -88,10 +90,12 @@ class Bodies(NamedTuple):
 def bodies_of(
     source: Any, label: str, chord_error: float, mend: float, touching: bool = False
 ) -> Bodies:
-    """The solids of a Part.Shape, or the pieces of a mesh (a Mesh.Mesh, or a Body), in part coordinates.
-    mend: the largest hole of a mesh that is closed, mm. touching: a solid may touch itself along edges, and cut itself.
+    """Return the solids of a Part.Shape or the pieces of a mesh, as triangles in part coordinates.
 
-    InputError NO_SOLID, SELF_CROSSING, and the errors of `mesh_repair.repaired`.
+    source: a Part.Shape, Mesh.Mesh or Body. mend: maximum size of a mesh hole to close, mm.
+    touching: whether a solid may touch itself along edges or intersect itself.
+
+    Raises InputError NO_SOLID, SELF_CROSSING, and the errors of `repair_mesh`.
     """
     if isinstance(source, Body) or hasattr(source, "Topology"):
         if isinstance(source, Body):
@@ -128,7 +132,7 @@ def bodies_of(
 
 
 def _loose(source: Any, label: str) -> tuple[Issue, ...]:
-    """A note of the faces and edges of a shape that belong to none of its solids: they are not deposited."""
+    """Return a note on the faces and edges of a shape outside its solids, which are ignored."""
     of_solids = {face.hashCode() for solid in source.Solids for face in solid.Faces}
     of_faces = {edge.hashCode() for face in source.Faces for edge in face.Edges}
     faces = sum(face.hashCode() not in of_solids for face in source.Faces)
@@ -147,7 +151,7 @@ def _loose(source: Any, label: str) -> tuple[Issue, ...]:
 def _meshed(
     solid: Any, source: Any, chord_error: float, label: str, mend: float, touching: bool
 ) -> Repaired:
-    """The mesh of a solid, repaired if the faces of the solid do not meet."""
+    """Mesh a solid; repair the mesh if the faces of the solid do not meet."""
     tessellation, issues = complete_mesh(solid, SHARE * chord_error, label)
     vertices, corners = tessellation.vertices, tessellation.triangles
     if len(np.unique(tessellation.owner)) < len(solid.Faces):
@@ -184,7 +188,7 @@ def _meshed(
 
 
 def _move_mesh(source_solid: Any, mesh: SolidMesh, solid: Any) -> SolidMesh:
-    """The mesh of a solid that differs from another only by its placement."""
+    """Return the mesh of `solid`, which differs from `source_solid` only in placement."""
     transform = np.array(
         solid.Placement.multiply(source_solid.Placement.inverse()).toMatrix().A
     ).reshape(4, 4)
@@ -208,7 +212,10 @@ def _named(solids: Sequence[SolidMesh], label: str) -> tuple[Body, ...]:
 def seat_of_numbers(
     radius: float, height: float, point: Sequence[float], direction: Sequence[float]
 ) -> Seat:
-    """A base by its numbers: middle of its base circle and direction of its axis, towards the apex, in the part."""
+    """Return the base given by numbers, in part coordinates.
+
+    point: centre of the base circle, mm. direction: axis direction, towards the apex.
+    """
     z = np.array(direction, dtype=np.float64)
     base = Base(
         "the base",
@@ -219,8 +226,11 @@ def seat_of_numbers(
 
 
 def seats(faces: Sequence[tuple[str, Any]], selected: bool) -> list[Seat]:
-    """The cylinders and cones of faces (name, Part.Face), one for faces of the same surface. With `selected` other faces are
-    refused, else left out: InputError NOT_DEVELOPABLE, INNER_FACE."""
+    """Return the cylinders and cones of faces (name, Part.Face), merging faces of one surface.
+
+    With `selected`, raise InputError NOT_DEVELOPABLE or INNER_FACE for other faces. Otherwise
+    ignore other faces.
+    """
     seats_found: list[Seat] = []
     for name, face in faces:
         seat = _seat(name, face, selected)
@@ -280,9 +290,11 @@ def _seat(name: str, face: Any, selected: bool) -> Seat | None:
 
 
 def _round(face: Any) -> tuple[Array, Array, float, float] | None:
-    """The apex of a cone, or a point of the axis of a cylinder, the unit axis, the cylinder's radius, the cone's half angle
-    (0 of a cylinder); None for other surfaces. Splines and swept surfaces that are a cylinder or cone within FITTED are
-    such."""
+    """Return axis point, unit axis, radius (mm) and half angle (rad) of a cylinder or cone.
+
+    The axis point of a cone is the apex; its radius is 0. The half angle of a cylinder is 0. Spline
+    and swept surfaces count if they fit a cylinder or cone within FITTED. None for other surfaces.
+    """
     surface, kind = face.Surface, face.Surface.TypeId
     if kind == "Part::GeomCone":
         return (
@@ -326,15 +338,16 @@ def _round(face: Any) -> tuple[Array, Array, float, float] | None:
 
 
 def _flat(points: Array) -> bool:
-    """Whether points (n, 3) are coplanar up to rounding: an axis fit to such points would run long
-    in vain.
-    """
+    """Whether points (n, 3) are coplanar up to rounding; a slow axis fit to them would fail."""
     spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
     return bool(spread[2] <= 1e-9 * spread[0])
 
 
 def _profile(points: Array, origin: Array, z: Array) -> tuple[Array, Array, float, float]:
-    """Heights and radii (n,) of points about an axis; slope and radius at its origin of the line through them."""
+    """Return heights and radii (n,) of points about an axis, and a line fitted to them.
+
+    The line is given by its slope and its radius at the origin.
+    """
     along = (points - origin) @ z
     rho = lengths(points - origin - along[:, None] * z)
     slope, at_origin = np.linalg.lstsq(np.c_[along, np.ones(len(along))], rho, rcond=None)[0]
@@ -342,7 +355,7 @@ def _profile(points: Array, origin: Array, z: Array) -> tuple[Array, Array, floa
 
 
 def _best_axis(points: Array, origin: Array, z: Array) -> tuple[Array, Array]:
-    """The axis near a given one about which points (n, 3) fit a cylinder or cone best."""
+    """Refine an axis so that points (n, 3) best fit a cylinder or cone about it."""
     middle = origin + ((points - origin) @ z).mean() * z
     across = np.linalg.svd(z[None])[2][1:]
     size = float(np.abs(points - middle).max())
@@ -367,8 +380,9 @@ def _faces_inwards(face: Any, origin: Array, z: Array) -> bool:
 
 
 def _shift(base: Base, other: Base) -> float | None:
-    """The height of the frame of another base along the axis of `base` if both are the same
-    surface, else None.
+    """Return the height of the `other` frame along the axis of `base`, mm.
+
+    None if the bases are different surfaces.
     """
     local_origin = base.inside(other.frame[:3, 3])
     size = base.surface.radius

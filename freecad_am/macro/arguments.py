@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Documents and paths as macros give them: anything else in their place is refused before something is done with it."""
+"""Checks of macro arguments, made before a function changes the document."""
 
 from __future__ import annotations
 
@@ -24,16 +24,17 @@ from ..objects.shapes.nested import resolved
 from ..objects.stage import Stage
 from ..objects.stage_parts import Link
 
-# ---- Parameters given to a stage as keywords or dataclasses
+# ---- Stage parameters as keywords or dataclasses
 
 
 def set_parameters(
     obj: Any, stage: Stage, dataclasses: Sequence[Any], values: dict[str, Any]
 ) -> None:
-    """Set the parameters of a stage: whole dataclasses (None leaves the properties) and, over them, single values in
-    outer units by row key, or expressions (`=Spreadsheet.height`) that they follow from now on.
+    """Set the parameters of a stage: first whole dataclasses, then individual values.
 
-    All are checked before the first is set. InputError names the bad value.
+    A dataclass of None leaves its properties unchanged. values: by row key, in outer units, or
+    expressions (`=Spreadsheet.height`) that the property follows from now on. All values are
+    checked before the first is set. InputError names the bad value.
     """
     rows_by_key = {row.key: row for section in stage.sections for row in rows.rows(section.cls)}
     unknown = sorted(set(values) - set(rows_by_key))
@@ -57,7 +58,7 @@ def set_parameters(
         )
     try:
         checked = _checked_parameters(obj, stage, by_class, values)
-    except ReferenceError:  # an object that is gone cannot even be named
+    except ReferenceError:  # reading the name of a deleted object fails
         raise InputError(
             "BAD_INPUT", obj.Label, "the value is a deleted object; give a number or a text"
         ) from None
@@ -70,7 +71,7 @@ def set_parameters(
 def _checked_parameters(
     obj: Any, stage: Stage, by_class: dict[type, Any], values: dict[str, Any]
 ) -> list[Any]:
-    """The dataclasses with given values, by class as a whole or by key."""
+    """Build the dataclasses from the given dataclasses and the values by key."""
     checked = []
     for section in stage.sections:
         own_rows = {row.key: row for row in rows.rows(section.cls) if row.key in values}
@@ -87,7 +88,7 @@ def _checked_parameters(
 
 
 def _plain(obj: Any, row: rows.Row, value: Any, where: str) -> Any:
-    """The value, or what its expression gives now."""
+    """Return the value, or the current result if the value is an expression."""
     if not rows.is_expression(value):
         return value
     if row.form not in rows.FOLLOW:
@@ -98,7 +99,7 @@ def _plain(obj: Any, row: rows.Row, value: Any, where: str) -> Any:
 
 
 def checked_document(doc: Any, where: str = "doc") -> Any:
-    """The document. Raises InputError BAD_INPUT for anything else, by the name of the argument."""
+    """Return the document. Raises InputError BAD_INPUT, naming the argument, for anything else."""
     if not isinstance(doc, App.Document) or is_gone(doc):
         raise InputError(
             "BAD_INPUT",
@@ -110,8 +111,10 @@ def checked_document(doc: Any, where: str = "doc") -> Any:
 
 
 def checked_object(value: Any, where: str, doc: Any = None) -> Any:
-    """The object, of a document where that is given.
-    Raises InputError BAD_INPUT for anything else, by the name of the argument."""
+    """Return the object, which must belong to `doc` unless `doc` is None.
+
+    Raises InputError BAD_INPUT, naming the argument, for anything else.
+    """
     if isinstance(value, (tuple, list)) and value and isinstance(value[0], App.DocumentObject):
         raise InputError(
             "BAD_INPUT",
@@ -138,7 +141,7 @@ def checked_object(value: Any, where: str, doc: Any = None) -> Any:
 
 
 def checked_objects(values: Any, where: str, doc: Any = None) -> list[Any]:
-    """The objects of a list; none of None. Raises InputError BAD_INPUT as `checked_object`."""
+    """Return a list of objects; [] for None. Raises InputError BAD_INPUT as `checked_object`."""
     if values is None:
         return []
     if not isinstance(values, Iterable) or isinstance(values, (str, bytes, Mapping)):
@@ -152,7 +155,10 @@ def checked_objects(values: Any, where: str, doc: Any = None) -> list[Any]:
 
 
 def checked_names(names: Any, where: str) -> list[str]:
-    """Names of faces and edges; a text is one name, and None is none. Raises InputError BAD_INPUT for anything else."""
+    """Return names of faces and edges as a list; a string is one name, None gives [].
+
+    Raises InputError BAD_INPUT for anything else.
+    """
     texts = [names] if isinstance(names, str) else [] if names is None else names
     if not isinstance(texts, (list, tuple, set, frozenset)) or not all(map(is_text, texts)):
         raise InputError(
@@ -165,21 +171,24 @@ def checked_names(names: Any, where: str) -> list[str]:
 
 
 def checked_text(value: Any, where: str) -> str:
-    """The text. Raises InputError BAD_INPUT for anything else, by the name of the argument."""
+    """Return the string. Raises InputError BAD_INPUT, naming the argument, for anything else."""
     if not is_text(value):
         raise InputError("BAD_INPUT", where, "{} is not a text; put it in quotes", named(value))
     return value
 
 
 def checked_number(value: Any, where: str) -> float:
-    """The number. Raises InputError BAD_INPUT for anything else, by the name of the argument."""
+    """Return the number as a float. Raises InputError BAD_INPUT, naming the argument, otherwise."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real) or math.isnan(value):
         raise InputError("BAD_INPUT", where, "{} is not a number; pass one such as 2", named(value))
     return float(value)
 
 
 def checked_keywords(values: Any, where: str) -> dict[str, Any]:
-    """Values by key, none of None. Raises InputError BAD_INPUT for anything else, by the name of the argument."""
+    """Return the mapping as a dict; {} for None.
+
+    Raises InputError BAD_INPUT, naming the argument, for anything else.
+    """
     if values is None:
         return {}
     if not isinstance(values, Mapping) or not all(isinstance(key, str) for key in values):
@@ -190,8 +199,10 @@ def checked_keywords(values: Any, where: str) -> dict[str, Any]:
 
 
 def checked_list(values: Any, where: str) -> list[Any]:
-    """The values of a list, none of None.
-    Raises InputError BAD_INPUT for anything else, by the name of the argument."""
+    """Return the sequence as a list; [] for None.
+
+    Raises InputError BAD_INPUT, naming the argument, for anything else.
+    """
     if values is None:
         return []
     if not isinstance(values, (list, tuple)):
@@ -202,7 +213,7 @@ def checked_list(values: Any, where: str) -> list[Any]:
 
 
 def checked_target(path: Any, where: str) -> str:
-    """Return the path of an output file as `checked_path` does; the path must have a file name."""
+    """Return a path as `checked_path` does, but reject an empty path."""
     text = checked_path(path, where)
     if not text.strip():
         raise InputError(
@@ -215,8 +226,10 @@ def checked_target(path: Any, where: str) -> str:
 
 
 def checked_path(path: Any, where: str) -> str:
-    """The path of a file or folder as a text.
-    Raises InputError BAD_INPUT for anything else, by the name of the argument."""
+    """Return the path of a file or folder as a string.
+
+    Raises InputError BAD_INPUT, naming the argument, for anything else.
+    """
     text = os.fspath(path) if isinstance(path, os.PathLike) else path
     if not is_text(text):
         raise InputError(
@@ -231,9 +244,9 @@ def checked_path(path: Any, where: str) -> str:
 def checked_job(
     doc: Any, source: Any, process: Any, then: Any, mend: Any, **texts: Any
 ) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """Check the process, the further features and the arguments without links of `make_all`.
+    """Check the types of the arguments of `make_all`; return `process` and `then`.
 
-    Raises InputError BAD_INPUT with the name of an argument of the wrong type.
+    Raises InputError BAD_INPUT, naming the argument of the wrong type.
     """
     checked_document(doc)
     for key, text in texts.items():
@@ -247,7 +260,7 @@ def checked_job(
 
 
 def is_gone(value: Any) -> bool:
-    """Whether a document was closed, or an object deleted."""
+    """Whether a document has been closed or an object deleted."""
     try:
         return getattr(value, "Name", None) == ""
     except ReferenceError:
@@ -255,9 +268,7 @@ def is_gone(value: Any) -> bool:
 
 
 def named(value: Any) -> str:
-    """Return the name of a value for a message: objects and documents have a label instead of an
-    address.
-    """
+    """Return the name of a value for a message: the label of an object or document, else repr."""
     return (
         safe_repr(value)
         if is_gone(value)
@@ -268,17 +279,16 @@ def named(value: Any) -> str:
 TEXTS = {
     "ProgramName": "name",
     "File": "file",
-}  # properties next to links, and their names in macros
+}  # text properties and their macro argument names
 
 
 def checked_links(
     doc: Any, links: Sequence[Link], values: dict[str, Any], stage: Any = None
 ) -> dict[str, Any]:
-    """Return the values of links, by name, in the form of properties, with the values that belong
-    to them.
+    """Check the values of links and of related properties; return them in property form, by name.
 
-    None stays None. of: the existing stage of the links, if any. Raises InputError BAD_INPUT with
-    the key of the link, or for a path to a missing face or edge.
+    None stays None. stage: the stage that has the links, if it exists. Raises InputError BAD_INPUT
+    with the key of the link, or for a path to a missing face or edge.
     """
     by_name = {link.name: link for link in links}
     checked = dict(values)
@@ -292,7 +302,7 @@ def checked_links(
     dependents = [] if stage is None else [stage, *stage.InListRecursive]
     for name in checked.keys() & by_name.keys():
         for target in _objects(checked[name]):
-            if target in dependents:  # FreeCAD takes it, and falls over it
+            if target in dependents:  # FreeCAD accepts the cycle, then fails to recompute
                 raise InputError(
                     "BAD_INPUT",
                     by_name[name].key,
@@ -304,7 +314,7 @@ def checked_links(
 
 
 def _objects(value: Any) -> list[Any]:
-    """The objects of a link as a property takes it."""
+    """Return the linked objects of a link value in property form."""
     if value is None:
         return []
     return value if isinstance(value, list) else [value[0] if isinstance(value, tuple) else value]
@@ -330,7 +340,7 @@ def make_stage(
     parameters: Sequence[Any],
     values: dict[str, Any],
 ) -> Any:
-    """A stage with its links and parameters, computed; nothing is left of one that fails."""
+    """Make a stage, set its links and parameters, and compute it. On failure, remove the stage."""
     checked_document(doc)
     checked_text(label, "label")
     links = checked_links(doc, proxy.links, links)
@@ -354,12 +364,12 @@ def make_stage(
 
 
 def with_faces(source: Any, faces: Any) -> Any:
-    """Return a link to an object, or to its faces; None for no object."""
+    """Return a link to an object and its faces; None without an object."""
     return None if source is None else (source, checked_names(faces, "faces"))
 
 
 def owned(owner: Any, names: Any, key: str) -> Any:
-    """Return a link to faces or edges of an object; None for none.
+    """Return a link to faces or edges of an object; None without names.
 
     Raises InputError BAD_INPUT for names without an object.
     """
@@ -375,13 +385,13 @@ def owned(owner: Any, names: Any, key: str) -> Any:
 
 
 def renew(obj: Any, force: bool = False) -> None:
-    """Compute a stage where its inputs have changed, or by force."""
+    """Compute a stage if its inputs have changed or `force` is set."""
     obj.Proxy.renew(obj, force)
     obj.purgeTouched()
 
 
 def checked_stage(obj: Any) -> stages.Stage:
-    """The proxy of a stage. Raises InputError BAD_INPUT for any other object."""
+    """Return the proxy of a stage. Raises InputError BAD_INPUT for any other object."""
     proxy = None if is_gone(obj) else stages.stage_of(obj)
     if proxy is None:
         raise InputError("BAD_INPUT", named(obj), "it is not a stage of the workbench; choose one")
@@ -389,7 +399,7 @@ def checked_stage(obj: Any) -> stages.Stage:
 
 
 def in_order(objects: Sequence[Any]) -> list[Any]:
-    """Return the stages among the objects, inputs first."""
+    """Return the stages among the objects, inputs before dependent stages."""
     return sorted(
         (obj for obj in objects if stages.stage_of(obj)), key=lambda obj: len(obj.OutListRecursive)
     )
@@ -397,11 +407,10 @@ def in_order(objects: Sequence[Any]) -> list[Any]:
 
 @contextlib.contextmanager
 def one_step(doc: Any, name: str) -> Iterator[None]:
-    """Run one undo step, which is undone completely on failure; part of an open step, if there is
-    one.
+    """Run the block as one undo step and undo the step on failure. Join an open step.
 
-    In a document without undo, such as one without a window, a failure removes the new objects.
-    Raises InputError BAD_INPUT if `doc` is not a document.
+    In a document without undo, such as a document without a window, a failure removes the new
+    objects. Raises InputError BAD_INPUT if `doc` is not a document.
     """
     checked_document(doc)
     if App.getActiveTransaction():
@@ -422,13 +431,13 @@ def one_step(doc: Any, name: str) -> Iterator[None]:
 
 @contextlib.contextmanager
 def _remove_new_objects(doc: Any) -> Iterator[None]:
-    """Remove objects that were made within it where it fails, the last ones first."""
+    """If the block fails, remove the objects that it made, newest first."""
     names = {obj.Name for obj in doc.Objects}
     try:
         yield
     except BaseException:
         for name in [obj.Name for obj in doc.Objects if obj.Name not in names][::-1]:
-            if doc.getObject(name) is not None:  # it may have gone with another one
+            if doc.getObject(name) is not None:  # removing an object may remove others
                 doc.removeObject(name)
         raise
 
@@ -436,7 +445,7 @@ def _remove_new_objects(doc: Any) -> Iterator[None]:
 def _end_step(end: Callable[[], None], abort: bool) -> None:
     """End an undo step.
 
-    FreeCAD leaves a step without changes open, and adds the next change to it.
+    FreeCAD leaves a step without changes open and adds the next change to this step.
     """
     end()
     if App.getActiveTransaction():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Changes of the macro interface: change a stage and recompute all stages that follow."""
+"""Macro functions that change a stage and recompute all dependent stages."""
 
 from __future__ import annotations
 
@@ -27,17 +27,17 @@ from .arguments import (
 
 
 def change(obj: Any, **values: Any) -> Any:
-    """Change parameters or inputs of a stage, recompute it and the following stages.
+    """Change parameters or inputs of a stage, then recompute the stage and its dependent stages.
 
-    An error of a following stage appears in its own Status. An error of the stage itself is
-    raised and reverts the change, in documents with undo (those with a window).
+    An error of a dependent stage appears in the Status of that stage. An error of the changed stage
+    is raised. In documents with undo (documents with a window), the error also reverts the change.
 
     Parameters
     ----------
     obj : App.DocumentObject
         The stage.
     **values : Any
-        Parameters or inputs by key, as its `make_...` takes them.
+        Parameters or inputs by key, as in the `make_...` function of the stage.
 
     Returns
     -------
@@ -47,7 +47,7 @@ def change(obj: Any, **values: Any) -> Any:
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
@@ -87,7 +87,7 @@ def change(obj: Any, **values: Any) -> Any:
 
 @contextlib.contextmanager
 def _unmarked_where_refused(obj: Any) -> Iterator[None]:
-    """Clear the recompute mark that FreeCAD sets when a step is undone, as nothing has changed."""
+    """If the block fails, clear the recompute mark that FreeCAD sets when it undoes a step."""
     marked = "Touched" in obj.State
     try:
         yield
@@ -98,19 +98,19 @@ def _unmarked_where_refused(obj: Any) -> Iterator[None]:
 
 
 def recompute(target: Any, force: bool = False) -> None:
-    """Renew a document, or a stage and its inputs, shapes and expressions too.
+    """Recompute a document, or a stage and its inputs, including shapes and expressions.
 
     Parameters
     ----------
     target : App.Document or App.DocumentObject
         The document or stage.
     force : bool, optional
-        Whether to compute even stages that fit their inputs.
+        Whether to compute stages that are up to date too.
 
     Raises
     ------
     AmError
-        The first error met, at the end.
+        The first error, raised after all stages have been tried.
 
     Examples
     --------

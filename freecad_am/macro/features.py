@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Features of the macro interface, one function per family."""
+"""Macro functions that make features, one per family."""
 
 from __future__ import annotations
 
@@ -23,11 +23,11 @@ from .arguments import (
     with_faces,
 )
 
-# ---- The feature object of each family, imported when one is made
+# ---- The feature class of each family, imported on first use
 
 
 def proxy_of(kind: str) -> type[Any]:
-    """The class of the features of a family. Raises InputError BAD_VALUE for an unknown kind."""
+    """Return the feature class of a family. Raises InputError BAD_VALUE for an unknown kind."""
     if kind not in KINDS:
         raise InputError(
             "BAD_VALUE",
@@ -53,7 +53,7 @@ def make_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Make a feature of revolution of an object with a shape, or of some of its faces.
+    """Make a feature of revolution from an object with a shape, or from some of its faces.
 
     Parameters
     ----------
@@ -62,19 +62,19 @@ def make_feature(
     source : App.DocumentObject
         The object.
     faces : sequence of str, optional
-        Names of its faces; empty for the complete object.
+        Names of the object's faces; empty for the complete object.
     label : str, optional
         Label of the feature.
     axis : tuple, optional
-        (object, "Edge1") where the shape has no axis.
+        (object, "Edge1") if the shape has no axis.
     fixtures : sequence of Any, optional
-        Objects, solids or meshes, that the nozzle must not touch.
+        Solids or meshes that the nozzle must not touch.
     strategy : RevolutionParameters or None, optional
-        All parameters of the layers; None for the defaults.
+        Complete layer parameters; None for the defaults.
     build_direction : BuildDirectionParameters or None, optional
-        All parameters of the build direction; None for the defaults.
+        Complete build direction parameters; None for the defaults.
     **values : Any
-        Single parameters by key.
+        Individual parameters by key.
 
     Returns
     -------
@@ -84,7 +84,7 @@ def make_feature(
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
@@ -114,27 +114,27 @@ def make_feature_of(
     parameters: Sequence[Any] = (),
     values: Mapping[str, Any] | None = None,
 ) -> Any:
-    """Make a feature of any family, by its kind.
+    """Make a feature of the given kind.
 
     Parameters
     ----------
     doc : App.Document
         The document.
     kind : str
-        Kind of the family, such as "solid".
+        Family kind, such as "solid".
     source : App.DocumentObject
         The object.
     faces : sequence of str, optional
-        Names of its faces or edges; empty for all.
+        Names of the object's faces or edges; empty for all.
     label : str, optional
         Label of the feature.
     links : Mapping[str, Any] or None, optional
-        Links by property name; the feature uses those of its family. `StartEdges` and
-        `BaseFaces` only contain names.
+        Links by property name; links of other families are ignored. `StartEdges` and
+        `BaseFaces` may contain names only.
     parameters : sequence of Any, optional
-        Dataclasses of its sections.
+        Parameter dataclasses of the feature's sections.
     values : Mapping[str, Any] or None, optional
-        Single parameters by key.
+        Individual parameters by key.
 
     Returns
     -------
@@ -144,7 +144,7 @@ def make_feature_of(
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
     """
     checked_document(doc)
     proxy = proxy_of(checked_text(kind, "kind"))
@@ -170,7 +170,7 @@ def make_feature_of(
 
 
 def _is_owned(names: Any) -> bool:
-    """Whether names of faces or edges come with their object."""
+    """Whether the value is a pair of an object and the names of its faces or edges."""
     return isinstance(names, tuple) and len(names) == 2 and not isinstance(names[0], str)
 
 
@@ -187,7 +187,7 @@ def make_surface_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Make a feature of a wall of an object's faces.
+    """Make a wall feature from faces of an object.
 
     Parameters
     ----------
@@ -196,21 +196,21 @@ def make_surface_feature(
     source : App.DocumentObject
         The object.
     faces : sequence of str, optional
-        Names of the faces of the wall.
+        Names of the wall faces.
     substrate : App.DocumentObject, optional
         The solid or closed mesh on which the wall grows.
     label : str, optional
         Label of the feature.
     start_edges : sequence of str, optional
-        Names of edges of its own on which the wall starts.
+        Names of source edges on which the wall starts.
     fixtures : sequence of Any, optional
-        Further objects, solids or meshes, that the nozzle must not touch.
+        Further solids or meshes that the nozzle must not touch.
     strategy : SurfaceParameters or None, optional
-        All parameters of the layers; None for the defaults.
+        Complete layer parameters; None for the defaults.
     build_direction : BuildDirectionParameters or None, optional
-        All parameters of the build direction; None for the defaults.
+        Complete build direction parameters; None for the defaults.
     **values : Any
-        Single parameters by key.
+        Individual parameters by key.
 
     Returns
     -------
@@ -220,7 +220,7 @@ def make_surface_feature(
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
@@ -253,7 +253,7 @@ def make_developable_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Make a feature of solids, or closed meshes, on cylinders and cones of a hub.
+    """Make a feature of solids or closed meshes that grow on cylinders and cones of a hub.
 
     Parameters
     ----------
@@ -264,22 +264,22 @@ def make_developable_feature(
     substrate : App.DocumentObject, optional
         The hub.
     base_faces : sequence of str, optional
-        Faces of the hub on which the solids grow; empty for those that they touch.
+        Hub faces on which the solids grow; empty for the faces that the solids touch.
     label : str, optional
         Label of the feature.
     faces : sequence of str, optional
-        Faces of the source itself, if hub and solids are one object.
+        Faces of the source, if hub and solids are one object.
     further : sequence of Any, optional
         More objects to print.
     fixtures : sequence of Any, optional
-        Further objects, solids or meshes, that the nozzle must not touch.
+        Further solids or meshes that the nozzle must not touch.
     strategy : DevelopableParameters or None, optional
-        All parameters of the layers; None for the defaults.
+        Complete layer parameters; None for the defaults.
     build_direction : BuildDirectionParameters or None, optional
-        All parameters of the build direction; None for the defaults.
+        Complete build direction parameters; None for the defaults.
     **values : Any
-        Single parameters by key; `base_radius=60, base_height=200` gives the base by
-        numbers.
+        Individual parameters by key; `base_radius=60, base_height=200` defines the base
+        numerically.
 
     Returns
     -------
@@ -289,7 +289,7 @@ def make_developable_feature(
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
@@ -327,7 +327,7 @@ def make_solid_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Make a feature of any solids, or closed meshes, in plane layers.
+    """Make a feature of solids or closed meshes, sliced into plane layers by default.
 
     Parameters
     ----------
@@ -336,24 +336,24 @@ def make_solid_feature(
     source : App.DocumentObject
         The solids.
     substrate : App.DocumentObject, optional
-        The object below them, if it is not a platform.
+        The object below the solids, if they do not stand on a platform.
     label : str, optional
         Label of the feature.
     further : sequence of Any, optional
         More objects to print.
     guide : App.DocumentObject or tuple, optional
-        For layers="along": an object or (object, ["Edge1"]).
+        Guide curve for layers="along": an object or (object, ["Edge1"]).
     start_faces : sequence of str or tuple, optional
-        For layers="geodesic" and "offset": names of the source's faces, or (object,
-        ["Face1"]), below the first layer.
+        Faces below the first layer, for layers="geodesic" and "offset": names of the source's
+        faces, or (object, ["Face1"]).
     fixtures : sequence of Any, optional
-        Further objects, solids or meshes, that the nozzle must not touch.
+        Further solids or meshes that the nozzle must not touch.
     strategy : SolidParameters or None, optional
-        All parameters of the layers; None for the defaults.
+        Complete layer parameters; None for the defaults.
     build_direction : BuildDirectionParameters or None, optional
-        All parameters of the build direction; None for the defaults.
+        Complete build direction parameters; None for the defaults.
     **values : Any
-        Single parameters by key.
+        Individual parameters by key.
 
     Returns
     -------
@@ -363,7 +363,7 @@ def make_solid_feature(
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
@@ -399,7 +399,7 @@ def make_curves_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Make a feature of curves that are printed as beads.
+    """Make a feature of curves to print as beads.
 
     Parameters
     ----------
@@ -408,20 +408,20 @@ def make_curves_feature(
     source : App.DocumentObject
         Edges, a wire, a sketch, or a table of points from `open_part`.
     faces : sequence of str, optional
-        Names of faces whose normals are the directions, and of the edges to print if not
-        all.
+        Names of faces whose normals give the tool directions, and of the edges to print;
+        without edge names, all edges are printed.
     substrate : App.DocumentObject, optional
         The object below the curves.
     label : str, optional
         Label of the feature.
     fixtures : sequence of Any, optional
-        Further objects, solids or meshes, that the nozzle must not touch.
+        Further solids or meshes that the nozzle must not touch.
     strategy : CurvesParameters or None, optional
-        All parameters of the layers; None for the defaults.
+        Complete layer parameters; None for the defaults.
     build_direction : BuildDirectionParameters or None, optional
-        All parameters of the build direction; None for the defaults.
+        Complete build direction parameters; None for the defaults.
     **values : Any
-        Single parameters by key.
+        Individual parameters by key.
 
     Returns
     -------
@@ -431,7 +431,7 @@ def make_curves_feature(
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------
@@ -461,7 +461,7 @@ def make_cladding_feature(
     build_direction: BuildDirectionParameters | None = None,
     **values: Any,
 ) -> Any:
-    """Make a feature of faces covered with layers of beads along their normals.
+    """Make a cladding feature: cover faces with layers of beads along the face normals.
 
     Parameters
     ----------
@@ -470,19 +470,19 @@ def make_cladding_feature(
     source : App.DocumentObject
         The object.
     faces : sequence of str, optional
-        Names of its faces; empty for all faces of an object that is not a solid.
+        Names of the object's faces; empty for all faces, if the object is not a solid.
     substrate : App.DocumentObject, optional
-        A further object that the nozzle must not touch.
+        Another object that the nozzle must not touch.
     label : str, optional
         Label of the feature.
     fixtures : sequence of Any, optional
-        Further objects, solids or meshes, that the nozzle must not touch.
+        Further solids or meshes that the nozzle must not touch.
     strategy : CladdingParameters or None, optional
-        All parameters of the layers; None for the defaults.
+        Complete layer parameters; None for the defaults.
     build_direction : BuildDirectionParameters or None, optional
-        All parameters of the build direction; None for the defaults.
+        Complete build direction parameters; None for the defaults.
     **values : Any
-        Single parameters by key.
+        Individual parameters by key.
 
     Returns
     -------
@@ -492,7 +492,7 @@ def make_cladding_feature(
     Raises
     ------
     InputError
-        For wrong values.
+        If a value is invalid.
 
     Examples
     --------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The scan of a substrate: measured points, registered to it or left in their coordinates."""
+"""Macro functions for exports, part files and substrate scans."""
 
 from __future__ import annotations
 
@@ -26,26 +26,26 @@ from .arguments import (
 
 @one_thread()
 def export(program: Any, folder: str) -> list[str]:
-    """Write the files of a program, or the figures of an inspection, into a folder.
+    """Write the files of a program, or the results of an inspection, into a folder.
 
-    Parts that an earlier, longer program of this name left there are removed.
+    If an earlier program of the same name had more part files, the surplus files are removed.
 
     Parameters
     ----------
     program : App.DocumentObject
         The program or inspection.
     folder : str
-        Path of the folder, which is created if needed.
+        Path of the folder; created if missing.
 
     Returns
     -------
     list of str
-        Paths of the files.
+        Paths of the written files.
 
     Raises
     ------
     InputError
-        WRONG_KIND for any other stage, NOT_WRITABLE for the folder.
+        WRONG_KIND for any other stage, NOT_WRITABLE if the folder is not writable.
 
     Examples
     --------
@@ -71,7 +71,7 @@ def export(program: Any, folder: str) -> list[str]:
 
 @one_thread()
 def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
-    """Write beads as wires into a STEP or DXF file.
+    """Write beads as wires to a STEP or DXF file.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def export_wires(obj: Any, path: str, *, rapids: bool = False) -> str:
 
 
 def export_cell(cell: Any, path: str) -> str:
-    """Write a cell into a file of its own, which jobs name: `cell: my-cell.yaml`.
+    """Write a cell to a separate file that jobs can refer to: `cell: my-cell.yaml`.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ def export_cell(cell: Any, path: str) -> str:
 
 
 def export_waypoints(obj: Any, path: str) -> str:
-    """Write points as a table, as the commands write waypoints.csv.
+    """Write the points as a table, in the format of waypoints.csv.
 
     Parameters
     ----------
@@ -167,7 +167,7 @@ def export_waypoints(obj: Any, path: str) -> str:
 
 @one_thread()
 def export_report(obj: Any, path: str) -> str:
-    """Write a report as a page, as the commands write report.html.
+    """Write the report as an HTML page, in the format of report.html.
 
     Parameters
     ----------
@@ -200,7 +200,7 @@ def export_report(obj: Any, path: str) -> str:
 
 @one_thread()
 def make_cam_path(obj: Any) -> Any:
-    """Make a path of the CAM workbench, to be inspected there; it does not follow changes.
+    """Make a CAM workbench path for inspection. The path does not follow later changes.
 
     Parameters
     ----------
@@ -230,16 +230,16 @@ def make_cam_path(obj: Any) -> Any:
 
 @one_thread()
 def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> Any:
-    """Make a thinned trajectory of the Robot workbench; it does not follow changes.
+    """Make a thinned Robot workbench trajectory. The trajectory does not follow later changes.
 
     Parameters
     ----------
     obj : App.DocumentObject
         A toolpath, joint path or program.
     tolerance : float, optional
-        Largest distance of a removed point, mm.
+        Maximum distance of a removed point from the trajectory, mm.
     turn : float, optional
-        Largest turn of the tool axis at a removed point, degrees.
+        Maximum angle error of the tool axis at a removed point, degrees.
 
     Returns
     -------
@@ -266,10 +266,9 @@ def make_trajectory(obj: Any, *, tolerance: float = 0.1, turn: float = 2.0) -> A
 def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
     """Open a part file as an object of the document.
 
-    The file is STEP, IGES, BREP, or an object in an FCStd file. It may also be a mesh (STL,
-    OBJ, 3MF): solids on a hub, the substrate of a wall, or a body that the nozzle must not
-    touch. Tables of points (CSV), G-code of a slicer and toolpaths of AdaOne (.ada3dp) are
-    printed as beads.
+    Supported files are STEP, IGES, BREP and objects in FCStd files. Meshes (STL, OBJ, 3MF) are
+    accepted as solids on a hub, as the substrate of a wall, or as a body that the nozzle must not
+    touch. Point tables (CSV), slicer G-code and AdaOne toolpaths (.ada3dp) are printed as beads.
 
     Parameters
     ----------
@@ -280,7 +279,7 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
     object : str, optional
         Name or Label of the object in an FCStd file.
     scale : float, optional
-        Length of one unit of an STL or OBJ file, which has no unit, mm.
+        Length of one unit of an STL or OBJ file, mm; these formats store no unit.
 
     Returns
     -------
@@ -290,7 +289,7 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
     Raises
     ------
     InputError
-        For a file that cannot be read.
+        If the file cannot be read.
 
     Examples
     --------
@@ -322,17 +321,17 @@ def open_part(doc: Any, path: str, object: str = "", scale: float = 1.0) -> Any:
 
 
 def array_element(array: Any, index: int) -> Any:
-    """Return an element of a link array as an object for stages.
+    """Return an element of a link array as an object that stages accept.
 
-    It is the element itself if FreeCAD shows elements as objects (`ShowElement`, of Draft
-    `ExpandArray`), else a hidden link to it next to the array.
+    If FreeCAD shows elements as objects (`ShowElement`, in Draft `ExpandArray`), return the
+    element. Otherwise return a hidden link to the element, placed next to the array.
 
     Parameters
     ----------
     array : App.DocumentObject
         The link array.
     index : int
-        Number of the element, from 0 as in FreeCAD's selection.
+        Index of the element, from 0 as in FreeCAD's selection.
 
     Returns
     -------
@@ -342,7 +341,7 @@ def array_element(array: Any, index: int) -> Any:
     Raises
     ------
     InputError
-        BAD_INPUT for a number that is not whole.
+        BAD_INPUT if `index` is not an integer.
 
     Examples
     --------
@@ -370,7 +369,7 @@ def make_scan(
     pairs: str = "",
     within: float = 5.0,
 ) -> Any:
-    """Read the points of a file for `make_toolpath(..., scan=...)`.
+    """Read scanned points from a file for `make_toolpath(..., scan=...)`.
 
     Parameters
     ----------
@@ -379,24 +378,24 @@ def make_scan(
     substrate : App.DocumentObject
         The scanned object, with a shape or mesh.
     file : str
-        Points in CSV, TXT, XYZ or ASC, or vertices of STL, OBJ or PLY.
+        File of points (CSV, TXT, XYZ, ASC), or a mesh (STL, OBJ, PLY) whose vertices are used.
     label : str, optional
         Label of the inspection.
     fit : str, optional
-        "best" registers the points to the object, "none" uses them in its coordinates;
-        "auto" uses them unchanged if they are within `within` mm of it.
+        "best" registers the points to the substrate. "none" leaves the points unchanged. "auto"
+        leaves them unchanged if most points lie within `within` mm of the substrate.
     unit : str, optional
-        Unit of the points; "auto" for the one that the file names, else mm.
+        Unit of the points; "auto" for the unit named in the file, else mm.
     pairs : str, optional
-        Three or more measured points and their positions on the object, as in an
-        inspection; they replace any other fit.
+        Three or more measured points and their positions on the substrate, as in an
+        inspection; replaces any other fit.
     within : float, optional
-        Largest distance of points of the object, mm.
+        Maximum distance between points and substrate, mm.
 
     Returns
     -------
     App.DocumentObject
-        An inspection of the object.
+        An inspection of the substrate.
 
     Raises
     ------

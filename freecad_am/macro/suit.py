@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The cell of a new job changed so that the job can be done in it."""
+"""Adapt the cell of a new job until the job is feasible."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ from ..objects.staleness import INFEASIBLE
 from .arguments import one_step, renew
 from .changes import change
 
-SEARCHES = 3  # for a cell, of a new job whose joint path is infeasible
+SEARCHES = 3  # maximum number of cell searches for a new job with an infeasible joint path
 
 
 def suit_path(cell: Any, toolpath: Any, path: Any) -> None:
-    """Look for another cell while an infeasible joint path cannot be planned completely.
+    """Search for another cell while the joint path is infeasible.
 
-    A search only plans some layers, so each search adds the layers that failed in the previous
+    A search plans some layers only, so each search adds the layers that failed in the previous
     cell.
     """
     failed: set[int] = set()
@@ -50,12 +50,11 @@ def suit_path(cell: Any, toolpath: Any, path: Any) -> None:
 
 
 def suit(cell: Any, *stages: Any, failed_layers: Collection[int] = ()) -> bool:
-    """Change a cell object to a pose, branch or positioner with which the job of a toolpath is
-    feasible.
+    """Change the pose, branch or positioner of a cell object so that a toolpath is feasible.
 
-    The toolpath, first of the stages, and all that follows are recomputed. Returns whether the cell
-    has changed: it stays if it is feasible, or if the search has no result. failed_layers: indices
-    of additional layers to check.
+    Recompute `stages`: the toolpath first, then its dependent stages. Return whether the cell has
+    changed. The cell stays unchanged if it is feasible or if the search finds no better cell.
+    failed_layers: indices of additional layers to check.
     """
     settings = cell.Proxy.value(cell)
     suited = suited_cell.suit_to_toolpath(stages[0], failed_layers)(settings)
@@ -86,10 +85,9 @@ def _write(cell: Any, settings: CellParameters, stages: Sequence[Any]) -> None:
 
 
 def proposed_place(cell: Any, values: Mapping[str, Any]) -> None:
-    """Set the deposition point and the branch of a robot cell that a new job has, unless `values`
-    set them.
+    """Set the deposition point and branch of a new job's robot cell, unless `values` sets them.
 
-    The default robot keeps those of its parameters, because macros depend on them.
+    The default robot keeps its default deposition point and branch, because macros depend on them.
     """
     settings = cell.Proxy.value(cell)
     keys = ("deposition_point", "touched", "external")
@@ -101,7 +99,7 @@ def proposed_place(cell: Any, values: Mapping[str, Any]) -> None:
 
 
 def is_held_apart(cell: Any, toolpath: Any) -> bool:
-    """Whether part and substrate of a toolpath stay out of the platform of a cell."""
+    """Whether the substrate and the fixtures of a toolpath stay out of the cell's platform."""
     result, folders = toolpath.Proxy.value(toolpath), tuple(user_machines.folders())
     settings = cell.Proxy.value(cell)
     if not arrangement_of(settings.setup).planned:
@@ -112,8 +110,8 @@ def is_held_apart(cell: Any, toolpath: Any) -> bool:
 def fit_platform(cell: Any, toolpath: Any) -> None:
     """Give a cell object a platform that supports the whole first layer of a toolpath.
 
-    The part is in its middle if `mount` allows this. Nothing changes if the first layer is on the
-    platform already, or if the toolpath cannot be planned with the new one.
+    With `mount` "auto", the platform may be centred on the part. Nothing changes if the first layer
+    is on the platform already, or if the toolpath cannot be planned with the new platform.
     """
     if not any(issue.code == OVER_PLATFORM for issue in issues_of(toolpath)):
         return
@@ -131,9 +129,12 @@ def fit_platform(cell: Any, toolpath: Any) -> None:
 def on_platform(
     cell: Any, features: Sequence[Any], make: Callable[[], Any], sized: bool = False
 ) -> Any:
-    """The toolpath object that is made of features; what reaches below the platform, or begins above it, over nothing, is
-    put on it where `mount` does so: before, where that is known beforehand, as layers may take minutes. sized: the platform
-    is as large as it has to be."""
+    """Make the toolpath object of features, and put the part on the platform where `mount` can.
+
+    The part moves if it reaches below the platform or begins above it, unsupported. Where this is
+    certain in advance, `mount` changes before planning, because layers may take minutes. sized:
+    whether to fit the platform to the first layer.
+    """
     toolpath = _mounted(cell, features, make)
     if sized:
         fit_platform(cell, toolpath)
@@ -141,7 +142,7 @@ def on_platform(
 
 
 def _mounted(cell: Any, features: Sequence[Any], make: Callable[[], Any]) -> Any:
-    """The toolpath object, with `mount` changed where that puts the part on the platform."""
+    """Make the toolpath object; change `mount` if this puts the part on the platform."""
     if _is_above(cell, features):
         change(cell, mount="feature")
     try:
@@ -157,7 +158,7 @@ def _mounted(cell: Any, features: Sequence[Any], make: Callable[[], Any]) -> Any
 
 
 def _is_above(cell: Any, features: Sequence[Any]) -> bool:
-    """Return whether the check will certainly report that a feature begins above the platform."""
+    """Whether the check will certainly report that the feature begins above the platform."""
     settings, proxy = cell.Proxy.value(cell), features[0].Proxy
     family = stage_family(proxy)
     if (
@@ -172,9 +173,7 @@ def _is_above(cell: Any, features: Sequence[Any]) -> bool:
 
 
 def refuse_otherwise(kind: str, layers: str) -> None:
-    """Raise InputError if a feature of this kind has no choice of layers, or not these layers (''
-    for none).
-    """
+    """Raise InputError if features of this kind cannot have these layers; '' passes."""
     family = find_family(kind)
     if layers and (family is None or not family.chooses_layers):
         raise InputError(
@@ -185,10 +184,10 @@ def refuse_otherwise(kind: str, layers: str) -> None:
 
 
 def in_vain(stages: Sequence[Any], otherwise: str) -> bool:
-    """Return whether to rebuild the job of these stages with other layers ('' for none).
+    """Whether to rebuild an infeasible job with the layer kind `otherwise` ('' for none).
 
-    stages: a cell, a feature and what follows. If the job is infeasible, this is reported and its
-    objects are removed.
+    stages: a cell, a feature and the dependent stages. If so, print a warning and remove the
+    job's objects.
     """
     failed = next((stage for stage in stages if stage.Status == INFEASIBLE), None)
     feature = stages[1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The cell in a document: machine, set-up, platform and nozzle."""
+"""Cell stage: machine, set-up, platform and nozzle."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .stage_parts import Outcome, Section, Work
 
 
 class Cell(Stage):
-    """Checks that machine, limits and set-up are known; its result is the CellParameters."""
+    """Result: CellParameters, with machine, limits and set-up checked."""
 
     kind = "cell"
     sections = (Section(CellParameters, "cell", "Cell"),)
@@ -29,7 +29,7 @@ class Cell(Stage):
 
         def work() -> Outcome:
             resolved = cells.resolve(parameters, np.eye(4), folders=folders)
-            cell_obstacles.bodies_of(parameters)  # whether they can be read
+            cell_obstacles.bodies_of(parameters)  # check that obstacle files can be read
             cell_obstacles.torch_of(parameters)
             return Outcome(parameters, figures=(("MachineTitle", resolved.machine.title),))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faces in a document that are covered with layers of beads."""
+"""Cladding feature stage: faces covered with layers of beads."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from .stage_parts import Link, Outcome, Section, Work
 
 
 class CladdingFeature(FeatureStage):
-    """Result: core.geometry.walls.clad_faces.CladFaces, in the coordinates of the document."""
+    """Result: core.geometry.walls.clad_faces.CladFaces, in document coordinates."""
 
     kind = "feature"
     sections = (
@@ -44,7 +44,7 @@ class CladdingFeature(FeatureStage):
         strategy = self.parameters(obj, CladdingParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad values are reported here, not by the toolpath
+        )  # report invalid values here, not in the toolpath
         source, faces = source_of(obj)
         source_body, fixtures = snapshot_of(source), fixtures_of(obj)
         if source_body.shape is None and faces:

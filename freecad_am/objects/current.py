@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether stored results fit the document and the files as they are now. All that writes a result asks here first."""
+"""Check that stored results match the current document and files. All exports run this check."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from .staleness import FAILED, INFEASIBLE, STALE, is_outdated
 
 
 def check_current(obj: Any, code: str = "NO_RESULT", template: str = "") -> None:
-    """Check that the results of a stage and of its input stages fit the current inputs.
+    """Check that the results of a stage and of its input stages match the current inputs.
 
     Parameters
     ----------
     obj : App.DocumentObject
         A stage with a result.
     code : str
-        The code of the error.
+        Error code.
     template : str
-        The message of the error with one place for the reason, about `obj` itself; else it is about the first stage that
-        does not fit.
+        Error message about `obj`, with one placeholder for the reason. If empty, the message is
+        about the first outdated stage.
 
     Raises
     ------
     InputError
-        Where an input was changed, was not recomputed, or is gone.
+        If an input was changed, was not recomputed, or was deleted.
     """
     for stage_object in _chain(obj):
         if reason := reason_outdated(stage_object):
@@ -47,7 +47,7 @@ def check_current(obj: Any, code: str = "NO_RESULT", template: str = "") -> None
 
 
 def reason_outdated(obj: Any) -> str:
-    """Why the stored result of a stage does not fit its inputs, '' where it does."""
+    """Return why the stored result of a stage does not match its inputs, '' if it matches."""
     if obj.Status in (STALE, FAILED):
         return message_of(obj) or str(obj.Status)
     try:
@@ -64,13 +64,14 @@ def reason_outdated(obj: Any) -> str:
 
 
 def is_stale(obj: Any) -> bool:
-    """Whether a stage shows an earlier state than its inputs; an infeasible stage shows the reason."""
+    """Whether a stage result is older than its inputs. Infeasible stages are not stale."""
     return obj.Status == STALE or is_outdated(obj)
 
 
 def reason_stale(obj: Any) -> str:
-    """Why a stage is not up to date: the reason of the first stale stage if it only waits for that
-    one.
+    """Return why a stage is not up to date.
+
+    If the stage waits for a stale input stage, return the reason of the first stale stage.
     """
     if obj.Status == STALE:
         stale_stage = next((stage for stage in _chain(obj) if stage.Status == STALE), obj)
@@ -80,8 +81,10 @@ def reason_stale(obj: Any) -> str:
 
 
 def check_recomputed(obj: Any, code: str = "NO_RESULT") -> None:
-    """Check that FreeCAD has recomputed all that a stage is made of.
-    Raises InputError `code` naming the object that it has not."""
+    """Check that FreeCAD has recomputed all source objects of a stage.
+
+    Raises InputError `code`, naming the object that was not recomputed.
+    """
     for source in _sources(obj):
         if "Touched" in source.State and not _is_from_another_version(source.Document):
             raise InputError(
@@ -93,14 +96,15 @@ def check_recomputed(obj: Any, code: str = "NO_RESULT") -> None:
 
 
 def _chain(obj: Any) -> list[Any]:
-    """A stage and the stages that it is made of, inputs first."""
+    """Return a stage and its input stages, inputs first."""
     stages = [member for member in (obj, *obj.OutListRecursive) if stage_of(member) is not None]
     return sorted(stages, key=lambda stage: len(stage.OutListRecursive))
 
 
 def _sources(obj: Any) -> list[Any]:
-    """The source objects (no stages) of a stage and its inputs, their containers, and the objects
-    that the containers' expressions refer to.
+    """Return the objects, other than stages, that a stage depends on.
+
+    These are source objects, their containers, and objects in the containers' expressions.
     """
     inputs = [member for member in obj.OutListRecursive if stage_of(member) is None]
     around = [outer for member in inputs for outer in containers_of(member)]
@@ -111,6 +115,9 @@ def _sources(obj: Any) -> list[Any]:
 
 
 def _is_from_another_version(document: Any) -> bool:
-    """Whether another version of FreeCAD saved a document: objects whose properties are new count as touched in it."""
+    """Whether another FreeCAD version saved a document.
+
+    In such a document, objects with newly added properties count as touched.
+    """
     saved = str(document.getProgramVersion()) if document.FileName else ""
     return bool(saved) and not saved.startswith(".".join(App.Version()[:2]))

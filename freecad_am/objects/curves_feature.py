@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves in a document that are deposited as beads: edges, wires, sketches, or a file of points."""
+"""Curves feature stage: edges, wires, sketches or a point file, deposited as beads."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from .table_part import points_of, refuse_gcode_keys
 
 
 class CurvesFeature(FeatureStage):
-    """Result: core.geometry.curves.bead_curves.Curves, in the coordinates of the document."""
+    """Result: core.geometry.curves.bead_curves.Curves, in document coordinates."""
 
     kind = "feature"
     sections = (
@@ -49,7 +49,7 @@ class CurvesFeature(FeatureStage):
         strategy = self.parameters(obj, CurvesParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad values are reported here, not by the toolpath
+        )  # report invalid values here, not in the toolpath
         source, names = _source(obj)
         edges = tuple(name for name in names if name.startswith("Edge"))
         faces = tuple(name for name in names if name.startswith("Face"))
@@ -102,7 +102,10 @@ class CurvesFeature(FeatureStage):
 
 
 def _source(obj: Any) -> tuple[Any, tuple[str, ...]]:
-    """The object of Source and the names of the edges and faces chosen. Raises InputError NO_INPUT."""
+    """Return the Source object and the names of the selected edges and faces.
+
+    Raises InputError NO_INPUT without a source.
+    """
     if not obj.Source:
         raise InputError(
             "NO_INPUT",

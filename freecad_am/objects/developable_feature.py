@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids on cylinders and cones in a document: what to deposit, the hub, and how layers are cut and filled."""
+"""Rotary feature stage: solids on cylinders and cones of a hub, with layers and infill."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from .stage_parts import Link, Outcome, Section, Work
 
 
 class DevelopableFeature(FeatureStage):
-    """Result: core.geometry.on_hub.SolidsOnHub, in the coordinates of the document."""
+    """Result: core.geometry.on_hub.SolidsOnHub, in document coordinates."""
 
     kind = "feature"
     sections = (
@@ -72,7 +72,7 @@ class DevelopableFeature(FeatureStage):
         strategy = self.parameters(obj, DevelopableParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad values are reported here, not by the toolpath
+        )  # report invalid values here, not in the toolpath
         inputs, fixtures = _Given.of(obj), fixtures_of(obj)
 
         def work() -> Outcome:
@@ -107,8 +107,11 @@ class DevelopableFeature(FeatureStage):
 
 @dataclasses.dataclass(frozen=True)
 class _Given:
-    """What a feature is made from: the objects to deposit, faces of the first one, the hub, the owner and names of its
-    faces; and the feature's name in errors."""
+    """Inputs of a feature.
+
+    label: feature name in errors. objects: objects to deposit. faces: face names of the first
+    object. substrate: the hub. base_faces: owner and names of the hub faces.
+    """
 
     label: str
     objects: tuple[Taken, ...]
@@ -118,7 +121,7 @@ class _Given:
 
     @classmethod
     def of(cls, obj: Any) -> _Given:
-        """As the document has it. Raises InputError NO_INPUT, BAD_FACES, NO_SHAPE."""
+        """Read the inputs of a feature object. Raises InputError NO_INPUT, BAD_FACES, NO_SHAPE."""
         source, faces = source_of(obj)
         base = (snapshot_of(obj.BaseFaces[0]), tuple(obj.BaseFaces[1])) if obj.BaseFaces else None
         return cls(
@@ -137,8 +140,9 @@ def found_in(
     base_faces: tuple[Taken, tuple[str, ...]] | None,
     strategy: DevelopableParameters,
 ) -> SolidsOnHub:
-    """Solids and hub of objects, given faces of the first one and a hub with faces, as a feature
-    would find them; raises the same InputErrors.
+    """Return the solids and the hub that a feature with these inputs would have.
+
+    Raises the same InputErrors as the feature.
     """
     return _solids(
         _Given(objects[0].label, tuple(objects), tuple(faces), substrate, base_faces), strategy
@@ -177,7 +181,7 @@ def _solids(inputs: _Given, strategy: DevelopableParameters) -> SolidsOnHub:
 
 
 def _separate_hub(solids: Sequence[Body], hub: Body) -> OwnHub:
-    """The hub that is one of the solids."""
+    """Return the hub if it is one of the solids."""
     volume = [SolidMesh(body.vertices, body.triangles).volume for body in solids]
     hub_volume = next(
         solid_volume for solid_volume, body in zip(volume, solids, strict=True) if body is hub
@@ -186,7 +190,7 @@ def _separate_hub(solids: Sequence[Body], hub: Body) -> OwnHub:
 
 
 def _hub_of_faces(solids: SolidsOnHub) -> OwnHub:
-    """The hub that forms one solid with the bodies on it: all material within its faces."""
+    """Return the hub if it forms one solid with the bodies on it: all material within its faces."""
     total = within = 0.0
     for group in solids.groups:
         for body in group.bodies:
@@ -204,7 +208,7 @@ def _hub_of_faces(solids: SolidsOnHub) -> OwnHub:
 def _bases(
     inputs: _Given, solids: Sequence[Body], strategy: DevelopableParameters
 ) -> tuple[list[Seat], Body | None]:
-    """The possible bases of the solids, and the hub if it is one of the solids."""
+    """Return the possible bases of the solids, and the hub if the hub is one of the solids."""
     base = strategy.base
     if base.radius != "auto":
         height = math.inf if base.height == "inf" else float(base.height)
@@ -236,12 +240,12 @@ def _bodies(source: Taken, strategy: DevelopableParameters) -> Bodies:
 
 
 def _parts(source: Taken) -> list[Any]:
-    """The solids of an object; nothing of a mesh."""
+    """Return the solids of an object; empty for a mesh."""
     return [] if source.shape is None else list(source.shape.Solids)
 
 
 def _faces(source: Taken, solid: Any = None) -> list[tuple[str, Any]]:
-    """All faces with names. Raises InputError NO_BASE for a mesh, which has no exact ones."""
+    """Return all faces with names. Raises InputError NO_BASE for a mesh (no exact faces)."""
     if source.shape is None:
         raise InputError(
             "NO_BASE",

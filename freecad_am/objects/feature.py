@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A feature of revolution in a document: the wall found on a shape, and how it is to be cut into layers."""
+"""Revolution feature stage: the wall detected on a shape, and its layer parameters."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class RevolutionFeature(FeatureStage):
         strategy = self.parameters(obj, RevolutionParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad values are reported here, not by the toolpath
+        )  # report invalid values here, not in the toolpath
         source, faces = source_of(obj)
         shape, axis, label, fixtures = (
             global_shape(source),
@@ -93,8 +93,11 @@ _LINES = ("Part::GeomLine", "Part::GeomLineSegment")
 
 
 def axis_of(obj: Any) -> tuple[Any, Any] | None:
-    """Point and direction of the axis to turn about as vectors in document coordinates: the feature's Axis, else the
-    vertical axis of a sketch (as PartDesign does), else None."""
+    """Return point and direction of the revolution axis, as vectors in document coordinates.
+
+    Use the feature's Axis, or else the vertical axis of a sketch, as in PartDesign. Return None if
+    neither exists.
+    """
     link = obj.Axis
     if not link and obj.Source and obj.Source[0].isDerivedFrom("Sketcher::SketchObject"):
         link = (obj.Source[0], ["V_Axis"])
@@ -128,8 +131,9 @@ def axis_of(obj: Any) -> tuple[Any, Any] | None:
 
 
 def _edges_of(target: Any, name: str) -> list[Any]:
-    """The named edge of an object (every edge without a name), in document coordinates; empty if it
-    has no such edge.
+    """Return the named edge of an object, or all edges without a name, in document coordinates.
+
+    Empty if the object has no such edge.
     """
     try:
         shape = global_shape(target)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Measured points against the plan, in a document."""
+"""Inspection stage: measured points compared with the nominal shape."""
 
 from __future__ import annotations
 
@@ -27,11 +27,11 @@ from .stage_parts import Link, Outcome, Section, Work
 from .work import progress
 
 KINDS = ("feature", "toolpath")
-FACES_FITTED = 3000  # points that a fit to exact faces is made with
+FACES_FITTED = 3000  # maximum number of points for a fit to exact faces
 
 
 class Inspection(Stage):
-    """Result: core.inspection.inspect.Inspected. The points are kept with it: the file may go."""
+    """Result: core.inspection.inspect.Inspected, including the points; the file may be deleted."""
 
     kind = "inspection"
     sections = (Section(InspectionParameters, "inspection", "Inspection"),)
@@ -104,8 +104,8 @@ class Inspection(Stage):
     def _predicted(
         self, obj: Any, linked: dict[str, Any], parameters: InspectionParameters
     ) -> Work:
-        """The deposit that a toolpath is predicted to leave, in place of a measurement."""
-        from .checks import predicted_shape  # few inspections need it
+        """Return the work that inspects the predicted deposit of a toolpath."""
+        from .checks import predicted_shape  # only inspections of a prediction need this import
 
         toolpath = linked.get("Planned")
         if toolpath is None or toolpath.Proxy.kind != "toolpath":
@@ -150,19 +150,19 @@ class Inspection(Stage):
         if is_predicted(obj):
             return [inspect.PREDICTED]
         path = file_of(obj)
-        # a missing file counts as unchanged: the result has its points
+        # a missing file counts as unchanged, because the result stores its points
         digest = _digest(path, f"{obj.Label}.File") if is_there(path) else obj.FileDigest
         shape = [] if stage_of(obj.Planned) is not None else [fingerprint(obj.Planned)]
         return [os.path.basename(path), digest, *shape]
 
 
 def is_predicted(obj: Any) -> bool:
-    """Whether an inspection is of a predicted deposit, not of a file."""
+    """Whether an inspection uses a predicted deposit instead of a file."""
     return bool(obj.File.strip() == inspect.PREDICTED)
 
 
 def file_of(obj: Any) -> str:
-    """The path of the measured points; a relative path starts at the document."""
+    """Return the path of the measured points; a relative path is relative to the document."""
     path = os.path.expanduser(obj.File.strip())
     folder = os.path.dirname(obj.Document.FileName or "")
     return os.path.join(folder, path) if path and folder else path
@@ -185,14 +185,14 @@ def _stage_surface(target: Any) -> Callable[[], Planned]:
         return lambda: planner_of(own_family).planned_surface(value, label)
     feature = getattr(target, "Feature", None)
     family = None if feature is None else stage_family(feature.Proxy)
-    if family is not None and family.has_axis:  # circles of its beads are given along its meridian
+    if family is not None and family.has_axis:  # bead circles are located along the meridian
         wall = feature.Proxy.value(feature)
         return lambda: dataclasses.replace(surfaces.toolpath_surface(value, label), wall=wall)
     return lambda: surfaces.toolpath_surface(value, label)
 
 
 def _shape_surface(target: Any) -> Callable[[], Planned]:
-    """The faces of a shape, exactly, or the triangles of a mesh."""
+    """Return a function that reads the exact faces of a shape or the triangles of a mesh."""
     source = snapshot_of(target)
 
     def mesh_surface() -> Planned:
@@ -234,9 +234,10 @@ def _figures(result: inspect.Inspected) -> tuple[tuple[str, Any], ...]:
 
 
 def files_of_figures(obj: Any) -> dict[str, bytes]:
-    """The figures of an inspection as a table and as JSON, and all points with their deviations.
-    Raises InputError NO_RESULT, also
-    where they do not fit the document as it is now."""
+    """Return the files of an inspection: the results as CSV and JSON, and the deviation per point.
+
+    Raises InputError NO_RESULT if the result is missing or out of date.
+    """
     if obj.Key:
         check_current(obj)
     result, name = obj.Proxy.value(obj), obj.Label

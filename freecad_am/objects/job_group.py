@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The group of a job's stages in the tree. It computes nothing: stages may be dragged out and in
-again.
-"""
+"""Tree group of a job's stages. The group computes nothing, so stages may be dragged out and in."""
 
 from __future__ import annotations
 
@@ -14,11 +12,11 @@ from .stage import stage_of
 from .work import hooks
 
 TYPE = "App::DocumentObjectGroupPython"
-_PASTE = "Paste"  # what FreeCAD calls this step of undo, in every language
+_PASTE = "Paste"  # FreeCAD's name of the undo step, not translated
 
 
 class JobGroup:
-    """Proxy of a group of stages. Its class path is a file format."""
+    """Proxy of a stage group. The class path is a file format."""
 
     _held: tuple[Any, ...] = ()  # members of the group before a change
 
@@ -32,8 +30,10 @@ class JobGroup:
             self._held = tuple(obj.Group)
 
     def onChanged(self, obj: Any, name: str) -> None:
-        """FreeCAD pastes into the selected group: move a pasted copy of the job, or of its part,
-        out next to the job. Members added in another way, as by a macro, stay.
+        """Move a pasted copy of the job, or of its part, out of the group.
+
+        FreeCAD pastes into the selected group. Members added in other ways, such as by a macro,
+        stay.
         """
         document, members = obj.Document, self._held
         if name != "Group" or document.Transacting or document.Restoring or document.Importing:
@@ -46,22 +46,22 @@ class JobGroup:
                 obj.Group = remaining
 
     def onDocumentRestored(self, obj: Any) -> None:
-        """Show one that was made without a window."""
+        """Attach the view to a group that was made without a window."""
         hooks.attach(obj)
 
     def dumps(self) -> None:
-        """Nothing: all is in properties."""
+        """Save nothing: all data is in properties."""
 
     def loads(self, state: Any) -> None:
-        """Nothing to restore."""
+        """Restore nothing: all data is in properties."""
 
-    # FreeCAD up to 0.21.1 calls this pair, later ones the other
+    # FreeCAD up to 0.21.1 calls __getstate__ and __setstate__, later versions dumps and loads
     __getstate__ = dumps
     __setstate__ = loads
 
 
 def grouped(doc: Any, label: str, stages: Sequence[Any]) -> Any:
-    """A new group of stages."""
+    """Make a group of stages."""
     group = doc.addObject(TYPE, "Job")
     JobGroup(group)
     group.Label = label
@@ -71,10 +71,10 @@ def grouped(doc: Any, label: str, stages: Sequence[Any]) -> Any:
 
 
 def is_group(obj: Any) -> bool:
-    """Whether an object is the group of a job."""
+    """Whether an object is a job group."""
     return isinstance(getattr(obj, "Proxy", None), JobGroup)
 
 
 def stages_in(group: Any) -> list[Any]:
-    """The stages that are in a group now, in the order of the tree."""
+    """Return the stages in a group, in tree order."""
     return [obj for obj in group.Group if stage_of(obj) is not None]

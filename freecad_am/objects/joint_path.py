@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The joint path in a document: the joint values of a toolpath in a cell, and the motion with its rapids."""
+"""Joint path stage: the joint values of a toolpath in a cell, and the motion with rapids."""
 
 from __future__ import annotations
 
@@ -39,13 +39,13 @@ from .stage_parts import Link, Outcome, Section, Work
 from .staleness import UP_TO_DATE
 from .work import progress
 
-JOINTS = 0.9  # of the time goes into the joints, the rest into rapid moves
-TRYING = 0.95
+JOINTS = 0.9  # progress fraction after joint planning
+TRYING = 0.95  # progress fraction after rapid moves
 
 
 @dataclass(frozen=True)
 class Planned:
-    """The result of a joint path: the joints of the deposit and the motion with all rapid moves."""
+    """Result of a joint path: joint values of the deposit, and the motion with all rapid moves."""
 
     joint_path: JointsOfBeads
     motion: Motion
@@ -53,9 +53,11 @@ class Planned:
 
 @dataclass(frozen=True)
 class Job:
-    """The inputs of a joint path, without the document. toolpath: reads the toolpath. fixed: the
-    toolpath with one build direction, or None if it has one already or cannot. own_speed: for
-    several features, whether each has its own travel speed.
+    """Inputs of a joint path, independent of the document.
+
+    toolpath: function that reads the toolpath. fixed: alternative toolpath with one build
+    direction, None if not applicable. own_speed: for each of several features, whether its travel
+    speed differs from the job's.
     """
 
     toolpath: Callable[[], Toolpath]
@@ -68,9 +70,10 @@ class Job:
 
 
 def planned_of(path: Any, label: str) -> tuple[Planned, Toolpath, CellParameters]:
-    """The results of a joint path object (None for one that is gone), of its toolpath and of its cell.
+    """Return the results of a joint path object, its toolpath and its cell.
 
-    Raises InputError NO_RESULT naming `label`, and NO_INPUT, if an object is missing.
+    path: None if the object is deleted. Raises InputError NO_RESULT, naming `label`, without a
+    joint path; NO_INPUT without a toolpath or cell.
     """
     if path is None or not path.Key:
         raise InputError("NO_RESULT", label, "there is no joint path yet; recompute the document")
@@ -87,7 +90,7 @@ def planned_of(path: Any, label: str) -> tuple[Planned, Toolpath, CellParameters
 
 
 class JointPath(Stage):
-    """Result: `Planned`. An infeasible result is kept too, for inspection."""
+    """Result: `Planned`. An infeasible result is kept for inspection."""
 
     kind = "joint path"
     sections = (Section(JointParameters, "joints", "Joints"),)
@@ -119,9 +122,7 @@ class JointPath(Stage):
     )
 
     def look_ahead(self, obj: Any) -> None:
-        """Report on the programs of the joint path why they are impossible, before long work
-        begins.
-        """
+        """Report on each program of the joint path if it is impossible, before planning begins."""
         programs = [
             candidate
             for candidate in obj.InList
@@ -135,7 +136,7 @@ class JointPath(Stage):
             or cell.Status != UP_TO_DATE
         ):
             return
-        with contextlib.suppress(AmError):  # their own status reports their errors
+        with contextlib.suppress(AmError):  # toolpath and cell report these errors in their status
             resolved = cells.resolve(
                 cell.Proxy.value(cell), np.eye(4), folders=user_machines.folders()
             )
@@ -144,7 +145,7 @@ class JointPath(Stage):
                 program.Proxy.refuse_early(program, resolved, process, toolpath)
 
     def job(self, obj: Any) -> Job:
-        """Read the inputs. Raises InputError and InfeasibleError without valid inputs."""
+        """Read the inputs. Raises InputError or InfeasibleError for invalid inputs."""
         linked = self.linked(obj)
         toolpath, cell = linked["Toolpath"], linked["Cell"]
         return Job(
@@ -237,8 +238,9 @@ class JointPath(Stage):
 def _report_search_time(
     toolpath: Toolpath, issues: Sequence[Issue], seconds_per_point: float
 ) -> None:
-    """Report how long the search for remedies takes, if long; seconds_per_point: planning time of
-    one point.
+    """Report the duration of a long search for remedies.
+
+    seconds_per_point: planning time of one point, s.
     """
     from ..core.strategies import estimated_size
 
@@ -249,7 +251,7 @@ def _report_search_time(
 
 
 def _fit_notes(cell: cells.Cell) -> list[Issue]:
-    """A note on how well touched points determine the position of the part."""
+    """Return a note on the part pose fitted to touched points, with its residuals."""
     if cell.poses.offset is None:
         return []
     residual, six = cell.poses.offset.residual, cell.poses.offset.six()
@@ -274,7 +276,7 @@ def _fit_notes(cell: cells.Cell) -> list[Issue]:
 
 
 def _not_kept(cell: cells.Cell) -> list[Issue]:
-    """A note if the cell has obstacles that planning does not keep links clear of."""
+    """Return a note if planning does not keep the links clear of the cell's obstacles."""
     if (
         not cell.shapes.obstacles
         or cell.arm_clearance is not None
@@ -296,9 +298,7 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
 
 
 def _not_known(cell: cells.Cell) -> list[Issue]:
-    """A note on positioners and tracks that take no part in collision checks, as no file has their
-    shape.
-    """
+    """Return a note on positioners and tracks without a shape, which collision checks ignore."""
     if cell.external is None or not (
         lacking := ", ".join(titles_without_shape(cell.external, cell.shapes.external_links))
     ):
@@ -317,7 +317,7 @@ def _not_known(cell: cells.Cell) -> list[Issue]:
 
 
 def _drawn_plain(cell: cells.Cell) -> list[Issue]:
-    """A note on content of a robot's URDF that was left out, such as meshes that cannot be drawn."""
+    """Return a note on ignored content of a robot's URDF, such as meshes that cannot be drawn."""
     notes = cell.robot.remarks if cell.robot.controller_remark == UNKNOWN_REMARK else ()
     return (
         [Issue(NOTE, "URDF_LOOKS", Text("{}: {}", cell.robot.title, Text.joined("; ", notes)))]
@@ -329,8 +329,9 @@ def _drawn_plain(cell: cells.Cell) -> list[Issue]:
 def _heights_as_run(
     path: JointsOfBeads, toolpath: Toolpath, process: ProcessParameters
 ) -> list[Issue]:
-    """The heights that a bead model predicts where beads are slowed, in place of the toolpath's
-    prediction.
+    """Return the issue on bead heights at the executed speeds, if the plan slows beads.
+
+    The issue replaces the toolpath's height prediction.
     """
     model = None if toolpath.law is None else wire.process_model(process)
     if model is None or not any(issue.code == SLOWED for issue in path.issues):
@@ -342,7 +343,7 @@ def _heights_as_run(
 def _sums(
     motion: Motion, process: ProcessParameters, toolpath: Toolpath
 ) -> tuple[tuple[str, float], ...]:
-    """Return the duration and deposit of the job, by property name."""
+    """Return the job's duration and deposit totals, by property name."""
     times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
     sums = totals(motion, times, process, toolpath)
     return (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The program in a document: the controller's files, written only when reading them back gives the planned path."""
+"""Program stage: the controller files, accepted only if the read-back matches the planned path."""
 
 from __future__ import annotations
 
@@ -34,8 +34,9 @@ from .work import progress
 
 @dataclass(frozen=True)
 class Written:
-    """The result of a program: file name -> content, and how the read-back went (None without a
-    post).
+    """Result of a program: file contents by name, and the read-back verification.
+
+    verification: None without a post.
     """
 
     files: dict[str, bytes]
@@ -44,7 +45,10 @@ class Written:
 
 @dataclass(frozen=True)
 class Job:
-    """The inputs of a program without the document. planned, toolpath: functions that read them."""
+    """Inputs of a program, independent of the document.
+
+    planned, toolpath: functions that read the joint path result and the toolpath.
+    """
 
     planned: Callable[[], Planned]
     toolpath: Callable[[], Toolpath]
@@ -57,7 +61,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Posted:
-    """A program that is written. motion: the rows that it runs."""
+    """A written program. motion: the rows that the program runs."""
 
     cell: cells.Cell
     toolpath: Toolpath
@@ -91,7 +95,7 @@ class Program(Stage):
         super().complete(obj)
 
     def job(self, obj: Any) -> Job:
-        """Read the inputs. Raises InputError and InfeasibleError without valid inputs."""
+        """Read the inputs. Raises InputError or InfeasibleError for invalid inputs."""
         if not obj.ProgramName:
             raise InputError(
                 "NO_NAME", f"{obj.Label}.ProgramName", "the program has no name; enter one"
@@ -121,7 +125,7 @@ class Program(Stage):
     def refuse_early(
         self, obj: Any, cell: cells.Cell, process: ProcessParameters, toolpath: Any
     ) -> None:
-        """Report before joints are planned why the cell or the toolpath allows no program."""
+        """Report, before joint planning, why the cell or toolpath does not allow a program."""
         try:
             parameters = self.parameters(obj, ProgramParameters)
             refuse(cell, process, parameters)
@@ -134,10 +138,11 @@ class Program(Stage):
 
 
 def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramParameters) -> None:
-    """Reject unsuitable settings before planning: InputError WRONG_CONTROLLER, NOT_FOR_WRIST,
-    NO_PULSES, NO_SPEED_UNIT, NO_WIRE_OUTPUT, UNSUPPORTED_FRAME and others of the post. A cell
-    resolved without the feature's frame will do; an origin that is given by numbers is then not
-    checked.
+    """Reject unsuitable settings before planning.
+
+    The cell may be resolved without the feature's frame; a numeric origin is then not checked.
+    Raises InputError WRONG_CONTROLLER, NOT_FOR_WRIST, NO_PULSES, NO_SPEED_UNIT, NO_WIRE_OUTPUT,
+    UNSUPPORTED_FRAME and further codes of the post.
     """
     if parameters.post == "none":
         return
@@ -174,7 +179,10 @@ def refuse(cell: cells.Cell, process: ProcessParameters, parameters: ProgramPara
 
 
 def _refuse_trigger(by: str, no_trigger: str) -> None:
-    """InputError TRIGGER for the reason `no_trigger`, or where arc instructions switch the deposit, at their own times."""
+    """Raise InputError TRIGGER if the post has no trigger or arc instructions switch the deposit.
+
+    no_trigger: the post's reason, '' if the post supports triggers.
+    """
     if no_trigger:
         raise refusals.trigger_refused(no_trigger)
     if by == program_beads.ARC:
@@ -184,9 +192,12 @@ def _refuse_trigger(by: str, no_trigger: str) -> None:
 
 
 def posted(job: Job) -> Posted:
-    """The files of a joint path, not read back. Raises InputError for what cannot be written."""
+    """Write the files of a joint path without verification.
+
+    Raises InputError for unsupported content.
+    """
     post, parameters = catalogue.load(job.parameters.post), job.parameters
-    post.program_name(job.name, "name")  # before anything takes long
+    post.program_name(job.name, "name")  # reject an invalid name before the long computation
     toolpath, planned = job.toolpath(), job.planned()
     cell = cells.resolve(job.settings, toolpath.frame, toolpath.family, job.folders)
     refuse(cell, job.process, parameters)
@@ -209,8 +220,10 @@ def posted(job: Job) -> Posted:
 
 
 def _write_program(job: Job, label: str) -> Outcome:
-    """The files of a joint path, written and read back. InputError;
-    raises InfeasibleError NOT_VERIFIED naming `label`."""
+    """Write the files of a joint path, read them back and verify them.
+
+    Raises InputError. Raises InfeasibleError NOT_VERIFIED, naming `label`, if verification fails.
+    """
     posted_job = posted(job)
     progress.report(0.5, "reading back and checking")
     checked = verification.verify(
@@ -240,7 +253,7 @@ def _write_program(job: Job, label: str) -> Outcome:
 
 
 def _run(motion: Motion, parameters: ProgramParameters) -> Motion:
-    """The rows of the motion that the program runs; all but where it resumes."""
+    """Return the rows of the motion that the program runs: all rows, or those from the restart."""
     rows = programs.rows_from(motion, parameters.start_at)
     if rows.all():
         return motion
@@ -248,8 +261,9 @@ def _run(motion: Motion, parameters: ProgramParameters) -> Motion:
 
 
 def files_of(obj: Any) -> dict[str, bytes]:
-    """The controller's files of a program object. Raises InputError 'NO_PROGRAM', with the reason, if
-    files are missing or do not fit the current document.
+    """Return the controller files of a program object.
+
+    Raises InputError NO_PROGRAM, with the reason, if files are missing or out of date.
     """
     template = "no program fits its inputs ({}); mend that and recompute it"
     if not obj.Key or obj.Status != UP_TO_DATE:

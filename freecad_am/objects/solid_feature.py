@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Any solids in a document, in layers of any kind: sources, substrate, layers and filling."""
+"""Solid feature stage: solids in layers of any kind, with substrate, layers and infill."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .stage_parts import Link, Outcome, Section, Work
 
 
 class SolidFeature(FeatureStage):
-    """Result: core.geometry.on_hub.SolidsOnHub with a plane as its base, in the coordinates of the document."""
+    """Result: core.geometry.on_hub.SolidsOnHub with a plane base, in document coordinates."""
 
     kind = "feature"
     sections = (
@@ -77,7 +77,7 @@ class SolidFeature(FeatureStage):
         strategy = self.parameters(obj, SolidParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad values are reported here, not by the toolpath
+        )  # report invalid values here, not in the toolpath
         objects = tuple(snapshot_of(entry) for entry in (source_of(obj)[0], *obj.Further))
         ground = () if obj.Substrate is None else (snapshot_of(obj.Substrate),)
         fixtures, label = fixtures_of(obj), objects[0].label
@@ -171,9 +171,10 @@ class SolidFeature(FeatureStage):
 def _select_elements(
     obj: Any, name: str, is_used: bool, refusal: str
 ) -> tuple[Any, tuple[str, ...], str] | None:
-    """The linked shape of a feature, the names of its faces or edges (empty for all), and its
-    label; None if nothing is chosen. is_used: whether the layers use the link; it is rejected otherwise.
-    Raises InputError NOT_FOR_FAMILY, NO_SHAPE.
+    """Return a linked shape, the names of its faces or edges (empty for all), and its label.
+
+    None if the link is empty. is_used: whether the layer kind uses the link. Raises InputError
+    NOT_FOR_FAMILY for an unused link, NO_SHAPE for a mesh.
     """
     if not getattr(obj, name, None):
         return None

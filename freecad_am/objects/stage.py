@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Common base of stages: parameters as properties, a stored result with the key of its inputs, a
-status.
+"""Base of stages: parameters as properties, a status, and a stored result with its input key.
 
-A stage is computed by `renew`, which raises the errors of the core; FreeCAD's recompute goes through `execute`, which
-turns them into the status, a message and one line on the console. Results are read back when first asked for.
+`renew` computes a stage and raises core errors. FreeCAD's recompute calls `execute`, which turns
+errors into the status, a message and one line on the console. Results are read back on first use.
 
-Computing has two steps: `prepare` reads the document, and the work that it returns does not touch it. So the work can be
-done in another thread while the window stays alive, and be dropped at any moment.
+Computation has two steps: `prepare` reads the document and returns the work, which does not touch
+the document. So the work can run in another thread while the window stays responsive, and can be
+cancelled at any time.
 """
 
 from __future__ import annotations
@@ -41,37 +41,38 @@ _is_deferred: ContextVar[bool] = ContextVar("is_deferred", default=False)
 
 
 class Stage(Stored):
-    """Base of the proxies. Class paths are a file format; nothing is kept in the proxy that must be saved."""
+    """Base class of stage proxies. Class paths are a file format. Only properties are saved."""
 
     kind: ClassVar[str] = ""
     sections: ClassVar[tuple[Section, ...]] = ()
     links: ClassVar[tuple[Link, ...]] = ()
     figures: ClassVar[tuple[tuple[str, str, str], ...]] = ()  # property, FreeCAD type, help
     _busy = False
-    changes = 0  # of the inputs, counted by `staleness`
-    was_run = False  # by FreeCAD in its last recompute
+    changes = 0  # number of input changes, counted by `staleness`
+    was_run = False  # whether FreeCAD's last recompute ran the stage
 
     def __init__(self, obj: Any) -> None:
         obj.Proxy = self
         self.complete(obj)
         hooks.attach(obj)
 
-    # ---- what a stage defines
+    # ---- overridden by stage classes
 
     def prepare(self, obj: Any) -> Work:
-        """Read the inputs and return the work that makes the result without the document. Both
-        raise InputError and InfeasibleError.
+        """Read the inputs and return the work, which computes the result without the document.
+
+        `prepare` and the work raise InputError and InfeasibleError.
         """
         raise NotImplementedError
 
     def further_inputs(self, obj: Any) -> list[str]:
-        """Fingerprints of inputs that are neither parameters nor linked stages."""
+        """Return fingerprints of inputs that are neither parameters nor linked stages."""
         return []
 
     # ---- properties
 
     def complete(self, obj: Any) -> None:
-        """Add the properties the object lacks, which is also the migration of an old document."""
+        """Add missing properties to the object. This also migrates old documents."""
         staleness.watch()
         have = set(obj.PropertiesList)
 
@@ -81,7 +82,7 @@ class Stage(Stored):
             return name not in have
 
         for link in self.links:
-            # parts and bodies may be nested in assemblies: links to them reach into those
+            # global links reach parts and bodies nested in assemblies
             add(
                 link.type_name if link.kind else f"{link.type_name}Global",
                 link.name,
@@ -141,18 +142,20 @@ class Stage(Stored):
             obj.SchemaVersion = SCHEMA_VERSION
 
     def parameters(self, obj: Any, cls: type) -> Any:
-        """The parameters of a dataclass or a subclass; raises InputError naming Label and property."""
+        """Return the parameters of class `cls` or a subclass.
+
+        Raises InputError, naming Label and property, for an invalid value.
+        """
         section = next(section for section in self.sections if issubclass(section.cls, cls))
         return properties.read(obj, section.cls, section.prefix)
 
     # ---- computing
 
     def renew(self, obj: Any, force: bool = False) -> Any:
-        """Compute and store if an input differs from the stored result's (or if forced); return the
-        value.
+        """Compute and store the result if an input has changed or `force` is set; return it.
 
-        Raises AmError; the object then says so and keeps its last result. Raises Cancelled, and keeps it too, when the
-        user cancels, or when the object is gone by the time it is computed.
+        Raises AmError; the object reports the error and keeps its last result. Raises Cancelled if
+        the user cancels or the object is deleted during computation; the last result is kept too.
         """
         if hooks.carrying():
             raise InputError(
@@ -165,7 +168,7 @@ class Stage(Stored):
                 key = self.key(obj)
                 refused = obj.Status != INFEASIBLE and has_errors(
                     issues_of(obj)
-                )  # the messages belong to other inputs
+                )  # the issues were stored for other inputs
                 outdated = (force or refused or key != obj.Key) and self._compute(obj, key)
             issues_found = issues_of(obj)
             with self._own_changes():
@@ -200,7 +203,7 @@ class Stage(Stored):
         return self.value(obj)
 
     def _compute(self, obj: Any, key: str) -> bool:
-        """Compute and store; return whether the inputs have changed meanwhile."""
+        """Compute and store the result. Return whether the inputs changed during computation."""
         started, changes, label = time.perf_counter(), self.changes, obj.Label
         work = self.prepare(obj)
 
@@ -223,7 +226,7 @@ class Stage(Stored):
 
     @contextlib.contextmanager
     def _own_changes(self) -> Iterator[None]:
-        """Within it changes of the object are its own, and make nothing stale."""
+        """Within the context, changes of the object do not make stages stale."""
         self._busy = True
         try:
             yield
@@ -231,19 +234,20 @@ class Stage(Stored):
             self._busy = False
 
     def key(self, obj: Any) -> str:
-        """Fingerprint of the inputs. Raises InputError for a missing or failed one."""
+        """Return the fingerprint of the inputs. Raises InputError for a missing or failed input."""
         return fingerprints.key_of_inputs(self, obj, fingerprints.key_of_stage)
 
     def linked(self, obj: Any) -> dict[str, Any]:
-        """The linked stages by property name (lists for links to many), checked for the right kind
-        and a result.
+        """Return the linked stages by property name, as lists for multi-object links.
+
+        Each linked stage must have the right kind and a result.
         """
         if missing := self.missing(obj):
             raise InputError("NO_INPUT", obj.Label, missing)
         return {link.name: checked(obj, link) for link in self.links if link.kind}
 
     def missing(self, obj: Any) -> str:
-        """A remedy for a missing required input, '' if none is missing."""
+        """Return a remedy for a missing required input, '' if no input is missing."""
         for link in self.links:
             if link.required and not getattr(obj, link.name):
                 return Text("{} is missing; choose {}", link.name, link.help_phrase)
@@ -259,18 +263,19 @@ class Stage(Stored):
         for name, figure in outcome.figures:
             setattr(obj, name, figure)
         self._kept = (key, outcome.value)
-        obj.Key = key  # last: views draw when it changes
+        obj.Key = key  # set last, because views redraw when the key changes
 
     def say_failed(self, obj: Any, error: AmError) -> None:
-        """Report why it will fail, before its inputs are computed."""
+        """Report why the stage will fail, before its inputs are computed."""
         with self._own_changes():
             say(obj, FAILED, error.sentence)
 
     # ---- called by FreeCAD
 
     def execute(self, obj: Any) -> None:
-        """Renew, and report errors in the status and in one line on the console. Stages after a
-        cancelled one wait for it.
+        """Compute the stage; report errors in the status and in one line on the console.
+
+        A stage with a stale input, such as a cancelled stage, waits for the input.
         """
         self.was_run = True
         if _is_deferred.get():
@@ -299,7 +304,7 @@ class Stage(Stored):
         return [entry for entries in linked for entry in entries if stage_of(entry) is not None]
 
     def mustExecute(self, obj: Any) -> bool:
-        """A stale stage is due at the next recompute, whatever made it stale; a failed one is tried again."""
+        """Whether the next recompute must run the stage: stale and failed stages are run."""
         return obj.Status in (STALE, FAILED)
 
     def onChanged(self, obj: Any, name: str) -> None:
@@ -308,9 +313,7 @@ class Stage(Stored):
             staleness.changed(obj, name)
 
     def onDocumentRestored(self, obj: Any) -> None:
-        """Migrate an old document, show a document that was made without a window, and report what
-        a copy lacks.
-        """
+        """Migrate an old document and attach the view. Report inputs that a copied stage lacks."""
         with self._own_changes():
             self.complete(obj)
             if missing := self.missing(obj):
@@ -318,19 +321,19 @@ class Stage(Stored):
         hooks.attach(obj)
 
     def dumps(self) -> None:
-        """Nothing: all is in properties."""
+        """Save nothing: all data is in properties."""
 
     def loads(self, state: Any) -> None:
-        """Nothing to restore."""
+        """Restore nothing: all data is in properties."""
 
-    # FreeCAD up to 0.21.1 calls this pair, later ones the other
+    # FreeCAD up to 0.21.1 calls __getstate__ and __setstate__, later versions dumps and loads
     __getstate__ = dumps
     __setstate__ = loads
 
 
 @contextlib.contextmanager
 def deferred() -> Iterator[None]:
-    """Within it a recompute renews shapes and expressions but no stage; `renew` is then called one by one."""
+    """Within the context, a recompute runs shapes and expressions only; call `renew` per stage."""
     token = _is_deferred.set(True)
     try:
         yield
@@ -339,7 +342,7 @@ def deferred() -> Iterator[None]:
 
 
 def _lost_link(obj: Any, label: str, link: str) -> Text:
-    """What to do about an input that is a FreeCAD link which shows nothing; it names the missing file, if that is why."""
+    """Return the remedy for a broken FreeCAD link as input; name the linked file if missing."""
     missing = missing_files(obj.Document)
     for linked in obj.Document.getObjectsByLabel(label):
         if linked.Name in missing:
@@ -358,14 +361,16 @@ def _lost_link(obj: Any, label: str, link: str) -> Text:
 
 
 def stage_of(obj: Any) -> Stage | None:
-    """Return the proxy of one of our objects, None for any other object."""
+    """Return the stage proxy of an object, None if the object is not a stage."""
     proxy = getattr(obj, "Proxy", None)
     return proxy if isinstance(proxy, Stage) else None
 
 
 def checked(obj: Any, link: Link) -> Any:
-    """The linked stage, or a list for a link to many, checked for the right kind and a result; None
-    without one. Raises InputError BAD_INPUT, INPUT_FAILED; raises InfeasibleError INPUT_INFEASIBLE.
+    """Return the linked stage (None if unset), or a list for a multi-object link.
+
+    Each linked stage must have the right kind and a result. Raises InputError BAD_INPUT,
+    INPUT_FAILED; raises InfeasibleError INPUT_INFEASIBLE.
     """
     linked = getattr(obj, link.name)
     return (
@@ -403,17 +408,16 @@ def _checked(obj: Any, link: Link, linked: Any) -> Any:
     return linked
 
 
-# ---- Gives objects their proxies back that were saved by a FreeCAD in which the workbench was
-# not installed
+# ---- Restore proxies lost because FreeCAD saved the document without the workbench installed
 #
-# FreeCAD imports proxies of installed addons only and saves an object without its proxy when it
-# could not. All else is in properties, the class of the proxy included.
+# If FreeCAD cannot import a proxy, it saves the object without the proxy. All other data, including
+# the class of the proxy, is in properties.
 
 _PACKAGE_PREFIX = __name__.rpartition(".")[0] + "."
 
 
 def revive(document: Any) -> None:
-    """Restore the proxies that the document lost."""
+    """Restore the lost stage proxies of a document."""
     for obj in document.Objects:
         if stage_of(obj) is None and CLASS_PROPERTY in obj.PropertiesList:
             cls = _stage_class(getattr(obj, CLASS_PROPERTY))
@@ -422,7 +426,7 @@ def revive(document: Any) -> None:
 
 
 def _stage_class(path: str) -> type[Stage] | None:
-    """The stage of a class path, None unless it is one of ours."""
+    """Return the stage class of a class path, None if it is not a stage of this package."""
     module, _, name = path.rpartition(".")
     if not module.startswith(_PACKAGE_PREFIX):
         return None

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What stages are declared with: links to inputs, sections of parameters; and what computing them gives."""
+"""Declarations of a stage (input links, parameter sections) and the outcome of a computation."""
 
 from __future__ import annotations
 
@@ -12,7 +12,11 @@ from ..core.issues import Issue
 
 @dataclass(frozen=True)
 class Link:
-    """A link to an input: the property, its FreeCAD type, the stage it must be ('' for any object) and a help."""
+    """A link to an input.
+
+    name: the property. kind: required stage kind, '' for any object. type_name: FreeCAD property
+    type.
+    """
 
     name: str
     kind: str
@@ -22,23 +26,23 @@ class Link:
 
     @property
     def many(self) -> bool:
-        """Whether it links to any number of objects."""
+        """Whether the link takes a list of objects."""
         return self.type_name.endswith("LinkList")
 
     @property
     def label(self) -> str:
-        """Its name in a panel: the kind of stage, or 'Start edges' for StartEdges."""
+        """Return the panel label: the stage kind, or for example 'Start edges' for StartEdges."""
         words = (self.key if self.many else self.kind or self.key).replace("_", " ")
         return words[0].upper() + words[1:]
 
     @property
     def help_phrase(self) -> str:
-        """Its help within a sentence: 'the cell that runs it'."""
+        """Return the help text for use within a sentence: 'the cell that runs it'."""
         return self.help[0].lower() + self.help[1:].rstrip(".")
 
     @property
     def key(self) -> str:
-        """Its name as a macro keyword: joint_path for JointPath."""
+        """Return the macro keyword of the link: joint_path for JointPath."""
         return "".join(
             f"_{letter.lower()}" if letter.isupper() else letter for letter in self.name
         ).lstrip("_")
@@ -46,7 +50,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Section:
-    """A parameters dataclass of a stage, the prefix of its errors and the property group it is shown in."""
+    """A parameter dataclass of a stage, its error prefix and its property group."""
 
     cls: type
     prefix: str
@@ -55,7 +59,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a stage computed: the value to store, findings, and figures to show by property name."""
+    """Outcome of a computation: result to store, issues, and summary values by property name."""
 
     value: Any
     issues: tuple[Issue, ...] = ()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Marks stages after a change as stale, at once and before any recompute."""
+"""Mark stages as stale immediately after a change, before any recompute."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ LEFT_OUT = "FreeCAD left it out of the recompute; unfreeze it (Toggle Freeze in 
 
 
 def changed(obj: Any, name: str) -> None:
-    """Mark a stage, after its property `name` changed, and all that follows as stale."""
+    """Mark a stage whose property `name` changed, and all dependent stages, as stale."""
     document = obj.Document
     if (
         document is None
@@ -54,7 +54,7 @@ def changed(obj: Any, name: str) -> None:
 
 
 def watch() -> None:
-    """Watch the documents for changes of shapes that features grow on; once per session."""
+    """Watch documents for changes of source shapes; once per session."""
     document_observer()
 
 
@@ -67,8 +67,9 @@ def document_observer() -> _Observer:
 
 
 class _Observer:
-    """Needed because FreeCAD does not notify a stage when a linked object changes, or is moved by
-    its container.
+    """Mark stages whose linked objects change or move.
+
+    FreeCAD does not notify a stage when a linked object changes or its container moves.
     """
 
     def slotChangedObject(self, obj: Any, name: str) -> None:
@@ -82,15 +83,15 @@ class _Observer:
             _mark_followers(obj)
 
     def slotBeforeRecomputeDocument(self, document: Any) -> None:
-        """Include changes without a notification, such as of frozen objects and files, in the
-        recompute.
-        """
+        """Mark stages whose inputs changed unnoticed, such as frozen objects and files."""
         _mark_outdated(document)
         _forget_runs(document)
 
     def slotRecomputedDocument(self, document: Any) -> None:
-        """FreeCAD does not run stages after a failed object, such as a link to nothing: report what
-        is missing. Stages of documents that link to `document` wait for a recompute of their own.
+        """Report missing inputs and skipped stages, and run outdated stages.
+
+        FreeCAD does not run stages after a failed object, such as a broken link. Stages in
+        documents that link to `document` are marked and wait for their own document's recompute.
         """
         for obj in document.Objects:
             if hasattr(obj, "ResultLayout") and obj.Status == STALE and obj.Proxy.missing(obj):
@@ -100,13 +101,11 @@ class _Observer:
         _run_outdated(document)
         for follower in document.InList:
             _mark_outdated(follower)
-        _forget_runs(
-            document
-        )  # FreeCAD 1.1 does not call the function for the begin of a recompute
+        _forget_runs(document)  # FreeCAD 1.1 does not call slotBeforeRecomputeDocument
 
 
 def _mark_followers(obj: Any) -> None:
-    """Mark stages made from an object, and moved stages in containers that it moves."""
+    """Mark stages made from an object, and outdated stages in containers that the object moves."""
     followers, placed = dependents_of(obj)
     for follower in followers:
         if hasattr(follower, "ResultLayout"):
@@ -120,8 +119,9 @@ def _mark_followers(obj: Any) -> None:
 
 
 def _mark_outdated(document: Any) -> list[Any]:
-    """Mark the stages of a document whose inputs differ from their results' inputs; return them
-    with their followers.
+    """Mark the stages of a document whose inputs have changed since their result was computed.
+
+    Mark their dependent stages too. Return all marked stages.
     """
     marked: dict[Any, None] = {}
     for obj in document.Objects:
@@ -134,11 +134,11 @@ def _mark_outdated(document: Any) -> list[Any]:
 
 
 def _run_outdated(document: Any) -> None:
-    """Run the stages that a recompute of a document left with results of other inputs.
+    """Run the stages that a recompute left with results of outdated inputs.
 
-    FreeCAD may run a stage before an expression moves the container of its part, and 1.1 asks no
-    stage again before a recompute. Stages that FreeCAD is still to run, after a recompute of only
-    some objects, are left to FreeCAD.
+    FreeCAD may run a stage before an expression moves the container of its part, and FreeCAD 1.1
+    does not query stages again before a recompute. After a partial recompute, FreeCAD runs the
+    stages that are still touched.
     """
     stages = [obj for obj in _mark_outdated(document) if obj.Document == document]
     for obj in sorted(stages, key=lambda stage: len(stage.OutListRecursive)):
@@ -147,26 +147,26 @@ def _run_outdated(document: Any) -> None:
 
 
 def _forget_runs(document: Any) -> None:
-    """From now on no stage of a document counts as run by its last recompute."""
+    """Reset the flag that the last recompute ran a stage, for all stages of a document."""
     for obj in document.Objects:
         if hasattr(obj, "ResultLayout"):
             obj.Proxy.was_run = False
 
 
 def is_outdated(obj: Any) -> bool:
-    """Whether a stage with the status up-to-date was made from other inputs than the current ones."""
+    """Whether a stage has the status UP_TO_DATE although its inputs have changed."""
     if obj.Status != UP_TO_DATE or not obj.Key:
         return False
     try:
         return bool(obj.Proxy.key(obj) != obj.Key)
     except AmError:
-        return False  # the recompute reports the error
+        return False  # the next recompute reports the error
 
 
 def _is_left_out(obj: Any) -> bool:
-    """Whether a stage is still stale after a recompute that did not run it, though none of its
-    inputs prevented it. FreeCAD 1.0 does so with frozen objects, and does not expose which these
-    are.
+    """Whether a recompute skipped a stale stage although all its inputs are valid.
+
+    FreeCAD 1.0 skips frozen objects and does not expose which objects are frozen.
     """
     if obj.Status != STALE or obj.Proxy.was_run:
         return False

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A wall on an existing part in a document: the faces to deposit, the part they grow on, and how layers are cut."""
+"""Wall feature stage: the wall faces, the substrate below the wall, and the layer parameters."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class SurfaceFeature(FeatureStage):
         strategy = self.parameters(obj, SurfaceParameters)
         self.parameters(
             obj, BuildDirectionParameters
-        )  # bad values are reported here, not by the toolpath
+        )  # report invalid values here, not in the toolpath
         source, faces = source_of(obj)
         substrates = () if obj.Substrate is None else (snapshot_of(obj.Substrate),)
         source_body, label, edges, fixtures = (
@@ -124,8 +124,9 @@ class SurfaceFeature(FeatureStage):
 
 
 def _start_edges(obj: Any) -> tuple[str, ...]:
-    """Names of the chosen edges. Raises InputError 'BAD_EDGES' for edges of another object, and for other
-    elements.
+    """Return the names of the start edges.
+
+    Raises InputError BAD_EDGES for edges of another object or for elements other than edges.
     """
     if not obj.StartEdges:
         return ()

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A file of points as an object of the document: its curves to be seen, and what the file says to be planned. Tables of
-points (CSV), G-code of a slicer, toolpaths of AdaOne."""
+"""Point files as document objects: point tables (CSV), slicer G-code and AdaOne toolpaths.
+
+The object shows the curves and stores the file content for planning.
+"""
 
 from __future__ import annotations
 
@@ -20,20 +22,21 @@ from ..core.issues import InputError, Word
 CSV, GCODE, ADA = "csv", "gcode", "ada3dp"
 _PROPERTY, _FORM = "Table", "TableForm"
 _MAX_FILE_MB = 200  # MB
-_DRAWN = 0.1  # mm, chord error of arcs as they are seen
+_DRAWN = 0.1  # mm; chord error of displayed arcs
 
 
 @dataclass(frozen=True)
 class Points:
-    """The content of a file of points: its form, CSV, GCODE or ADA, and its text; for ADA the bytes
-    as base64.
+    """Content of a point file.
+
+    form: CSV, GCODE or ADA. text: the file text; for ADA, the bytes as base64.
     """
 
     form: str
     text: str
 
     def read(self, label: str, chord_error: float, roles: str, rotary: str) -> ReadCurves:
-        """Return the beads, with arcs within the chord error (mm), and the ignored content.
+        """Return the beads, with arcs within the chord error (mm), and issues on ignored content.
 
         roles, rotary: as in `gcode.read`. Raises InputError BAD_TABLE, BAD_GCODE or BAD_ADA3DP;
         BAD_VALUE for missing roles; NOT_USED if roles or rotary are set for other files.
@@ -48,7 +51,10 @@ class Points:
 
 
 def open_points(document: Any, path: str) -> Any:
-    """A file of points as an object. Raises InputError NO_FILE, BAD_FILE, and the errors of `Points.read`."""
+    """Open a point file as an object.
+
+    Raises InputError NO_FILE, BAD_FILE, and the errors of `Points.read`.
+    """
     name = os.path.basename(path)
     content = _read(path, name, POINT_FILES[os.path.splitext(name)[1].lower()])
     curves = content.read(name, _DRAWN, gcode_roles.ALL, gcode.ANY_ROTARY).curves
@@ -68,7 +74,7 @@ def open_points(document: Any, path: str) -> Any:
 
 
 def refuse_gcode_keys(label: str, roles: str, rotary: str) -> None:
-    """Raise InputError NOT_USED if keys for G-code are given for another kind of file."""
+    """Raise InputError NOT_USED if G-code keys are set for another file type."""
     defaults = {
         "strategy.roles": (roles, (gcode_roles.PART, gcode_roles.ALL)),
         "strategy.rotary": (rotary, (gcode.NO_ROTARY, gcode.ANY_ROTARY)),
@@ -83,7 +89,7 @@ def refuse_gcode_keys(label: str, roles: str, rotary: str) -> None:
 def _read(path: str, name: str, form: str) -> Points:
     try:
         data = read_content(path, _MAX_FILE_MB, "BAD_FILE", name)
-        if form == GCODE:  # comments may be in any encoding; commands are ASCII, and read as such
+        if form == GCODE:  # commands are ASCII; comments may be in any encoding
             return Points(form, data.decode(errors="replace"))
         return Points(form, base64.encodebytes(data).decode() if form == ADA else data.decode())
     except UnicodeDecodeError:
@@ -97,7 +103,7 @@ def _read(path: str, name: str, form: str) -> Points:
 
 
 def points_of(source: Any) -> Points | None:
-    """What the file said that an object was made of; None for any other."""
+    """Return the point file content stored in an object; None for any other object."""
     lines = getattr(source, _PROPERTY, None)
     if not isinstance(lines, list) or not lines:
         return None

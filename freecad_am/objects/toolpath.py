@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The toolpath in a document: layers and beads with build directions, made from a feature, or from several in a sequence."""
+"""Toolpath stage: layers and beads with build directions, from one feature or a sequence."""
 
 from __future__ import annotations
 
@@ -37,14 +37,14 @@ FIXED = "fixed"
 LEANING = (
     RevolutionParameters,
     SurfaceParameters,
-)  # whose build directions follow the wall, unless asked to be one
+)  # strategies whose build directions follow the wall, unless the mode is FIXED
 
 
 class Toolpath(Stage):
-    """Result: core.toolpath.Toolpath. Without a cell the nozzle has its default shape and there is no platform.
+    """Result: core.toolpath.Toolpath. Without a cell: default nozzle shape and no platform.
 
-    FeatureProcess: for several features, the differences of each one's process, as JSON by row key
-    in inner values.
+    FeatureProcess: for several features, the process differences of each feature, as JSON by row
+    key in inner units.
     """
 
     kind = "toolpath"
@@ -94,9 +94,10 @@ class Toolpath(Stage):
         super().complete(obj)
 
     def key(self, obj: Any) -> str:
-        """As for any stage, except that only the part of the cell left by `seen_of` counts:
-        position and machine concern joint paths. A document of an earlier version that still fits
-        keeps the key of any stage.
+        """Return the fingerprint of the inputs. Of the cell, only the content of `seen_of` counts.
+
+        The cell's position and machine affect joint paths only. An up-to-date result of an earlier
+        version keeps the base class key, which covers the whole cell.
         """
         key = fingerprints.key_of_inputs(self, obj, _input_key)
         fits_old_key = obj.Key not in ("", key) and obj.Key == super().key(obj)
@@ -154,7 +155,7 @@ class Toolpath(Stage):
         return work
 
     def targets(self, obj: Any) -> list[Target]:
-        """The target of each feature, for work that does not touch the document. Raises InputError."""
+        """Return the target of each feature, independent of the document. Raises InputError."""
         features = features_of(obj)
         cell = _cell(obj)
         from .checks.predicted_shape import Target
@@ -169,28 +170,35 @@ class Toolpath(Stage):
         ]
 
     def _look(self, obj: Any) -> Callable[[CoreToolpath], CoreToolpath]:
-        """A function that compares the predicted deposit with the part if an allowance is set; else
-        the identity.
+        """Return a function that compares the predicted deposit with the part.
+
+        Without a machining allowance, the function returns the toolpath unchanged.
         """
         allowance = self.parameters(obj, ProcessParameters).machining_allowance
         if allowance is None:
             return lambda toolpath: toolpath
-        from .checks import predicted_shape  # jobs without an allowance need none of it
+        from .checks import predicted_shape  # only jobs with an allowance need this import
 
         targets = self.targets(obj)
         return lambda toolpath: predicted_shape.add_shape_issues(toolpath, targets, allowance)
 
     def _fit(self, obj: Any) -> Callable[[CoreToolpath], CoreToolpath] | None:
-        """What fits the layers to a scan; None without one. Raises InputError."""
+        """Return a function that fits the layers to the scan; None without a scan.
+
+        Raises InputError.
+        """
         parameters = self.parameters(obj, ScanParameters)
         if obj.Scan is None:
             return None
-        from .planned.scan import fit_of  # jobs without a scan need none of it
+        from .planned.scan import fit_of  # only jobs with a scan need this import
 
         return fit_of(obj, parameters)
 
     def processes(self, obj: Any) -> list[ProcessParameters]:
-        """The process of each feature. Raises InputError for parameters that a feature cannot override."""
+        """Return the process of each feature.
+
+        Raises InputError for parameters that a feature cannot override.
+        """
         process = self.parameters(obj, ProcessParameters)
         texts = [*obj.FeatureProcess, *[""] * (1 + len(obj.Further))][: 1 + len(obj.Further)]
         feature_processes = []
@@ -215,9 +223,10 @@ class Toolpath(Stage):
         return feature_processes
 
     def fixed(self, obj: Any) -> Fixed | None:
-        """A function that plans the toolpath with one build direction, the axis of the part,
-        without the document; None if it has one already, and without walls. With several features
-        only the walls are changed.
+        """Return a function that plans the toolpath with the part axis as the only build direction.
+
+        The function does not use the document. With several features, only walls change. Return
+        None without walls, or if the walls already have a fixed build direction.
         """
         from ..core.planning.other_cells import Fixed
 
@@ -269,7 +278,10 @@ class Toolpath(Stage):
         return Fixed("`build_direction.mode: fixed`", make)
 
     def own_speeds(self, obj: Any) -> tuple[bool, ...]:
-        """For several features, whether each has its own travel speed; empty for one feature."""
+        """Return for each of several features whether its travel speed differs from the job's.
+
+        Empty for one feature.
+        """
         if not obj.Further:
             return ()
         speed = self.parameters(obj, ProcessParameters).travel_speed
@@ -289,7 +301,8 @@ class Toolpath(Stage):
 
 
 def own_process(process: ProcessParameters, of_job: ProcessParameters) -> str:
-    """The differences of a feature's process from the job's, in the form of FeatureProcess.
+    """Return the differences between a feature's process and the job's process, for FeatureProcess.
+
     Raises InputError for parameters that a feature cannot override.
     """
     job = rows.flat(of_job)
@@ -305,17 +318,17 @@ def own_process(process: ProcessParameters, of_job: ProcessParameters) -> str:
 
 
 def features_of(obj: Any) -> list[Any]:
-    """The feature objects of a toolpath object, in their order."""
+    """Return the feature objects of a toolpath object, in order."""
     return [feature for feature in (obj.Feature, *obj.Further) if feature is not None]
 
 
 def strategy_of(feature: Stage) -> type:
-    """The parameters dataclass of a feature's strategy."""
+    """Return the parameter dataclass of a feature's strategy."""
     return next(section.cls for section in feature.sections if section.prefix == "strategy")
 
 
 def _sources(feature: Any) -> tuple[Any, ...]:
-    """The objects that a feature is made of."""
+    """Return the source objects of a feature."""
     return (feature.Source[0], *getattr(feature, "Further", ()))
 
 
@@ -328,7 +341,7 @@ def _input_key(link: str, linked: Any) -> str:
 
 
 def _key_of_cell(cell: CellParameters) -> str:
-    """The representation of a cell with vectors as texts, which is the same in documents of all versions."""
+    """Return the representation of a cell with vectors as text, the same for all versions."""
     values = []
     for field in dataclasses.fields(cell):
         value, spec = getattr(cell, field.name), spec_of(field)
@@ -339,7 +352,7 @@ def _key_of_cell(cell: CellParameters) -> str:
 
 
 def _cell(obj: Any) -> CellParameters | None:
-    """What a toolpath is planned by of its cell."""
+    """Return the part of the cell that affects toolpath planning; None without a cell."""
     return None if obj.Cell is None else seen_of(obj.Cell.Proxy.value(obj.Cell))
 
 
@@ -354,7 +367,7 @@ def _feature_inputs(feature: Any, process: ProcessParameters, cell: CellParamete
 
 
 def _upright(inputs: Given) -> Given:
-    """The same with the axis of the part as its one build direction."""
+    """Return the inputs with the part axis as the only build direction."""
     return dataclasses.replace(inputs, build=dataclasses.replace(inputs.build, mode=FIXED))
 
 

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where a user's own machine files are kept: RoboticAM/machines in FreeCAD's folder of user data, and, for the window, the
-folder of the preferences."""
+"""Folders of user-defined machine files.
+
+Machine files are in RoboticAM/machines of FreeCAD's user data folder, and in the window also in the
+folder set in the preferences.
+"""
 
 from __future__ import annotations
 
@@ -19,7 +22,10 @@ FOLDER = os.path.join("RoboticAM", "machines")
 
 
 def folders() -> tuple[str, ...]:
-    """Existing folders with the user's machine files; for a job of another machine, those there."""
+    """Return the existing folders of user-defined machine files.
+
+    For a job from another computer, return the folders listed in the job's relocation.
+    """
     relocation = job_files.relocation()
     if relocation is not None:
         return relocation.machines
@@ -32,10 +38,9 @@ def folders() -> tuple[str, ...]:
 
 
 def save(name: str, text: str) -> str:
-    """Write the text of a machine file under an id; return the path. The file is written completely
-    or not at all.
+    """Write a machine file for an id and return its path. The write is atomic.
 
-    Raises InputError NOT_WRITTEN if it cannot be written, or if the id is already taken.
+    Raises InputError NOT_WRITTEN if the file cannot be written or the id is taken.
     """
     folder = os.path.join(App.getUserAppDataDir(), FOLDER)
     path = os.path.join(folder, f"{name}.json")
@@ -59,8 +64,9 @@ def save(name: str, text: str) -> str:
 
 
 def files_of(name: str) -> list[str]:
-    """The user's files of a machine given by its id or by a path; empty for a built-in or unknown
-    one.
+    """Return the user-defined files of a machine, given by id or path.
+
+    Empty for a built-in or unknown machine.
     """
     measured = calibration.named(name)
     if measured is not None:

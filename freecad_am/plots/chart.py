@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a picture holds before it is drawn: curves, bars and limits as arrays, in the units they
-are shown in; its look."""
+"""Chart data before drawing (curves, bars and limits as arrays in display units), and looks."""
 
 from __future__ import annotations
 
@@ -18,13 +17,13 @@ from ..core.types import Array, Integers, Mask
 
 LINE, STEP, DOTS, MARKED, OUTLINE = "line", "step", "dots", "marked", "outline"
 INF = float("inf")
-# a limit is in the range of y if values reach this share of the limit
+# fraction of a limit that values must reach for the y range to include the limit
 SHOWN_FROM = 0.4
 PAD = 0.06
 
 
 class Quantity(NamedTuple):
-    """What an axis counts, and in what; a whole one has no values between its numbers."""
+    """Quantity and unit of an axis. is_whole: whether the values are integers."""
 
     name: str
     unit: str = ""
@@ -32,7 +31,7 @@ class Quantity(NamedTuple):
 
     @property
     def label(self) -> str:
-        """The label of the axis."""
+        """Return the axis label."""
         return f"{self.name}, {self.unit}" if self.unit else self.name
 
 
@@ -41,9 +40,12 @@ LAYER_NUMBER = Quantity("layer", is_whole=True)
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """Values y over x, (n,) each; NaN lifts the pen.
+    """Values y over x, (n,) each. NaN interrupts the line.
 
-    colour: a number of the palette, a word of `Look`, or #rrggbb. kind: LINE; STEP, with y of the segment from the previous x; DOTS; MARKED, a line with dots; OUTLINE, a curve of the plane, as wide as `width` in the units of x if it is positive. layer: (n,) int of each value, if it has one. Except for DOTS and OUTLINE, x never falls.
+    colour: palette index, a colour name of `Look`, or #rrggbb. kind: LINE; STEP, where y belongs to
+    the segment from the previous x; DOTS; MARKED, a line with dots; OUTLINE, a plane curve with a
+    line width of `width` in units of x if `width` is positive. layer: (n,) int, layer of each value
+    if known. x never decreases, except for DOTS and OUTLINE.
     """
 
     name: str
@@ -57,7 +59,7 @@ class Curve:
 
 @dataclass(frozen=True, eq=False)
 class Bars:
-    """A histogram: heights (n,) over the ranges between edges (n + 1,)."""
+    """A histogram: heights (n,) of the bins between edges (n + 1,)."""
 
     name: str
     edges: Array
@@ -66,13 +68,13 @@ class Bars:
 
 @dataclass(frozen=True, eq=False)
 class Chart:
-    """One frame with its scales.
+    """One chart frame with its axes.
 
-    limits: lowest and highest allowed value, infinite without a limit; the area beyond is shaded
-    and its values are marked. band: the target range of x. marks: named reference values of y;
-    upright: of x. borders: x of the starts of layers, and layers, their numbers. span: range of y,
-    if the values do not set it. unlimited: reason for missing limits. plane: x and y are places in
-    a plane, drawn to the same scale. names: x and y of places that have a name.
+    limits: minimum and maximum allowed y, infinite without a limit; the area beyond is shaded and
+    violating values are marked. band: target range of x. marks: named reference values of y.
+    upright: named reference values of x. borders: x of layer starts. layers: their layer numbers.
+    span: y range, None to derive it from the values. unlimited: reason for missing limits. plane:
+    whether x and y are plane coordinates with equal scales. names: x, y and name of named points.
     """
 
     title: str
@@ -92,7 +94,7 @@ class Chart:
     names: tuple[tuple[float, float, str], ...] = ()
 
     def wrong(self, values: Array) -> Mask:
-        """Return a mask (n,) of the values beyond the limits."""
+        """Return a mask (n,) of values beyond the limits."""
         low, high = self.limits
         slack = 1e-9 * max(1.0, *(abs(end) for end in self.limits if np.isfinite(end)), 1.0)
         with np.errstate(invalid="ignore"):
@@ -104,7 +106,7 @@ class Chart:
         return int(sum(self.wrong(curve.y).sum() for curve in self.curves))
 
     def across(self) -> tuple[float, float]:
-        """Return the range of x of all contents."""
+        """Return the x range of all contents."""
         if self.bars is not None:
             return float(self.bars.edges[0]), float(self.bars.edges[-1])
         low, high = _ends([curve.x for curve in self.curves], [])
@@ -113,7 +115,7 @@ class Chart:
         return (low, high) if high > low else (low - 0.5, low + 0.5)
 
     def up(self) -> tuple[float, float]:
-        """Return the range of y of all contents; it leaves out limits that no value approaches."""
+        """Return the y range of all contents, without limits that no value approaches."""
         if self.span is not None:
             return self.span
         if self.bars is not None:
@@ -130,8 +132,7 @@ class Chart:
 
 @dataclass(frozen=True)
 class Picture:
-    """Charts one below the other. name: of the picture in a catalogue. lacking: the reason for a
-    missing chart."""
+    """Charts stacked vertically. name: key in PICTURES. lacking: reason why there are no charts."""
 
     name: str
     title: str
@@ -140,7 +141,10 @@ class Picture:
 
 
 def together(title: str, charts: Sequence[Chart]) -> Chart:
-    """Combine the curves of several charts in one, without limits, which differ. Different units are all named."""
+    """Combine the curves of several charts in one chart.
+
+    The limits are dropped because they differ. The y label lists all units.
+    """
     units = list(dict.fromkeys(chart.y.unit for chart in charts))
     curves = tuple(
         replace(curve, colour=number)
@@ -165,7 +169,7 @@ def _ends(values: Sequence[Array], extra: Sequence[float]) -> tuple[float, float
 
 def _padded(low: float, high: float) -> tuple[float, float]:
     padding = PAD * (high - low)
-    if padding <= 1e-9 * max(abs(low), abs(high), 1e-3):  # as good as constant
+    if padding <= 1e-9 * max(abs(low), abs(high), 1e-3):  # practically constant values
         padding = 0.05 * max(abs(low), abs(high)) or 0.5
     return low - padding, high + padding
 
@@ -174,7 +178,10 @@ STEPS = 60
 
 
 def fit(measured: Measured, model: BeadModel, target: float | None = None) -> Chart:
-    """Curves and dots coloured by radius; `target` is a width drawn across, mm."""
+    """Chart measured and fitted bead widths over travel speed, coloured by radius.
+
+    target: requested width, mm, drawn as a horizontal line.
+    """
     speed = np.linspace(*model.speeds, STEPS)
     radii = np.unique(measured.radius)
     curves = []
@@ -206,12 +213,16 @@ TRAVEL = (
     "travel",
     "spread",
     "fit",
-)  # names of pictures whose speeds belong to the deposition point
-JOINTS = ("place", "angle", "speed", "acceleration", "jerk")  # quantities of axes
+)  # pictures whose speeds are speeds of the deposition point
+JOINTS = ("place", "angle", "speed", "acceleration", "jerk")  # axis quantities
 
 
 def in_units(picture: Picture, scale: Scale) -> Picture:
-    """A picture in other units. scale: for values of up to a number, how many of the other unit make one, and its name."""
+    """Convert a picture to other units.
+
+    scale: function of the maximum value and the unit that returns the conversion factor and the
+    name of the new unit.
+    """
     travel = picture.name in TRAVEL
     return replace(
         picture, charts=tuple(convert_chart(chart, scale, travel) for chart in picture.charts)
@@ -219,7 +230,7 @@ def in_units(picture: Picture, scale: Scale) -> Picture:
 
 
 def convert_chart(chart: Chart, scale: Scale, travel: bool = False) -> Chart:
-    """A chart in other units. travel: its speeds belong to the deposition point."""
+    """Convert a chart to other units. travel: whether speeds are deposition point speeds."""
     x = _in_unit(chart.x, chart.across(), travel, scale)
     y = (
         x
@@ -255,7 +266,7 @@ def convert_chart(chart: Chart, scale: Scale, travel: bool = False) -> Chart:
 def _in_unit(
     quantity: Quantity, ends: tuple[float, float], travel: bool, scale: Scale
 ) -> tuple[float, str]:
-    """The factor and the unit of an axis of a chart."""
+    """Return the conversion factor and the new unit of a chart axis."""
     if quantity.unit in SPEEDS and not travel:
         return 1.0, quantity.unit
     if quantity.unit == "mm" and quantity.name in JOINTS:
@@ -271,13 +282,13 @@ def _array(values: Array | None, factor: float) -> Array | None:
     return None if values is None else np.asarray(factor * values)
 
 
-# ---- Colours of pictures: on light and on dark grounds, in the colours of a page, and scales
+# ---- Chart colours for light and dark backgrounds and for pages, and colour scales
 
-# of axes and other curves, legible on light and dark
+# colours of axes and other curves, legible on light and dark backgrounds
 PALETTE = ("#3b6fd4", "#d9633b", "#2f9e6e", "#9a5bd0", "#c79a1e", "#cf3f74", "#3aa5b8", "#7a7f87")
 BAR = PALETTE[0]
 
-# anchors of a perceptually even scale from dark blue over green to yellow
+# anchors of a perceptually uniform scale from dark blue through green to yellow
 _SCALE = np.array(
     [
         (68, 1, 84),
@@ -297,7 +308,7 @@ _SCALE = np.array(
 
 @dataclass(frozen=True)
 class Words:
-    """Texts of a frame in addition to those in its chart, filled in by `format`."""
+    """Format strings of a frame, in addition to the texts of its chart."""
 
     layer: str = "layer {}"
     beyond: str = "{}: {} points beyond the limit"
@@ -307,8 +318,11 @@ class Words:
 
 @dataclass(frozen=True)
 class Look:
-    """ink: titles; soft: all other text; grid; bad: limits and violations; good: target bands;
-    paper: the background, "none" for the background of a page. All as #rrggbb."""
+    """Chart colours as #rrggbb.
+
+    ink: titles. soft: other text. grid: grid lines. bad: limits and violations. good: target bands.
+    paper: background, "none" for the page background.
+    """
 
     ink: str
     soft: str
@@ -319,7 +333,7 @@ class Look:
     words: Words = Words()
 
     def colour(self, colour: int | str) -> str:
-        """The colour of a curve."""
+        """Return a curve colour as #rrggbb."""
         if isinstance(colour, int):
             return PALETTE[colour % len(PALETTE)]
         return colour if colour.startswith("#") else str(getattr(self, colour))
@@ -327,7 +341,7 @@ class Look:
 
 LIGHT = Look("#1d2430", "#667085", "#dfe3ea", "#b8322a", "#1a7f4b", "#ffffff")
 DARK = Look("#e6e9ef", "#98a2b3", "#323a47", "#ff7a70", "#4cc38a", "#1a202b")
-# for a page that sets the colours: each is a variable of its style
+# placeholder colours, replaced by the page's style variables
 PAGE = Look("#010203", "#010204", "#010205", "#010206", "#010207", "none")
 VARIABLES = {
     PAGE.ink: "--ink",
@@ -339,7 +353,7 @@ VARIABLES = {
 
 
 def shade(share: float) -> str:
-    """A colour of the scale at 0 to 1, as #rrggbb."""
+    """Return the colour at a fraction (0 to 1) of the colour scale, as #rrggbb."""
     level = min(max(share, 0.0), 1.0) * (len(_SCALE) - 1)
     low = min(int(level), len(_SCALE) - 2)
     red, green, blue = (

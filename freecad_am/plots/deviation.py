@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Charts of a predicted deposit against the part: maps from the front and from behind, coloured by
-the deviation from the faces, its distribution, and its values by layer."""
+"""Charts of a predicted deposit against the part.
+
+Maps from several sides coloured by deviation from the faces, the deviation histogram, and the
+deviations by layer.
+"""
 
 from __future__ import annotations
 
@@ -15,13 +18,13 @@ from ..core.process.shape.compare import name_of
 from ..core.types import Array
 from .chart import DOTS, LAYER_NUMBER, MARKED, Bars, Chart, Curve, Quantity
 
-TILT = math.radians(30.0)  # from above, as in the other views
-FACING = 0.05  # cosine to the eye of faces that are seen
+TILT = math.radians(30.0)  # elevation of the viewing direction, as in the other views
+FACING = 0.05  # minimum cosine between normal and viewing direction of visible faces
 
 
 @dataclass(frozen=True)
 class _View:
-    """A view: its title, its horizontal direction, and the direction to the eye."""
+    """A view. across: horizontal direction of the view. eye: direction towards the viewer."""
 
     title: str
     across: tuple[float, float, float]
@@ -29,7 +32,7 @@ class _View:
 
     @property
     def up(self) -> Array:
-        """The vertical direction."""
+        """Return the vertical direction of the view."""
         return np.cross(self.eye, self.across)
 
 
@@ -42,27 +45,27 @@ X, UP = Quantity("across", "mm"), Quantity("upwards in the view", "mm")
 
 
 def charts(deviations: DeviationMap, allowance: float) -> tuple[Chart, ...]:
-    """The part from the sides on which places face the eye, the spread of deviations, and the layers."""
+    """Chart the deviation maps of all views, the deviation histogram, and deviations by layer."""
     maps = [chart for view in _VIEWS if (chart := _map(deviations, view)) is not None]
     return (*maps, _histogram(deviations, allowance), *_layers(deviations, allowance))
 
 
 def dots_by_band(x: Array, y: Array, deviation: Array, step: float) -> tuple[Curve, ...]:
-    """Return dots coloured by the band of their deviation, the lowest band last.
+    """Return dots coloured by deviation band, the lowest band last.
 
     Parameters
     ----------
     x, y : (n,) array
-        Places in the picture, mm.
+        Dot positions in the chart, mm.
     deviation : (n,) array
-        Their deviations, mm.
+        Deviations of the dots, mm.
     step : float
-        Width of a band, mm.
+        Band width, mm.
 
     Returns
     -------
     tuple of Curve
-        A curve per band that has dots.
+        One curve per band that contains dots.
     """
     number = band_of(deviation, step)
     return tuple(
@@ -73,8 +76,10 @@ def dots_by_band(x: Array, y: Array, deviation: Array, step: float) -> tuple[Cur
 
 
 def _map(deviations: DeviationMap, view: _View) -> Chart | None:
-    """Draw the places that face the eye, the lowest deviation last; the view from below shows the
-    places of no other view."""
+    """Chart the points that face the viewer, the lowest deviations on top.
+
+    The last view shows only points that no other view shows. None if no point faces the viewer.
+    """
     facing = deviations.normals @ np.asarray(view.eye) > FACING
     if view is _VIEWS[-1]:
         for earlier in _VIEWS[:-1]:

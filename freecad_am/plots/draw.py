@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pictures drawn by matplotlib: charts in; a Figure and the position of each frame out."""
+"""Draw charts with matplotlib: return a Figure and the position of each frame."""
 
 from __future__ import annotations
 
@@ -16,15 +16,14 @@ from matplotlib.ticker import MaxNLocator, ScalarFormatter
 from ..core.types import Array, Index
 from .chart import BAR, DOTS, MARKED, OUTLINE, STEP, Chart, Curve, Look
 
-POINTS_KEPT = 4  # points to a column that are drawn as they are
+POINTS_KEPT = 4  # maximum mean number of points per pixel column without thinning
 
 
 def envelope(x: Array, y: Array, columns: int, low: float, high: float) -> Index:
-    """Return rising indices of the points of x and y (n,) that draw the same curve between x = low
-    and high.
+    """Thin a curve without visible change; return the increasing indices of the remaining points.
 
-    x never falls. Visible gaps (NaN in y) are kept. One point beyond either end is kept, for the
-    lines that lead out of the frame.
+    x, y: (n,), where x never decreases. Visible gaps (NaN in y) remain. One point beyond each of
+    `low` and `high` remains, for lines that leave the frame.
     """
     start = max(int(np.searchsorted(x, low, side="left")) - 1, 0)
     end = min(int(np.searchsorted(x, high, side="right")) + 1, len(x))
@@ -46,11 +45,11 @@ def envelope(x: Array, y: Array, columns: int, low: float, high: float) -> Index
 
 
 RING = {"linestyle": "none", "marker": "o", "markersize": 8.0, "fillstyle": "none"}
-NAME_OFFSET = (6.0, 4.0)  # points from a place to its name
+NAME_OFFSET = (6.0, 4.0)  # typographic points; offset of a name from its ring
 
 
 def named(axes: Any, chart: Chart, colour: str, size: float) -> None:
-    """Draw a ring at each named place of a chart, with the name next to it; size: points."""
+    """Draw a ring and a name at each named point of a chart. size: font size, points."""
     for x, y, name in chart.names:
         axes.add_line(Line2D([x], [y], color=colour, **RING))
         axes.annotate(
@@ -66,13 +65,13 @@ def named(axes: Any, chart: Chart, colour: str, size: float) -> None:
 
 
 DPI = 100.0
-# margins of a frame, px: at its sides, above for its title, below for its scale
+# px; margins of a frame: at the sides, above for the title, below for the axis labels
 LEFT_MARGIN, RIGHT_MARGIN, TOP_MARGIN, BOTTOM_MARGIN, BARE_MARGIN = 66.0, 14.0, 24.0, 37.0, 6.0
-NUMBERS = 12.0  # px above a frame for the layer numbers
-KEYS = 12.0  # px; height of a row of curve names that do not fit next to the title
+NUMBERS = 12.0  # px; height above a frame for layer numbers
+KEYS = 12.0  # px; height of a legend row that does not fit next to the title
 TEXT, TITLE, SMALL_TEXT = 7.6, 8.6, 6.4  # font sizes, points
 CHARACTER = 6.0  # px; approximate width of a character
-TITLE_SCALE = 1.2  # size of a title relative to the other texts
+TITLE_SCALE = 1.2  # title size relative to other text
 MOST_BORDERS, FEW_WRONG = 80, 40
 MIN_LABEL_GAP = 26.0  # px; minimum distance between layer numbers
 BORDER, FRAME, FORBIDDEN, WANTED, BEAD = 0.35, 0.5, 0.13, 0.14, 0.35  # opacities
@@ -81,8 +80,10 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True)
 class Window:
-    """The visible ranges by the number of a chart: across, the range of x, with key 0 for all
-    charts that share it; up, the range of y. A missing key means the full range."""
+    """Visible ranges by chart index. A missing key means the full range.
+
+    across: x ranges; key 0 applies to all charts that share x. up: y ranges.
+    """
 
     across: Mapping[int, Range] = field(default_factory=dict)
     up: Mapping[int, Range] = field(default_factory=dict)
@@ -90,8 +91,7 @@ class Window:
 
 @dataclass(frozen=True)
 class Place:
-    """Position of a chart's frame in its picture: pixels from the left and from the top, and its
-    ranges."""
+    """Position of a chart frame in its picture, px from left and top, and its x and y ranges."""
 
     left: float
     top: float
@@ -104,17 +104,19 @@ class Place:
 def figure(
     charts: Sequence[Chart], look: Look, width: int, height: int, window: Window | None = None
 ) -> tuple[Figure, tuple[Place, ...]]:
-    """Return a figure of width times height pixels at 100 to the inch with the charts, and where
-    their frames are. The same charts make the same figure."""
+    """Draw charts in a figure of width x height pixels; return the figure and the frame positions.
+
+    The resolution is 100 dpi. Equal charts give equal figures.
+    """
     drawing = Figure(figsize=(width / DPI, height / DPI), dpi=DPI, edgecolor="none")
     return drawing, fill(drawing, charts, look, window or Window())
 
 
 def fill(drawing: Figure, charts: Sequence[Chart], look: Look, window: Window) -> tuple[Place, ...]:
-    """Draw charts one below the other over the whole figure, in the axes that it has, in place of
-    what was drawn there. Where they share x, only the last one has numbers below.
+    """Redraw a figure with charts stacked vertically, reusing the figure's axes.
 
-    Animated artists, such as those of matplotlib's cursors, stay.
+    If the charts share x, only the last chart has tick labels on x. Animated artists, such as
+    matplotlib cursors, stay.
     """
     width, height = (round(float(size) * DPI, 6) for size in drawing.get_size_inches())
     drawing.set_facecolor(look.paper)
@@ -173,7 +175,7 @@ def _numbered(shared: bool, number: int, charts: Sequence[Chart]) -> bool:
 
 
 def _to_scale(chart: Chart, panel: Place) -> Place:
-    """A place that shows more of one side where x and y are drawn to the same scale."""
+    """Return the frame with one range extended so that x and y have the same scale."""
     if not chart.plane:
         return panel
     (left, right), (low, high) = panel.across, panel.up
@@ -185,19 +187,18 @@ def _to_scale(chart: Chart, panel: Place) -> Place:
 
 
 def _named(chart: Chart) -> list[Curve]:
-    """Return the curves with a name."""
+    """Return the curves that appear in the legend."""
     return [curve for curve in chart.curves if curve.kind != DOTS and curve.name]
 
 
 def _titled(chart: Chart, look: Look) -> str:
-    """Return the title of a chart, with the number of values beyond its limits."""
+    """Return the chart title, with the number of values beyond the limits if there are any."""
     count = chart.wrong_count
     return look.words.beyond.format(chart.title, f"{count:,}") if count else chart.title
 
 
 def _rows_of_keys(chart: Chart, look: Look, width: float) -> list[list[Curve]]:
-    """Return rows of curves for the legend between title and frame; empty if the legend fits next
-    to the title."""
+    """Return the legend rows above the frame; empty if the legend fits next to the title."""
     named = _named(chart)
     widths = [CHARACTER * (len(curve.name) + 3.0) for curve in named]
     if len(named) < 2 or CHARACTER * TITLE_SCALE * len(_titled(chart, look)) + sum(widths) <= width:
@@ -225,7 +226,7 @@ class _Frame:
     layers: bool
 
     def draw(self, axes: Any) -> None:
-        """Draw in the given axes; None for new ones."""
+        """Draw the frame in the given axes, or in new axes if None."""
         panel = self.panel
         bottom = 1.0 - (panel.top + panel.height) / self.height
         box = (
@@ -299,7 +300,7 @@ class _Frame:
         )
 
     def _grounds(self, axes: Any) -> None:
-        """Draw the ranges that limits forbid, and the target band."""
+        """Shade the ranges beyond the limits, and the target band."""
         (low, high), (lower, upper) = self.panel.up, self.chart.limits
         for start, end in ((low, min(lower, high)), (max(upper, low), high)):
             if np.isfinite(end - start) and end > start:
@@ -332,7 +333,7 @@ class _Frame:
             )
 
     def _borders(self, axes: Any) -> None:
-        """Draw the starts of layers, thinned if many."""
+        """Draw layer borders, thinned to at most MOST_BORDERS."""
         chart = self.chart
         if chart.borders is None or chart.layers is None:
             return
@@ -404,7 +405,7 @@ class _Frame:
         )
         axes.add_line(Line2D(x, y, color=colour, linewidth=1.1, **dots, **style))
         wrong = self.chart.wrong(y)
-        if wrong.any():  # a few values also get dots: a single one draws no line
+        if wrong.any():  # mark a few values with dots, because a single value draws no line
             marker = {"marker": "o", "markersize": 2.6} if wrong.sum() <= FEW_WRONG else {}
             axes.add_line(
                 Line2D(
@@ -444,8 +445,10 @@ class _Frame:
                 )
 
     def _across(self, axes: Any, value: float, colour: str, name: str, left: bool = False) -> None:
-        """Draw a dashed line with its name at its right or left end, below the line if the space
-        above is too small."""
+        """Draw a dashed horizontal line, named at its right or left end.
+
+        The name is below the line if there is no space above.
+        """
         axes.add_line(
             Line2D(
                 [0.0, 1.0],
@@ -500,7 +503,7 @@ class _Frame:
             self._keys(right, down, named)
 
     def _keys(self, right: float, down: float, named: Sequence[Curve]) -> None:
-        """Names of curves in one row that ends at the right."""
+        """Draw one right-aligned legend row."""
         for curve in reversed(named):
             right -= CHARACTER * len(curve.name) + 4.0
             self._key(right, down, curve)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pictures as files: images of a figure, the same bytes for the same figure, and the values that are drawn."""
+"""Export pictures: image files, reproducible byte by byte, and CSV files of the drawn values."""
 
 from __future__ import annotations
 
@@ -18,17 +18,20 @@ from matplotlib.figure import Figure
 from ..core.types import Array, Integers, Mask, NDArray
 from .chart import DOTS, VARIABLES, Picture
 
-INCH = 100.0  # pixels
-MIN_SIZE = 700, 450  # px, room for the texts around the map
+INCH = 100.0  # px per inch
+MIN_SIZE = 700, 450  # px; minimum map size that leaves space for the texts
 FONT_SIZE = 8.0  # points
 
 
 @dataclass(frozen=True, eq=False)
 class Cells:
-    """colours (R, C, 3) 0..255, lowest row first; hatched (R, C). columns, rows: positions in
-    cells, with their labels. lines: columns and rows along which a line is drawn. curves: rows (C,)
-    over the columns, NaN lifts the pen, with a colour. ramp (n, 3) from `low` to `high`, what it
-    counts in `scale`; classes: names with their colours."""
+    """A map of coloured cells.
+
+    colours: (R, C, 3), 0 to 255, lowest row first. hatched: (R, C) mask. columns, rows: tick
+    positions in cells, with labels. lines: columns and rows of drawn lines. curves: row positions
+    (C,) over the columns, with a colour; NaN interrupts a curve. ramp: (n, 3) colours from `low` to
+    `high`. scale: label of the ramp. classes: names with their colours.
+    """
 
     title: str
     up: str
@@ -47,7 +50,7 @@ class Cells:
 
 
 def figure(cells: Cells, width: int, height: int) -> Figure:
-    """Return the map as a figure of this size in pixels, at least MIN_SIZE."""
+    """Return the map as a figure of the given size in pixels, at least MIN_SIZE."""
     size = max(width, MIN_SIZE[0]) / INCH, max(height, MIN_SIZE[1]) / INCH
     drawing = Figure(figsize=size, dpi=INCH, layout="constrained")
     axes = drawing.add_subplot()
@@ -89,7 +92,7 @@ def figure(cells: Cells, width: int, height: int) -> Figure:
 
 
 KINDS = ("png", "svg", "pdf")
-# metadata to leave out, so that a file is the same at any time and with any version
+# metadata to omit, so that files do not depend on date or version
 _UNDATED = {
     "png": {"Software": None},
     "svg": {"Date": None, "Creator": None},
@@ -101,13 +104,13 @@ _SETTINGS = {
     "text.usetex": False,
     "path.simplify": True,
 }
-PNG_DPI = 150  # dots per inch of PNG
+PNG_DPI = 150  # dpi; resolution of PNG files
 _ROWS_AT_ONCE = 20_000
 _TAG, _LONG_NUMBER = re.compile(r"<[^>]*>"), re.compile(r"(\d\.\d)\d+")
 
 
 def image(figure: Figure, kind: str) -> bytes:
-    """A file of one of KINDS."""
+    """Return the figure as file content of one of KINDS."""
     stream = io.BytesIO()
     with matplotlib.rc_context(_SETTINGS):
         figure.savefig(
@@ -120,7 +123,10 @@ def image(figure: Figure, kind: str) -> bytes:
 
 
 def inline(figure: Figure, title: str) -> str:
-    """An SVG element to stand in a page that has the variables of `VARIABLES`; drawn in the look PAGE."""
+    """Return the figure, drawn with the look PAGE, as an SVG element for a page.
+
+    The page must define the style variables in VARIABLES.
+    """
     text = image(figure, "svg").decode()
     text = text[text.index("<svg") :]
     text = re.sub(
@@ -133,7 +139,7 @@ def inline(figure: Figure, title: str) -> str:
         r"font: \1 system-ui, sans-serif",
         text,
     )
-    text = _TAG.sub(lambda tag: _LONG_NUMBER.sub(r"\1", tag[0]), text)  # not the texts of labels
+    text = _TAG.sub(lambda tag: _LONG_NUMBER.sub(r"\1", tag[0]), text)  # label texts stay unchanged
     for colour, variable in VARIABLES.items():
         text = text.replace(colour, f"var({variable})")
     box = re.search(r'viewBox="[^"]*"', text)
@@ -144,11 +150,11 @@ def inline(figure: Figure, title: str) -> str:
 
 
 def values(picture: Picture) -> Iterator[str]:
-    """Yield the drawn values as chunks of a CSV file with a decimal point.
+    """Yield the drawn values as chunks of a CSV file with decimal points.
 
-    If all curves share their x values: a column of x, the layer, and a column per curve. Otherwise,
-    and for histograms: a row per value with the name of its chart and curve. A missing value is
-    empty.
+    If all curves share their x values, the columns are x, the layer, and one column per curve.
+    Otherwise, and for histograms, each row has one value with its chart and curve names. Missing
+    values are empty.
     """
     curves = [(chart, curve) for chart in picture.charts for curve in chart.curves]
     if curves and all(curve.x is curves[0][1].x for _, curve in curves):
@@ -214,5 +220,5 @@ def _header(name: str, unit: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """A text as one cell."""
+    """Return a text as one CSV cell, quoted if necessary."""
     return '"' + text.replace('"', '""') + '"' if "," in text or '"' in text else text

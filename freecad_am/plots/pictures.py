@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pictures by name: axes with their speeds, accelerations and jerks against limits, the
-condition, and charts of layers."""
+"""Pictures by name: axis motion against limits, Jacobian condition, and layer charts."""
 
 from __future__ import annotations
 
@@ -33,18 +32,18 @@ from .source import Source
 
 TIME, PATH = "time", "path"
 OVER = (TIME, PATH)
-# units of time in s and of path in mm, largest first; a unit applies from three units on
+# units of time in s and of path length in mm, largest first; a unit applies from 3 units upwards
 TIMES: tuple[tuple[float, str], ...] = ((3600.0, "h"), (60.0, "min"), (1.0, "s"))
 LENGTHS: tuple[tuple[float, str], ...] = ((1000.0, "m"), (1.0, "mm"))
 
 
 @dataclass(frozen=True, eq=False)
 class Rows:
-    """k places along a job.
+    """k samples along a job.
 
-    index: (k,) row of the motion at each place. x: (k,) in the unit of `quantity`, never
-    decreasing. standing: (k,) bool, where the machine has waited at its row since the previous
-    place. borders: x at which layers begin. layers: the numbers of these layers.
+    index: (k,) motion row of each sample. x: (k,) in the unit of `quantity`, never decreasing.
+    standing: (k,) bool, whether the machine has waited at its row since the previous sample.
+    borders: x of the layer starts. layers: numbers of these layers.
     """
 
     index: Index
@@ -56,14 +55,14 @@ class Rows:
     layers: Integers
 
     def select(self, values: Array) -> Array:
-        """Return values (n, ...) of rows, such as axis positions, at the places (k, ...)."""
+        """Return row values (n, ...), such as axis positions, at the samples (k, ...)."""
         selected: Array = values[self.index]
         return selected
 
     def select_rates(self, values: Array) -> Array:
-        """Return values (n, ...) of segments, such as speeds, at the places (k, ...).
+        """Return segment values (n, ...), such as speeds, at the samples (k, ...).
 
-        A row has the value of the segment that ends there, and 0 during waits.
+        A row has the value of the segment that ends at the row; the value is 0 during waits.
         """
         selected = values[self.index]
         selected[self.standing] = 0.0
@@ -71,8 +70,11 @@ class Rows:
 
 
 def rows(source: Source, over: str = TIME, layers: tuple[int, int] | None = None) -> Rows:
-    """Return the rows of layers, the last included; of all layers by default. over: TIME, s of the
-    job with its waits; or PATH, the path length of the deposition point, rapid moves included."""
+    """Return the samples of layers, first to last inclusive; all layers by default.
+
+    over: TIME, job time including waits; or PATH, path length of the deposition point including
+    rapid moves.
+    """
     motion, times = source.motion, source.times
     waits = times.leave > times.arrive
     index = np.repeat(np.arange(len(motion)), 1 + waits)
@@ -93,7 +95,7 @@ def rows(source: Source, over: str = TIME, layers: tuple[int, int] | None = None
         )
         x, units, total = length[index], LENGTHS, float(length[-1]) if len(length) else 0.0
     unit, name = next((size, name) for size, name in units if total >= 3.0 * size or size == 1.0)
-    x = np.maximum.accumulate(x / unit)  # sums of times fall by rounding
+    x = np.maximum.accumulate(x / unit)  # summed times may decrease by rounding
     layer = motion.layer[index]
     if layers is not None:
         selected = (layer >= layers[0]) & (layer <= layers[1])
@@ -108,15 +110,15 @@ def rows(source: Source, over: str = TIME, layers: tuple[int, int] | None = None
 
 
 CONTINUOUS = " (endless)"
-# texts for a machine file without a limit, and for quantities that have no limits
+# texts for limits missing in the machine file
 NO_SPEED = "no limit known: the machine file has no max_speed"
 NO_ACCELERATION = "no limit known: the machine file has no max_acceleration"
 NO_JERK = "no limit known: the machine file has no max_jerk"
-MOST_SHARE = 250.0  # % of the limit; the scale ends here, so that slower values stay readable
+MOST_SHARE = 250.0  # % of the limit; maximum of the scale, so that lower values stay readable
 
 
 def angles(source: Source, rows: Rows) -> tuple[Chart, ...]:
-    """A chart per axis, and per sum of axes that has limits of its own."""
+    """Chart the position of each axis, and of each axis sum with coupled limits."""
     cell = _cell(source)
     limits, units, values = cell.limits, cell.machine.units, cell.machine.unit_values
     joints = rows.select(source.motion.joints)
@@ -147,7 +149,7 @@ def angles(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 
 def speeds(source: Source, rows: Rows) -> tuple[Chart, ...]:
-    """A chart per axis, while depositing: the mean of each segment."""
+    """Chart the speed of each axis while depositing, as segment means."""
     return _rates(
         source,
         rows,
@@ -161,7 +163,7 @@ def speeds(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 
 def accelerations(source: Source, rows: Rows) -> tuple[Chart, ...]:
-    """A chart per axis, while depositing, at the points within beads."""
+    """Chart the acceleration of each axis while depositing, at points inside beads."""
     limits = _cell(source).machine.max_acceleration
     return _rates(
         source,
@@ -176,7 +178,7 @@ def accelerations(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 
 def jerks(source: Source, rows: Rows) -> tuple[Chart, ...]:
-    """A chart per axis, while depositing."""
+    """Chart the jerk of each axis while depositing."""
     limits = _cell(source).machine.max_jerk
     return _rates(
         source, rows, rows.select_rates(source.rates.jerk), "jerk", "/s³", limits, STEP, NO_JERK
@@ -184,13 +186,13 @@ def jerks(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 
 def shares(source: Source, rows: Rows) -> tuple[Chart, ...]:
-    """The speeds of all axes while depositing, as shares of their limits, in one chart."""
+    """Chart the speeds of all axes while depositing, as percentages of their limits."""
     machine = _cell(source).machine
     values = 100.0 * np.abs(rows.select_rates(source.rates.speed)) / machine.max_speed
     largest = float(np.nanmax(values, initial=0.0))
     top = (
         max(1.12 * largest, 125.0) if largest > 40.0 else 1.12 * largest or 1.0
-    )  # the limit is shown where it is near
+    )  # show the limit if speeds come close to it
     curves = tuple(
         _curve(rows, name, values[:, axis], axis, STEP) for axis, name in enumerate(machine.axes)
     )
@@ -208,7 +210,10 @@ def shares(source: Source, rows: Rows) -> tuple[Chart, ...]:
 
 
 def condition(source: Source, rows: Rows) -> tuple[Chart, ...]:
-    """sigma_min / sigma_max of the scaled Jacobian while depositing, and the least allowed; none of tables."""
+    """Chart the inverse condition number of the Jacobian while depositing, and its minimum.
+
+    The number is sigma_min / sigma_max of the scaled Jacobian. Empty for machines without one.
+    """
     if (
         source.condition is None
         or source.threshold is None
@@ -294,15 +299,17 @@ def _cell(source: Source) -> Cell:
 
 
 BINS = 48
-# g/s in kg/h, and mm^3 in cm^3
+# conversion factors: g/s to kg/h, and mm^3 per cm^3
 KG_PER_HOUR, MM3_PER_CM3 = 3.6, 1000.0
 VOID_COLOUR, DOUBLE_COLOUR = "#d42020", "#2050d0"
-LEAST_PART = 1e-3  # of the largest layer; a smaller share is noise
+LEAST_PART = 1e-3  # fraction of the maximum layer volume; smaller layers have no ratio
 
 
 def travel(source: Source, rows: Rows) -> tuple[Chart, ...]:
-    """Chart the programmed speed of the deposition point and, if the machine cannot keep it, the
-    achieved speed."""
+    """Chart the programmed speed of the deposition point.
+
+    Include the achieved speed where the axes cannot keep the programmed speed.
+    """
     motion, feed = source.motion, source.feed
     speed = np.where(motion.point > 0, motion.speed, np.nan)
     rapid, deposit = (
@@ -367,8 +374,10 @@ def deposit(source: Source, rows: Rows) -> tuple[Chart, ...]:
 def distances(
     values: Array, layer_height: float, band: float | None = None, name: str = ""
 ) -> Chart:
-    """Chart the distribution of the local distances (n,) mm between layers about the layer height,
-    and their tolerance band. name: of the feature, if the job has several."""
+    """Chart the distribution of local layer distances (n,), mm, with layer height and tolerance.
+
+    band: tolerance as a fraction of the layer height. name: feature name, if the job has several.
+    """
     low, high = float(values.min(initial=layer_height)), float(values.max(initial=layer_height))
     pad = max(0.15 * (high - low), 0.002 * layer_height)
     edges = np.linspace(low - pad, high + pad, BINS + 1)
@@ -385,7 +394,7 @@ def distances(
 
 
 def spacing(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """`distances` of layers; empty if no layer rests on another."""
+    """Chart `distances` of the layers; empty if no layer rests on another layer."""
     values, layer = source.distances
     selected = values[(layer >= layers[0]) & (layer <= layers[1])]
     return (
@@ -394,7 +403,10 @@ def spacing(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
 
 
 def distributions(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """How travel speeds, bead widths and heights are spread over the length; none without a bead model."""
+    """Chart the distributions of travel speed, bead width and bead height over the bead length.
+
+    Empty without a bead model.
+    """
     segments = source.segments(layers)
     if not len(segments.length):
         return ()
@@ -415,7 +427,7 @@ def distributions(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
 
 
 def heights(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """Chart predicted and nominal height per layer, and the resulting offset of the layers.
+    """Chart predicted and nominal layer height per layer, and the accumulated height error.
 
     Empty without a bead model.
     """
@@ -423,7 +435,7 @@ def heights(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
 
 
 def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """Chart the figures of `predicted.beads`."""
+    """Chart the predicted heights in the result of `model_notes.beads`; empty for None."""
     rows = (
         []
         if figures is None
@@ -464,13 +476,15 @@ def height_charts(figures: dict[str, Any] | None, layers: tuple[int, int]) -> tu
 
 
 def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """Chart the deposited and the part's volume by layer, and their ratio; empty for layers that
-    are not plane."""
+    """Chart deposited volume and part volume by layer, and their ratio.
+
+    Empty for layers that are not plane.
+    """
     if source.slabs is None:
         return ()
     end = (
         layers[1] + 1 if layers[1] + 1 < len(source.toolpath.layers) else None
-    )  # including the part's volume above the last layer
+    )  # include the part volume above the last layer
     part_volume, deposited = (values[layers[0] : end] / MM3_PER_CM3 for values in source.slabs)
     if not len(part_volume):
         return ()
@@ -503,7 +517,7 @@ def by_layer(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
 
 
 def infill(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """Chart void and double deposit of plane layers; empty if none was measured."""
+    """Chart void and double deposit of plane layers; empty if no layer was measured."""
     measured = [
         (number, layer.coverage)
         for number, layer in enumerate(source.toolpath.layers)
@@ -532,8 +546,10 @@ def infill(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
 
 
 def section(source: Source, layers: tuple[int, int]) -> tuple[Chart, ...]:
-    """The last of the layers as beads of their width, on the outline of the part where it is cut for it; none but of plane
-    layers."""
+    """Chart the beads of the last layer to scale, on the part outline at its cut height.
+
+    Empty for layers that are not plane.
+    """
     if source.group is None:
         return ()
     number, height = layers[1], source.toolpath.layer_height
@@ -585,7 +601,12 @@ Charts = tuple[Chart, ...]
 
 @dataclass(frozen=True)
 class Entry:
-    """A picture. along: drawn over time or path, by which its charts come; else `of`, from layers. machine: needs a cell."""
+    """A picture of the catalogue.
+
+    along: function that makes charts over time or path. from_layers: function that makes charts
+    from layers, if `along` is None. machine: whether the picture needs a cell. lacking: reason why
+    there are no charts.
+    """
 
     title: str
     along: Callable[[Source, Rows], Charts] | None = None
@@ -633,9 +654,11 @@ PICTURES = {
 def picture(
     name: str, source: Source, over: str = TIME, layers: tuple[int, int] | None = None
 ) -> Picture:
-    """A picture of PICTURES, over TIME or PATH where it is one along the job. layers: first and last, all when left out.
+    """Make a picture of PICTURES.
 
-    One that there is not has no charts and says why. Raises InputError where a table of a bead model cannot be read.
+    over: TIME or PATH, for pictures along the job. layers: first and last layer; None for all. A
+    picture without data has no charts but a reason. Raises InputError for an unreadable bead model
+    table.
     """
     entry = PICTURES[name]
     if entry.machine and source.cell is None:

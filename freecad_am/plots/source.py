@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The data of pictures, with derived data computed on demand."""
+"""Data of pictures. Derived data is computed on demand."""
 
 from __future__ import annotations
 
@@ -26,12 +26,13 @@ from ..core.types import Array, Integers
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """A job: its toolpath as run and its motion, without rapids if it has no cell.
+    """A job: the executed toolpath and its motion, without rapids if the job has no cell.
 
-    condition, threshold: (n,) per row of the motion, NaN if undefined. band: tolerance of local
-    distances as a share of the layer height, None without one. solids: the filled solids in place;
-    cut_at: share of a layer height above its plane at which a plane layer is cut. max_void: share
-    of void above which a plane layer is warned about.
+    condition, threshold: (n,) inverse condition number and its minimum per motion row, NaN if
+    undefined. band: tolerance of local layer distances as a fraction of the layer height, None
+    without a tolerance. solids: the filled solids, in place. cut_at: height above a layer's plane
+    at which the layer is sliced, as a fraction of the layer height. max_void: void fraction above
+    which a plane layer causes a warning.
     """
 
     toolpath: Toolpath
@@ -47,34 +48,34 @@ class Source:
 
     @cached_property
     def group(self) -> Group | None:
-        """The bodies in plane layers, None for other layers."""
+        """Return the bodies in plane layers, None for other layers."""
         return None if self.solids is None else group_of(self.solids)
 
     @cached_property
     def slabs(self) -> Slabs | None:
-        """Return the sections of part and deposit in each planar layer."""
+        """Return the volumes of part and deposit in each plane layer, None for other layers."""
         if self.group is None:
             return None
         return slabs(self.group, self.toolpath.layer_height, self.motion.position, self.volumes)
 
     @cached_property
     def times(self) -> Timeline:
-        """When each row is reached and left."""
+        """Return the times at which each row is reached and left."""
         return timeline(self.motion, self.process, [layer.wait for layer in self.toolpath.layers])
 
     @cached_property
     def rates(self) -> Rates:
-        """Speeds, accelerations and jerks of the axes."""
+        """Return speeds, accelerations and jerks of the axes."""
         return rates(self.motion)
 
     @cached_property
     def volumes(self) -> Array:
-        """(n,) mm^3 of each row's segment."""
+        """Return the deposit volume (n,) of each row's segment, mm^3."""
         return volumes(self.motion, self.process, self.toolpath)
 
     @cached_property
     def feed(self) -> AchievableFeed | None:
-        """Return the feed that the machine achieves; None without a machine."""
+        """Return the achievable feed of the machine; None without a cell."""
         if self.cell is None:
             return None
         return achievable_feed(
@@ -83,7 +84,10 @@ class Source:
 
     @cached_property
     def distances(self) -> tuple[Array, Integers]:
-        """(n,) mm, the local distances between layers that are known, beads that close gaps left out; the layer of each."""
+        """Return the known local layer distances (n,), mm, and their layers (n,).
+
+        Beads that close gaps are excluded.
+        """
         beads = list(self.toolpath)
         local = spacing.local_distances(self.toolpath)
         selected = [
@@ -101,15 +105,17 @@ class Source:
 
     @cached_property
     def model(self) -> tuple[Measured, BeadModel] | None:
-        """The table of the bead model and its fit; None without one.
-        Raises InputError where the table cannot be read."""
+        """Return the bead model table and its fit, None without a bead model.
+
+        Raises InputError for an unreadable table.
+        """
         if self.process.bead_model == "none":
             return None
         measured = wire.read_table(self.process.bead_model)
         return measured, bead_model.fit(*measured)
 
     def segments(self, layers: tuple[int, int]) -> model_notes.Segments:
-        """What the bead model predicts of the beads of layers, the last one included."""
+        """Return the bead model's prediction for layers, first to last inclusive."""
         low, high = layers
         return model_notes.segments(
             [bead for layer, _, bead in self.toolpath if low <= layer <= high]

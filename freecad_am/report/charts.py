@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The charts of the report: unrolled layers of solids on a hub, and spacings of walls on an existing part."""
+"""Report charts: unrolled layers of solids on a hub, and layer distances of walls on a part."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ TITLES = {
     "constant-distance": "Constant distance",
     "smooth": "Smooth",
 }
-MAX_LAYERS = 24  # curves of a chart
-MAX_PATH_LAYERS, MAX_PATH_POINTS = 40, 12_000  # of a method in the chart of both paths
+MAX_LAYERS = 24  # maximum number of curves in a chart
+MAX_PATH_LAYERS, MAX_PATH_POINTS = 40, 12_000  # maximum per method in the chart of both paths
 AROUND = Quantity("v around the wall", "deg")
 ALONG = Quantity("length of the bead", "%")
 DISTANCE = Quantity("local distance", "mm")
 METHOD_COLOURS = {"iso-parameter": 1, "constant-distance": 0}
-# the view of both paths: obliquely from above
+# viewing direction of the chart of both paths
 AZIMUTH, ELEVATION = math.radians(-62.0), math.radians(24.0)
 ACROSS = np.array([-math.sin(AZIMUTH), math.cos(AZIMUTH), 0.0])
 TO_EYE = np.array(
@@ -46,19 +46,19 @@ PEN_UP = np.full((1, 3), np.nan)
 
 
 def distance_charts(compared: Sequence[Compared], layer_height: float) -> list[Chart]:
-    """Return the local distance around the wall, a chart per method (figures 6 and 8).
+    """Chart the local layer distance around the wall, one chart per method (figures 6 and 8).
 
     Parameters
     ----------
     compared : sequence of Compared
-        The wall cut by each method.
+        The wall sliced by each method.
     layer_height : float
-        Asked for, mm.
+        Requested layer height, mm.
 
     Returns
     -------
     list of Chart
-        All on one scale; each curve is a layer.
+        Charts with equal scales; each curve is a layer.
     """
     low = min(wall.smallest for wall in compared)
     high = max(wall.largest for wall in compared)
@@ -77,8 +77,10 @@ def distance_charts(compared: Sequence[Compared], layer_height: float) -> list[C
 
 
 def step_chart(wall: Compared, layer_height: float) -> Chart:
-    """Return the step from the layer below along the lines up the wall, in % of the layer height
-    (figure 9)."""
+    """Chart the step from the layer below along the lines v = const (figure 9).
+
+    Steps are in % of the layer height.
+    """
     steps = [100.0 * step / layer_height for step in wall.step]
     values = np.concatenate(steps)
     low, high = float(np.nanmin(values)), float(np.nanmax(values))
@@ -93,7 +95,7 @@ def step_chart(wall: Compared, layer_height: float) -> Chart:
 
 
 def deposit_chart(toolpath: Toolpath, local: Sequence[Array]) -> Chart:
-    """Return the local distance along each layer, at the points that are deposited."""
+    """Chart the local layer distance along each layer, at the deposited points."""
     height = toolpath.layer_height
     layers, positions = [], []
     for layer, _, bead in toolpath:
@@ -114,8 +116,10 @@ def deposit_chart(toolpath: Toolpath, local: Sequence[Array]) -> Chart:
 
 
 def path_charts(compared: Sequence[Compared]) -> list[Chart]:
-    """Return the layers of iso-parameter and constant distance in one chart (figure 10); empty
-    without both methods."""
+    """Chart the layers of the iso-parameter and constant-distance methods together (figure 10).
+
+    Empty unless both methods were compared.
+    """
     by_method = {wall.method: wall for wall in compared}
     if not {METHODS[0], METHODS[2]} <= set(by_method):
         return []
@@ -135,7 +139,7 @@ def path_charts(compared: Sequence[Compared]) -> list[Chart]:
 def _layer_curves(
     x: Sequence[Array], y: Sequence[Array], layers: Sequence[int] | None = None
 ) -> tuple[Curve, ...]:
-    """Return a curve for some layers, those with the least and the largest value among them."""
+    """Return curves of at most about MAX_LAYERS layers, including those with extreme values."""
     numbers = list(range(1, len(y) + 1)) if layers is None else list(layers)
     highest = max(1, max(numbers))
     indices = set(_spread(len(y), MAX_LAYERS))
@@ -149,38 +153,39 @@ def _layer_curves(
 
 
 def _spread(count: int, limit: int) -> list[int]:
-    """Return at most `limit` of the numbers below `count`, evenly spread."""
+    """Return at most `limit` evenly spaced indices below `count`."""
     return sorted(set(np.linspace(0, count - 1, min(count, limit)).round().astype(int).tolist()))
 
 
-FRAME_WIDTH, MARGINS = 380.0, 61.0  # px: width of the frame, and of the margins above and below
+FRAME_WIDTH, MARGINS = 380.0, 61.0  # px; frame width, and sum of the margins above and below
 AXES = (
     (Quantity("around the hub", "mm"), Quantity("along it", "mm")),
     (Quantity("x", "mm"), Quantity("y", "mm")),
 )
-LEVELS = 6  # of speed, with a colour each
+LEVELS = 6  # number of speed levels, each with a colour
 PEN_UP_FLAT = np.full((1, 2), np.nan)
 
 
 def layer_charts(solids: SolidsOnHub, toolpath: Toolpath) -> list[tuple[Chart, int]]:
-    """Return the first and middle layer of each group unrolled, with the height of each picture.
+    """Chart the first and the middle layer of each group, unrolled, with chart heights.
 
     Parameters
     ----------
     solids : SolidsOnHub
         The solids and their groups.
     toolpath : Toolpath
-        Their toolpath; a layer that is too narrow for a bead has no picture.
+        Toolpath of the solids; a layer that is too narrow for a bead has no chart.
 
     Returns
     -------
     list of (Chart, int)
-        Lines coloured by speed if a bead model sets it, else by order; heights in pixels.
+        Charts with lines coloured by speed if a bead model sets the speed, else by order; chart
+        heights in pixels.
     """
     charts = []
     runs = _runs(toolpath.layers)
     by_group = np.array_split(np.arange(len(runs)), len(solids.groups))
-    if len(runs) != len(solids.groups):  # solid by solid: the first of each group
+    if len(runs) != len(solids.groups):  # solids printed one by one: use the first of each group
         counts = np.cumsum([0, *(len(group.bodies) for group in solids.groups)])
         by_group = [np.array([start]) for start in counts[:-1] if start < len(runs)]
     for group, indices in zip(solids.groups, by_group):
@@ -195,7 +200,7 @@ def layer_charts(solids: SolidsOnHub, toolpath: Toolpath) -> list[tuple[Chart, i
 
 
 def _runs(layers: Sequence[Layer]) -> list[range]:
-    """Return the stacks of layers, each from hub to tip."""
+    """Return the layer index ranges of the stacks, each from hub to tip."""
     starts = [index for index, layer in enumerate(layers) if layer.first]
     return [range(start, end) for start, end in zip(starts, [*starts[1:], len(layers)])]
 
@@ -219,7 +224,7 @@ def _flat(group: Group, layer: Layer, index: int, height: float) -> tuple[Chart,
 
 
 def _curves(layer: Layer, lines: Sequence[Array]) -> tuple[Curve, ...]:
-    """Return the lines of a layer's beads, coloured by speed where it varies, else by order."""
+    """Return the bead lines of a layer, coloured by speed if the speed varies, else by order."""
     speeds = np.concatenate([bead.speed[1:] for bead in layer.beads])
     slow, fast = float(speeds.min()), float(speeds.max())
     if fast - slow <= 1e-6 * fast:

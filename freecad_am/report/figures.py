@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""report.json: the planned job and its quality."""
+"""report.json: statistics of the planned job and its quality."""
 
 from __future__ import annotations
 
@@ -35,15 +35,17 @@ from ..core.simulation.timeline import timeline
 from ..core.toolpath import Toolpath
 from ..core.types import Array
 
-if TYPE_CHECKING:  # slow to import, and jobs without a cell have none
+if TYPE_CHECKING:  # slow to import and not needed for jobs without a cell
     from freecad_am.core.preflight.promise import Promise
     from freecad_am.objects.joint_path import Planned
 
 
 @dataclass(frozen=True)
 class Feature:
-    """A feature of the job and its parameters. shape: returns the result of the stage, the shape of
-    its part."""
+    """A feature of the job and its parameters.
+
+    shape: function that returns the feature stage result.
+    """
 
     name: str
     strategy: LayerParameters
@@ -54,8 +56,10 @@ class Feature:
 
 @dataclass(frozen=True)
 class Job:
-    """A job. process: of the program; features may differ from it. cell: None for a job that only
-    plans a toolpath."""
+    """A job.
+
+    process: job process, which features may override. cell: None for toolpath-only jobs.
+    """
 
     name: str
     features: tuple[Feature, ...]
@@ -66,9 +70,12 @@ class Job:
 
 @dataclass(frozen=True)
 class Results:
-    """Results of a job. toolpath: as it was cut. planned: None without a joint path; seconds: its
-    planning time. issues: of all stages. programs: names of the files. distances: between the
-    layers in the order of motion. preflight: its promises."""
+    """Results of a job.
+
+    toolpath: as sliced. planned: None without a joint path. seconds: planning time of the joint
+    path. issues: issues of all stages. programs: file names. distances: function that returns
+    layer distances in motion order. preflight: function that returns the preflight promises.
+    """
 
     toolpath: Toolpath
     planned: Planned | None
@@ -89,8 +96,10 @@ def build(
     process: ProcessParameters,
     issues: Sequence[Issue],
 ) -> dict[str, Any]:
-    """Return the report of a toolpath; `add_joints` and `make_report` complete it. Lengths mm,
-    times s; None for missing values."""
+    """Return the report of a toolpath, which `add_joints` and `make_report` complete.
+
+    Lengths are in mm, times in s. Missing values are None.
+    """
     times = timeline(motion, process, [layer.wait for layer in toolpath.layers])
     sums = totals.totals(motion, times, process, toolpath)
     return {
@@ -147,8 +156,10 @@ def features(
     balances: Sequence[Balance | None],
     compared: Sequence[list[dict[str, Any]]],
 ) -> list[dict[str, Any]]:
-    """The key `features`: the figures of each feature. compared: for each feature, the rows of
-    other spacings of its wall."""
+    """Return the report key `features`: the statistics of each feature.
+
+    compared: spacing comparison rows of each feature.
+    """
     entries = []
     for feature, (path, numbers), balance, rows_of_wall in zip(
         of_job, toolpath.parts, balances, compared, strict=True
@@ -184,7 +195,10 @@ def features(
 def add_joints(
     report: dict[str, Any], planned: JointPath, cell: Cell, joints: JointParameters, seconds: float
 ) -> None:
-    """Add the figures of the joint path, over the deposit; `seconds` is what planning it took, comparison included."""
+    """Add the joint path statistics over the deposit.
+
+    seconds: planning time, including the compared methods.
+    """
     compared: list[dict[str, Any]] = [dict(entry) for entry in planned.comparison]
     report["joints"] = {
         "method": planned.method,
@@ -212,7 +226,10 @@ def add_joints(
 
 
 def _external(cell: Cell, planned: JointPath, joints: JointParameters) -> dict[str, object]:
-    """What the external axes do, and where they were optimised the same figures of the rule that they began with."""
+    """Return statistics of the external axes.
+
+    If the axes were optimised, include the statistics of the initial rule for comparison.
+    """
     axis_figures = level.figures(cell, planned)
     if planned.of_level is None:
         return axis_figures
@@ -231,7 +248,10 @@ def text(report: dict[str, Any]) -> str:
 
 
 def speed_ratio(motion: Motion, cell: Cell) -> Array:
-    """(n, axes) speed of each axis on the segment that ends at the row, as a share of the largest it can do."""
+    """Return the axis speeds (n, axes) as fractions of the maximum axis speed.
+
+    Row i is for the segment that ends at row i.
+    """
     turned = np.abs(np.diff(motion.joints, axis=0, prepend=motion.joints[:1]))
     ratio: Array = (
         turned
@@ -242,7 +262,7 @@ def speed_ratio(motion: Motion, cell: Cell) -> Array:
 
 
 def summarize(spacing: Sequence[Array]) -> dict[str, float | None]:
-    """Return the smallest, mean and largest value, None without values."""
+    """Return minimum, mean and maximum of the values; None for each without values."""
     if not spacing:
         return {"min": None, "mean": None, "max": None}
     values = np.concatenate(spacing)
@@ -250,7 +270,7 @@ def summarize(spacing: Sequence[Array]) -> dict[str, float | None]:
 
 
 def _scan(toolpath: Toolpath) -> dict[str, Any] | None:
-    """Return the figures of the scan to which layers were fitted, None without a scan."""
+    """Return statistics of the scan to which layers were fitted, None without a scan."""
     if toolpath.checks.fitted is None:
         return None
     from . import scan_figures
@@ -259,7 +279,7 @@ def _scan(toolpath: Toolpath) -> dict[str, Any] | None:
 
 
 def _predicted_shape(toolpath: Toolpath) -> dict[str, Any] | None:
-    """Return the figures of the deposit predicted for a machining allowance, None without one."""
+    """Return statistics of the predicted deposit, None without a machining allowance."""
     if toolpath.checks.predicted is None:
         return None
     from . import predicted_figures
@@ -294,7 +314,7 @@ def _process(process: ProcessParameters, toolpath: Toolpath) -> dict[str, Any]:
 
 
 def _reasons(planned: JointPath) -> dict[str, int]:
-    """Why the optimiser stopped, and on how many beads."""
+    """Return the number of beads per stop reason of the optimiser."""
     reasons = [path.reason for path in planned.beads if path.reason]
     return {reason: reasons.count(reason) for reason in dict.fromkeys(reasons)}
 

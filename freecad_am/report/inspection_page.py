@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""inspection.html: figures, histograms and deviation maps of measured points, one file without scripts or links."""
+"""inspection.html: statistics, histograms and deviation maps of measured points.
+
+The page is one self-contained file without scripts.
+"""
 
 from __future__ import annotations
 
@@ -16,12 +19,12 @@ from .scan_figures import key_of
 from .tables import grid_of
 from .template import fill_page
 
-_MAX_POINTS = 6000  # points of a map
-_TILT = np.radians(30.0)  # viewing angle of the map, from above
+_MAX_POINTS = 6000  # maximum number of points in a map
+_TILT = np.radians(30.0)  # elevation of the map's viewing direction
 
 
 def render(planned: str, results: list[Any], labels: list[str]) -> str:
-    """The page of inspections of the same object."""
+    """Return the page of all inspections of one object as HTML."""
     title = f"{planned}: measured against planned"
     html_parts = [
         f'<header><h1>{escape(title)}</h1></header><p class="sub">Defects are widths of the narrowest zone (ISO 1101); '
@@ -56,8 +59,7 @@ def _number(value: float, unit: str) -> str:
 
 
 def _map(result: Any) -> Chart:
-    """Return the points as they are seen from the front, a little from above, the nearer half on
-    top."""
+    """Chart the points seen from the front and slightly above, the nearer half on top."""
     selected = np.unique(np.linspace(0, len(result.points) - 1, _MAX_POINTS).astype(np.intp))
     selected = selected[result.counted[selected]]
     x, y, z = result.points[selected].T
@@ -74,7 +76,7 @@ def _map(result: Any) -> Chart:
 
 
 def _histogram(result: Any) -> Chart:
-    """Return the points by deviation, with room for both limits."""
+    """Chart the histogram of deviations, with a range that includes both limits."""
     edges, counts = result.spread.edges, result.spread.counts
     limit = result.tolerance
     low, high = min(edges[0], -1.05 * limit), max(edges[-1], 1.05 * limit)

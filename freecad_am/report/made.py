@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Makes the report of a job: its figures, and the page that shows them."""
+"""Make the report of a job: the content of report.json and the page."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ Tell = Callable[[str], None]
 
 @dataclass(frozen=True)
 class Made:
-    """A report, and what its page is drawn of. content: as report.json has it."""
+    """A report and the data of its page. content: content of report.json."""
 
     content: dict[str, Any]
     job: Job
@@ -39,9 +39,9 @@ class Made:
     cell: Cell | None
 
     def page(self) -> str:
-        """report.html."""
+        """Return report.html."""
         from freecad_am.plots.source import (
-            Source,  # slow to import, and not every report has a page
+            Source,  # slow to import and not needed without a page
         )
 
         from . import page
@@ -65,7 +65,7 @@ class Made:
 
 
 def as_run(results: Results, cell: Cell | None) -> tuple[Toolpath, Motion]:
-    """Return the toolpath as run and its motion; without a joint path, the motion of the beads."""
+    """Return the executed toolpath and its motion; without a joint path, the bead motion."""
     if results.planned is None:
         return results.toolpath, timeline.deposit_motion(
             results.toolpath, 0 if cell is None else len(cell.machine.columns)
@@ -74,8 +74,10 @@ def as_run(results: Results, cell: Cell | None) -> tuple[Toolpath, Motion]:
 
 
 def make_report(job: Job, results: Results, cell: Cell | None, timed: Timed, tell: Tell) -> Made:
-    """Return the report of a job. timed: measures a step by its name; tell: reports progress.
-    `timing_s` stays empty."""
+    """Make the report of a job; `timing_s` stays empty.
+
+    timed: context manager that measures a named step. tell: reports progress.
+    """
     toolpath, motion = as_run(results, cell)
     with timed("report"):
         content = figures.build(job.name, toolpath, motion, job.process, results.issues)
@@ -88,7 +90,7 @@ def make_report(job: Job, results: Results, cell: Cell | None, timed: Timed, tel
             for feature, (path, _) in zip(job.features, toolpath.parts, strict=True)
         ]
         content["deposit"] = deposit_balance.as_dict(deposit_balance.sum_balances(balances))
-    with timed("preflight"):  # last, because the second solver may still be running
+    with timed("preflight"):  # last step, because the second solver may still be running
         content["preflight"] = [promise.as_dict() for promise in results.preflight()]
     distances = results.distances()
     content["spacing_mm"] = figures.summarize(distances)
@@ -105,8 +107,10 @@ def make_report(job: Job, results: Results, cell: Cell | None, timed: Timed, tel
 
 
 def compared_walls(job: Job, toolpath: Toolpath, distances: Sequence[Array]) -> list[OfFeature]:
-    """Return the page's data of each feature; walls include the other spacings. distances: between
-    all layers."""
+    """Return the page data of each feature; walls include the spacing comparison.
+
+    distances: distances between layers, used for a single feature, mm.
+    """
     walls = []
     for feature, (path, _) in zip(job.features, toolpath.parts, strict=True):
         gaps = spacing.between_layers(path) if toolpath.features else distances
@@ -117,7 +121,7 @@ def compared_walls(job: Job, toolpath: Toolpath, distances: Sequence[Array]) -> 
             getattr(feature.strategy, "band", None),
         )
         if family_of(feature.strategy).compares_spacings:
-            from . import spacing_comparison  # slow to import, and only walls need it
+            from . import spacing_comparison  # slow to import and only needed for walls
 
             compared = spacing_comparison.compare(feature.shape(), feature.strategy)
             wall = wall._replace(
@@ -131,7 +135,7 @@ def compared_walls(job: Job, toolpath: Toolpath, distances: Sequence[Array]) -> 
 def add_motion(
     job: Job, wall: OfFeature, results: Results, cell: Cell | None, tell: Tell
 ) -> list[dict[str, Any]]:
-    """Return the rows about the wall of a single feature, with the robot motion on request."""
+    """Return the spacing comparison rows of a single wall, with robot motion on request."""
     rows: list[dict[str, Any]] = list(wall.rows)
     if rows and results.planned is not None and cell is not None:
         from . import spacing_comparison

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The report of a document's stages, as a command writes it of a job file."""
+"""Report of the stages of a document, equal to the report of a job file."""
 
 from __future__ import annotations
 
@@ -32,15 +32,15 @@ from .figures import Feature, Job, Results
 from .made import Made, make_report
 
 KINDS = ("toolpath", "joint path", "program")
-PROGRAMS = "program"  # the folder that commands write programs into
+PROGRAMS = "program"  # folder into which commands write programs
 
 
 def reported(obj: Any) -> Callable[[], str]:
-    """Return a function that draws the page of a toolpath, joint path or program. It reads the
-    document now, not when called, and reports progress (`objects.progress`).
+    """Return a function that draws the report page of a toolpath, joint path or program.
 
-    Raises InputError for any other object, without a result, and for a result that does not match
-    its inputs.
+    The document is read now, not when the function is called. The function reports progress
+    (`objects.work.progress`). Raises InputError for any other object, and for a missing or outdated
+    result.
     """
     toolpath, path, program = _stages(obj)
     features = features_of(toolpath)
@@ -64,7 +64,7 @@ def reported(obj: Any) -> Callable[[], str]:
     )
     spent = {stage.Proxy.kind.replace(" ", "_"): stage.Seconds for stage in stages}
 
-    # read now: a change of units while the page is drawn applies to the next page
+    # read units now: a change while the page is drawn applies to the next page
     page_units = units.ReportUnits(in_user_units, scale_of) if window_is_open() else units.METRIC
 
     def work() -> str:
@@ -79,7 +79,7 @@ def reported(obj: Any) -> Callable[[], str]:
 
 
 def _stages(obj: Any) -> tuple[Any, Any, Any]:
-    """Return toolpath, joint path and program, None for missing ones."""
+    """Return toolpath, joint path and program; None for missing stages."""
     stage = stage_of(obj)
     if stage is None or stage.kind not in KINDS:
         label = getattr(obj, "Label", repr(obj))
@@ -117,7 +117,7 @@ def _job(toolpath: Any, path: Any) -> Job:
 
 
 def _name(toolpath: Any) -> str:
-    """What the job is called: as its group, else as the document."""
+    """Return the job name: the label of its group, else of the document."""
     group = next((parent for parent in toolpath.InList if is_group(parent)), toolpath.Document)
     return str(group.Label)
 
@@ -129,8 +129,11 @@ def _files(program: Any) -> list[str]:
 
 
 def _issues(features: list[Any], toolpath: Any, path: Any, program: Any) -> list[Issue]:
-    """Return the issues of all stages, as a command prints them: a toolpath repeats issues of its
-    wall, and the height issues at the achieved speeds replace those at the programmed speeds."""
+    """Return the issues of all stages as a command prints them.
+
+    Issues that a toolpath repeats from its wall appear once. Height issues at achieved speeds
+    replace height issues at programmed speeds.
+    """
     issues = [issue for feature in features for issue in issues_of(feature)]
     issues += [issue for issue in issues_of(toolpath) if issue not in issues]
     later = [] if path is None else list(issues_of(path))
@@ -140,7 +143,7 @@ def _issues(features: list[Any], toolpath: Any, path: Any, program: Any) -> list
 
 
 def _steps(job: Job, results: Results, cell: cells.Cell | None) -> Made:
-    """Return the report and show its progress step by step."""
+    """Make the report and report progress by step."""
 
     @contextlib.contextmanager
     def timed(stage: str) -> Iterator[None]:

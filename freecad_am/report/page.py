@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""report.html: the report as one file without links; its one script draws the path."""
+"""report.html: the report as one self-contained file. Its only script draws the path."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ _MOTION_PER_AXIS = (
 
 @dataclass(frozen=True)
 class Content:
-    """What the page shows besides the report itself. source: the job."""
+    """Content of the page: the report and its chart data. source: the job."""
 
     report: dict[str, Any]
     source: Source
@@ -82,12 +82,12 @@ class Content:
 
     @property
     def toolpath(self) -> Toolpath:
-        """The toolpath as it is executed."""
+        """Return the toolpath as executed."""
         return self.source.toolpath
 
 
 def render(content: Content) -> str:
-    """The page."""
+    """Return the page as HTML."""
     report = content.report
     name, status = escape(report["name"]), report["status"]
     pictures, path_rows = Pictures(content.source), _select_rows(content)
@@ -129,7 +129,7 @@ def render(content: Content) -> str:
 
 
 def _select_rows(content: Content) -> columns.Shown:
-    """Return the path's rows for the 3D viewer, with joint values if the job has a machine."""
+    """Return the path rows for the 3D viewer, with joint values if the job has a machine."""
     machine = content.report["machine"] if content.source.cell is not None else None
     return (
         columns.select_rows(content.source, machine["labels"], machine["units"])
@@ -212,7 +212,7 @@ def _process(content: Content, pictures: Pictures) -> str:
 
 
 def _hub_layers(content: Content, pictures: Pictures) -> str:
-    """Draw unrolled layers of solids on a hub, and the charts of the bead model."""
+    """Draw the unrolled layers of solids on a hub, and the bead model charts."""
     if content.solids is None:
         return ""
     layers = layer_charts(content.solids, content.toolpath)
@@ -222,7 +222,7 @@ def _hub_layers(content: Content, pictures: Pictures) -> str:
 
 
 def _spacings(wall: OfFeature) -> str:
-    """What each spacing of a wall costs: the paper's plots and the figures."""
+    """Compare the spacing methods of a wall: the paper's plots and a table."""
     rows, toolpath = wall.rows, wall.toolpath
     compared = [result for result in wall.compared if isinstance(result, Compared)]
     height = toolpath.layer_height
@@ -296,7 +296,7 @@ def _totals(report: dict[str, Any]) -> str:
 
 
 def _criteria(report: dict[str, Any]) -> str:
-    """Every criterion a path can be judged by, whichever it was planned by; the smaller the better."""
+    """Return the table of all planning criteria, not only the optimised one; smaller is better."""
     if report["joints"] is None or not report["joints"]["criteria"]:
         return ""
     methods = [report["joints"], *report["comparison"]]
@@ -321,8 +321,7 @@ def _optimality(report: dict[str, Any]) -> str:
 
 
 def _comparison(report: dict[str, Any]) -> str:
-    """Return the comparison of the job's method with the others: total figures, then figures per
-    axis."""
+    """Compare the job's planning method with other methods: totals, then values per axis."""
     if not report["comparison"]:
         return ""
     methods = [report["joints"], *report["comparison"]]

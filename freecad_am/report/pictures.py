@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The pictures of the report that matplotlib draws, as elements of its page; empty without
-matplotlib."""
+"""Report pictures drawn by matplotlib, as page elements; empty without matplotlib."""
 
 from __future__ import annotations
 
@@ -24,7 +23,7 @@ MISSING = "The plots are left out, because matplotlib is not installed here; ins
 
 @cache
 def plotting_modules() -> tuple[ModuleType, ModuleType] | None:
-    """Return what draws; None without matplotlib, whose import takes longer than a picture."""
+    """Import the drawing modules, None without matplotlib. The import is slower than drawing."""
     try:
         from freecad_am.plots import draw, files
     except ImportError:
@@ -35,21 +34,21 @@ def plotting_modules() -> tuple[ModuleType, ModuleType] | None:
 def draw_charts(
     charts: Sequence[Chart], width: int, height: int = TALL, travel: bool = False
 ) -> list[str]:
-    """Draw charts as elements of a page, in its units.
+    """Draw charts as page elements, in the units of the page.
 
     Parameters
     ----------
     charts : sequence of Chart
-        In the units of report.json.
+        Charts in the units of report.json.
     width, height : int
         Size of each picture, pixels.
     travel : bool
-        Whether speeds are those of the deposition point.
+        Whether speeds are deposition point speeds.
 
     Returns
     -------
     list of str
-        An SVG element per chart; empty without matplotlib.
+        One SVG element per chart; empty without matplotlib.
     """
     modules = plotting_modules()
     if modules is None:
@@ -63,7 +62,7 @@ def draw_charts(
 
 
 def _convert_texts(chart: Chart) -> Chart:
-    """Return a chart whose texts have the units of the page."""
+    """Return the chart with its texts in the units of the page."""
     return replace(
         chart,
         title=units.message(chart.title),
@@ -73,7 +72,7 @@ def _convert_texts(chart: Chart) -> Chart:
 
 
 class Pictures:
-    """The pictures of one job; a list is empty without data or without matplotlib."""
+    """Pictures of one job. Each list is empty without data or without matplotlib."""
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -81,15 +80,15 @@ class Pictures:
 
     @cached_property
     def rows(self) -> Rows:
-        """The rows of the job over time."""
+        """Return the samples of the job over time."""
         return rows(self.source)
 
     def angles(self) -> list[str]:
-        """Each axis against its limits."""
+        """Draw each axis position against its limits."""
         return self._half(pictures.angles(self.source, self.rows), travel=False)
 
     def rates(self) -> list[str]:
-        """Joint speeds as shares of the limits; accelerations and jerks, all axes in one; the condition."""
+        """Draw joint speeds relative to limits, accelerations, jerks and Jacobian condition."""
         accelerations = together(
             "Joint accelerations while depositing", pictures.accelerations(self.source, self.rows)
         )
@@ -103,7 +102,7 @@ class Pictures:
         return draw_charts(charts, FULL_WIDTH)
 
     def process(self, features: Sequence[OfFeature]) -> list[str]:
-        """Distances between the layers of each feature, void and double deposit, speed along the path, deposit rate and mass."""
+        """Draw layer distances, void and double deposit, path speed, deposit rate and mass."""
         source = self.source
         distances = [
             pictures.distances(
@@ -125,7 +124,7 @@ class Pictures:
         )
 
     def beads(self) -> list[str]:
-        """What a bead model predicts, and its fit."""
+        """Draw the predictions of the bead model, and its fit."""
         source = self.source
         charts = (
             *pictures.distributions(source, self.layers),
@@ -136,7 +135,7 @@ class Pictures:
         return self._half(charts)
 
     def predicted(self) -> list[str]:
-        """The predicted deposit against the part."""
+        """Draw the predicted deposit against the part."""
         shape = self.source.toolpath.checks.predicted
         if shape is None or shape.deviation is None:
             return []

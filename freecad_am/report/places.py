@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Findings and preflight of the page, with their places, which a click shows in the path."""
+"""Issues and preflight of the page, with locations that link to the path view."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from .tables import figure_text
 from .viewer_3d.columns import Shown
 
 _MOST_ISSUES = 200
-# mark of a promise: an unchecked promise is never green
+# CSS class and word per promise status: an unchecked promise is never green
 _MARKS = {True: ("good", "kept"), False: ("error", "broken"), None: ("unknown", "not checked")}
 
 
 def findings(issues: list[dict[str, Any]], path_rows: Shown) -> str:
-    """The table of findings, errors first; nothing without any."""
+    """Return the table of issues, errors first; empty without issues."""
     if not issues:
         return ""
     rows = []
@@ -40,7 +40,7 @@ def findings(issues: list[dict[str, Any]], path_rows: Shown) -> str:
 
 
 def place_of(position: dict[str, Any], path_rows: Shown) -> str:
-    """Return layer, bead and point, as far as known, as a link into the path."""
+    """Return the known indices of layer, bead and point as a link into the path view."""
     words = " ".join(
         f"{word} {position[word]}"
         for word in ("layer", "bead", "point")
@@ -51,7 +51,7 @@ def place_of(position: dict[str, Any], path_rows: Shown) -> str:
 
 
 def preflight(promises: list[dict[str, Any]], path_rows: Shown) -> str:
-    """Every promise with its mark: kept, broken, or not checked."""
+    """Return the table of promises with their status: kept, broken or not checked."""
     if not promises:
         return ""
     rows = []

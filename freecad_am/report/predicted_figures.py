@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a report says of the deposit that is predicted, against the part."""
+"""Report section on the predicted deposit compared with the part."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .scan_figures import key_of
 from .tables import grid_of, pairs_of
 from .viewer_3d.columns import Shown
 
-MM3 = 1000.0  # in a cm3
+MM3 = 1000.0  # mm3 per cm3
 
 
 def as_dict(shape: PredictedShape) -> dict[str, Any]:
@@ -46,8 +46,10 @@ def as_dict(shape: PredictedShape) -> dict[str, Any]:
 
 
 def _layer(shape: PredictedShape, layer: int) -> dict[str, Any]:
-    """A row of `layers`; smallest and mean deviation refer to the nearest places, None without
-    any."""
+    """Return a row of `layers`.
+
+    Minimum and mean deviation refer to the points nearest to the layer, None without points.
+    """
     row: dict[str, Any] = {"layer": layer, "drift_mm": float(shape.drift[layer])}
     if shape.deviation is not None:
         smallest, mean = (
@@ -58,7 +60,7 @@ def _layer(shape: PredictedShape, layer: int) -> dict[str, Any]:
 
 
 def _deviation(deviation: DeviationMap) -> dict[str, Any]:
-    """The worst places by name, and how deviations are spread over the area."""
+    """Return the worst points by name, and the distribution of deviations over the area."""
     return {
         "worst_places": [
             {
@@ -76,7 +78,7 @@ def _deviation(deviation: DeviationMap) -> dict[str, Any]:
 
 
 def section(shape: PredictedShape, pictures: Sequence[str], path_rows: Shown) -> str:
-    """Return the section of the page, with its maps and charts."""
+    """Return the page section with maps and charts."""
     drifts = shape.drift[np.isfinite(shape.drift)]
     figures = pairs_of(
         "Predicted deposit against the part",
@@ -103,13 +105,15 @@ def section(shape: PredictedShape, pictures: Sequence[str], path_rows: Shown) ->
 
 
 def _unit(shape: PredictedShape) -> tuple[float, str]:
-    """The factor and the unit of deviations."""
+    """Return the conversion factor and the unit of deviations."""
     return units.scale(max(abs(shape.least), abs(shape.most)), "mm")
 
 
 def _worst(deviation: DeviationMap, path_rows: Shown) -> str:
-    """Return the table of the worst places by their names in the maps; a click shows the nearest
-    point of the path."""
+    """Return the table of the worst points, named as in the maps.
+
+    A click shows the nearest path point.
+    """
     rows = "".join(
         f"<tr><td>{row['name']}</td><td>{units.text(format(row['beyond_mm'], '.3f') + ' mm')}</td>"
         f"<td>{units.text(place(np.array(row['place'])) + ' mm')}</td>"

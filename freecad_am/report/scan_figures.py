@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers fitted to a scan in the report: figures, and the first layer before and after."""
+"""Report section on layers fitted to a scan: statistics, and the first layer before and after."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from .tables import grid_of
 
 
 def key_of(tolerance: float) -> str:
-    """A coloured square and the range in mm of each band, from the most inside on."""
+    """Return the colour legend: a square and a range in mm per band, from the innermost band."""
     return " ".join(
         f'<span style="white-space:nowrap"><span style="color:{css(band.colour)}">&#9632;</span> {escape(band.text)}&ensp;'
         "</span>"
@@ -29,8 +29,8 @@ def key_of(tolerance: float) -> str:
     )
 
 
-TOLERANCE = 0.1  # mm, of the bands that both pictures are coloured by
-MAX_DOTS = 4000  # dots of a picture
+TOLERANCE = 0.1  # mm; tolerance that defines the colour bands of both charts
+MAX_DOTS = 4000  # maximum number of dots in a chart
 
 
 def as_dict(fitted: Fitted) -> dict[str, Any]:
@@ -54,7 +54,7 @@ def as_dict(fitted: Fitted) -> dict[str, Any]:
 
 
 def section(fitted: Fitted, frame: Array) -> str:
-    """The section of the page: both pictures as seen along Z of the feature's frame (4, 4)."""
+    """Return the page section with both charts, viewed along Z of the feature frame (4, 4)."""
     factor, unit = units.scale(TOLERANCE, "mm")
     planned = _map(f"Layer {fitted.layer} as planned", fitted.places, fitted.off, frame)
     deposited = _map(f"Layer {fitted.layer} as laid", fitted.laid, fitted.left, frame)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Compares the layer spacings of a wall for the report, with the robot motion on request."""
+"""Compare the layer spacing methods of a wall for the report, with robot motion on request."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ _FRONTS = (
     "fronts follow no lines of the surface; leave strategy.method out to compare with such layers"
 )
 _NOT_PLANNED = "not planned; choose it as strategy.spacing"
-_REASONS = {  # why a wall of several faces, an open or a trimmed one is not cut so
+_REASONS = {  # why a method does not apply to open, trimmed or multi-face walls
     "iso-parameter": _LINES,
     NORMAL: "the wall is not a tube of one surface closed around, whose sections have a centreline",
     "constant-distance": _NOT_PLANNED,
@@ -52,7 +52,7 @@ _REASONS = {  # why a wall of several faces, an open or a trimmed one is not cut
 
 
 def compare(wall: Any, strategy: Any) -> tuple[Compared | Refused, ...]:
-    """A wall cut by every method; walls without one closed parameter by none."""
+    """Slice a wall by every method; refuse all methods for a wall that is not closed around."""
     if wall.closes_around:
         return wall_comparison.compare(wall, strategy)
     reasons = _REASONS if strategy.method != FRONTS else _REASONS | {ISO: _FRONTS, NORMAL: _FRONTS}
@@ -67,12 +67,12 @@ def rows(
     toolpath: Toolpath,
     distances: Sequence[Array],
 ) -> list[dict[str, Any]]:
-    """Return the rows of report.json without motion; the planned method comes first."""
+    """Return the rows of report.json without motion, the planned method first."""
     if not compared:
         return []
     by_method = {result.method: _row(result) for result in compared}
     planned = strategy.spacing
-    if planned not in by_method:  # a wall that was cut only by this method
+    if planned not in by_method:  # a wall that was sliced only by the planned method
         spread = of_report.summarize(distances)
         by_method[planned] = _empty(planned) | {
             "layers": len(toolpath.layers),
@@ -89,8 +89,10 @@ def rows(
 
 
 def _corners(toolpath: Toolpath) -> dict[str, Any]:
-    """Return the number of layers with corners and the sharpest corner, from the bead tangents;
-    empty without tangents."""
+    """Return the number of layers with corners and the sharpest corner, from bead tangents.
+
+    Empty without tangents.
+    """
     sharpest: dict[int, float] = {}
     for layer, _, bead in toolpath:
         if bead.tangents is None:
@@ -102,7 +104,7 @@ def _corners(toolpath: Toolpath) -> dict[str, Any]:
         sharpest[layer] = max(sharpest.get(layer, 0.0), float(inner.max(initial=0.0)))
     cornered = sum(
         turn > SMOOTH for layer, turn in sharpest.items() if layer
-    )  # the first is the substrate's
+    )  # the first layer follows the substrate
     largest = max((turn for layer, turn in sharpest.items() if layer), default=0.0)
     return {
         "cornered_layers": int(cornered),
@@ -113,8 +115,10 @@ def _corners(toolpath: Toolpath) -> dict[str, Any]:
 def motion_of(
     path: JointPath, motion: Motion, cell: Cell, joints: JointParameters
 ) -> dict[str, Any]:
-    """How the robot moves while it deposits. axis_limited_s: the deposit's time if each step took as long as the slowest
-    axis needs."""
+    """Return statistics of the robot motion while depositing.
+
+    axis_limited_s: deposit time if every step takes as long as its slowest axis needs, s.
+    """
     figures = criteria.path_figures(path, cell, joints)
     deposit = motion.deposit & (motion.point > 0)
     share = np.nanmax(of_report.speed_ratio(motion, cell)[deposit], axis=1, initial=0.0)
@@ -129,8 +133,10 @@ def motion_of(
 
 
 def motions(job: Job, tell: Callable[[str], None]) -> dict[str, dict[str, Any] | str]:
-    """The motion of every further spacing of `strategy.compare` of a job's only wall, or the error
-    message."""
+    """Plan the motion of each further spacing in `strategy.compare`, for a job with one wall.
+
+    Return motion statistics, or the error message, by spacing.
+    """
     results: dict[str, dict[str, Any] | str] = {}
     for spacing in dict.fromkeys(job.features[0].strategy.compare):
         if spacing == job.features[0].strategy.spacing:

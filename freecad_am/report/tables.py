@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tables, grids and figures of the page, as HTML."""
+"""Tables, picture grids and formatted numbers of the page, as HTML."""
 
 from __future__ import annotations
 
@@ -11,36 +11,36 @@ from . import units
 
 
 def clock(seconds: float) -> str:
-    """Seconds as hours, minutes and seconds."""
+    """Format seconds as hours and minutes, or minutes and seconds."""
     minutes, remainder = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     return f"{hours} h {minutes:02d} min" if hours else f"{minutes} min {remainder:02d} s"
 
 
 def grid_of(plots: Iterable[str]) -> str:
-    """Pictures side by side; nothing without any."""
+    """Return pictures side by side; empty without pictures."""
     figures = "".join(f"<figure>{plot}</figure>" for plot in plots)
     return f'<div class="grid">{figures}</div>' if figures else ""
 
 
 def axis_names(report: dict[str, Any]) -> list[str]:
-    """The names of the axes, with their units where these are not all the same."""
+    """Return the axis names, with units if units differ."""
     axes, units = report["machine"]["labels"], report["machine"]["units"]
     return [f"{axis}, {unit}" for axis, unit in zip(axes, units)] if "mm" in units else axes
 
 
 def in_units(word: str, report: dict[str, Any]) -> str:
-    """Return the name of a figure per axis, with mm after degrees if some axes are prismatic."""
+    """Return the label of a per-axis row, with mm after degrees if some axes are prismatic."""
     name, _, unit = word.rpartition(", ")
     mixed = unit.startswith("deg") and "mm" in report["machine"]["units"]
     return f"{name}, {unit} or {unit.replace('deg', 'mm')}" if mixed else word
 
 
-_NAMES = ("material",)  # rows that hold names of users
+_NAMES = ("material",)  # rows with user-defined names
 
 
 def pairs_of(title: str, values: dict[str, str]) -> str:
-    """A table of names and values under a title."""
+    """Return a titled table of names and values."""
     rows = [
         (word, [value if word in _NAMES else units.text(value)]) for word, value in values.items()
     ]
@@ -48,7 +48,7 @@ def pairs_of(title: str, values: dict[str, str]) -> str:
 
 
 def material_row(report: dict[str, Any]) -> dict[str, str]:
-    """The material and where its figures are from; nothing where the job names none."""
+    """Return the material and the source of its data; empty if the job names no material."""
     material = report["process"]["material"]
     if material is None:
         return {}
@@ -58,7 +58,7 @@ def material_row(report: dict[str, Any]) -> dict[str, str]:
 
 
 def table_of(rows: Iterable[tuple[str, Iterable[str]]]) -> str:
-    """A table of rows with their names."""
+    """Return a table of named rows."""
     rows = [units.row(word, [str(value) for value in values], figure_text) for word, values in rows]
     lines = "".join(
         f"<tr><td>{escape(word)}</td>{''.join(f'<td>{escape(value)}</td>' for value in values)}</tr>"
@@ -68,7 +68,7 @@ def table_of(rows: Iterable[tuple[str, Iterable[str]]]) -> str:
 
 
 def figure_text(value: Any) -> str:
-    """Format a figure with its significant digits."""
+    """Format a value with its significant digits."""
     if value is None:
         return "\u2013"
     if isinstance(value, bool):
@@ -77,13 +77,13 @@ def figure_text(value: Any) -> str:
         if abs(value) >= 1e4:
             return f"{value:,.0f}"
         if abs(value) < 1e-8:
-            return "0"  # what rounding leaves says nothing
+            return "0"  # rounding residue
         return f"{value:.4g}" if abs(value) >= 1e-3 else f"{value:.1e}"
     return str(value)
 
 
 def classes_of(rows: list[dict[str, Any]]) -> str:
-    """Return the totals for each class of beads."""
+    """Return the table of totals per bead class."""
     if not rows:
         return ""
     woven = ["weave"] if any("weave" in row for row in rows) else []

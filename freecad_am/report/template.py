@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The frame of every page that we write: one file without links, light and dark."""
+"""Template of all pages: one self-contained file with light and dark colours."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from pathlib import Path
 from string import Template
 
 _FOLDER = Path(__file__).resolve().parent
-NO_SCRIPTS = "default-src 'none'; style-src 'unsafe-inline'"  # policy of a static page
+NO_SCRIPTS = "default-src 'none'; style-src 'unsafe-inline'"  # policy of a page without scripts
 
 
 @lru_cache(maxsize=8)
 def read_part(name: str) -> str:
-    """Return the text of a file of this folder that becomes part of a page."""
+    """Read a page component from this folder."""
     return (_FOLDER / name).read_text(encoding="utf-8")
 
 
@@ -26,18 +26,18 @@ def fill_page(
     style: str = "",
     data: str = "",
 ) -> str:
-    """Return a page.
+    """Fill the page template.
 
     Parameters
     ----------
     title : str
-        Its title as plain text.
+        Page title as plain text.
     sections : iterable of str
-        Its contents as HTML.
+        Page content as HTML.
     policy : str
-        What a browser lets it do (Content-Security-Policy).
+        Content-Security-Policy of the page.
     style : str
-        CSS in addition to that of all pages.
+        CSS in addition to the common style.
     data : str
         HTML for the end of the body.
 

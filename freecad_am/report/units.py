@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The units of the page: metric for commands, the user's unit scheme for the window.
+"""Units of the page: metric for commands, the user's unit scheme for the window.
 
-The figures of report.json are always metric.
+Values in report.json are always metric.
 """
 
 from __future__ import annotations
@@ -21,8 +21,11 @@ _FIGURE = re.compile(r"-?[\d,]+(?:\.\d+)?(?:e[-+]\d+)?")
 
 @dataclass(frozen=True)
 class ReportUnits:
-    """text: converts the quantities in a text to the units of the page. scale: for values up to a
-    maximum in an internal unit, the factor to the page's unit, and its name."""
+    """Conversions to page units.
+
+    text: converts the quantities in a text. scale: function of the maximum value and the internal
+    unit that returns the conversion factor and the name of the page unit.
+    """
 
     text: Callable[[str], str]
     scale: Callable[[float, str], tuple[float, str]]
@@ -34,7 +37,7 @@ _units: ContextVar[ReportUnits] = ContextVar("units of the page", default=METRIC
 
 @contextmanager
 def shown_in(units: ReportUnits) -> Iterator[None]:
-    """Draw pages in these units for as long as the context is entered."""
+    """Within the context, draw pages in the given units."""
     token = _units.set(units)
     try:
         yield
@@ -43,17 +46,17 @@ def shown_in(units: ReportUnits) -> Iterator[None]:
 
 
 def text(words: str) -> str:
-    """A text of numbers in the units of the page; no names of users may be in it."""
+    """Convert a text with quantities to page units. The text must not contain user names."""
     return _units.get().text(words)
 
 
 def scale(largest: float, unit: str) -> tuple[float, str]:
-    """Return the factor from `unit` to the page's unit for values up to `largest`, and its name."""
+    """Return the factor from `unit` to the page unit for values up to `largest`, and its name."""
     return _units.get().scale(largest, unit)
 
 
 def message(words: str) -> str:
-    """A message in the units of the page, with names as they are."""
+    """Convert a message to page units, without changing names."""
     if not isinstance(words, Text):
         return str(words)
     values = [message(value) if isinstance(value, Text) else value for value in words.values]
@@ -61,7 +64,10 @@ def message(words: str) -> str:
 
 
 def label(words: str, largest: float) -> tuple[str, float]:
-    """A label such as 'local distance, mm' of values of up to `largest`, in the unit of the page, and the factor of values."""
+    """Convert a label such as 'local distance, mm' to page units; return the value factor too.
+
+    largest: maximum value, in the unit of the label.
+    """
     match = _LABEL.fullmatch(words)
     if match is None:
         return words, 1.0
@@ -70,7 +76,7 @@ def label(words: str, largest: float) -> tuple[str, float]:
 
 
 def row(words: str, cells: list[str], written: Callable[[float], str]) -> tuple[str, list[str]]:
-    """A row of figures under a label with its unit, in the unit of the page."""
+    """Convert a table row, a label with unit and its values, to page units."""
     values = [float(cell.replace(",", "")) for cell in cells if _FIGURE.fullmatch(cell)]
     converted, factor = label(words, max(map(abs, values), default=0.0))
     if factor == 1.0:

@@ -17,20 +17,20 @@ from ...core.geometry.walls.surface import dot
 from ...core.issues import InputError, Text
 from ...core.types import Array, Index
 
-# since FreeCAD 1.0 some faults are a plain RuntimeError, their base class
+# since FreeCAD 1.0, the kernel raises some faults as RuntimeError, the common base class
 FAULTS = (Part.OCCError, FreeCAD.Base.CADKernelError, RuntimeError)
 FAULTY = "BAD_SHAPE"
-MAX_NAMED = 5  # faces named in a message
-SAMPLES = 720  # of an edge that may cross itself
-CROSSED = (
-    1e-3  # of a step between samples; stretches of an edge nearer to each other than this cross
-)
+MAX_NAMED = 5  # maximum number of face names in a message
+SAMPLES = 720  # number of samples on an edge to test for self-crossing
+CROSSED = 1e-3  # maximum distance of crossing edge segments, fraction of the step between samples
 
 
 @contextmanager
 def reported(label: str, shape: Any = None) -> Iterator[None]:
-    """Faults of the geometry kernel within, as an InputError FAULTY that names `label`, and the damaged faces of a Part.Shape, or
-    where that is."""
+    """Within the context, convert faults of the geometry kernel to InputError FAULTY.
+
+    The error names `label`, and the damaged faces or the position of the Part.Shape.
+    """
     try:
         yield
     except FAULTS as error:
@@ -46,8 +46,9 @@ def reported(label: str, shape: Any = None) -> Iterator[None]:
 
 
 def _damaged(shape: Any) -> str:
-    """Which faces of a Part.Shape are damaged, and where; the position of the shape if each face is
-    sound.
+    """Return the damaged faces of a Part.Shape with positions, as text.
+
+    If every face is valid, return the position of the shape.
     """
     faces = list(getattr(shape, "Faces", ()))
     named = []
@@ -66,7 +67,7 @@ def _damaged(shape: Any) -> str:
 
 
 def _middle(shape: Any) -> str:
-    """The middle of a shape as text; a corner if it has no extent."""
+    """Return the centre of a shape as text, or a vertex if the bounding box is invalid."""
     try:
         if shape.BoundBox.isValid():
             return place(tuple(shape.BoundBox.Center))
@@ -78,9 +79,10 @@ def _middle(shape: Any) -> str:
 def refuse_bare(
     named: Sequence[tuple[str, Any]], owner: Index, label: str, narrow: float = 0.0
 ) -> None:
-    """InputError if the kernel has made no triangles of a face: SELF_INTERSECTION if one of its
-    edges crosses itself, else BAD_SHAPE. owner: (m,) the number of the face of each triangle.
-    narrow: a face no wider, mm, needs none.
+    """Raise InputError if the kernel made no triangles for a face.
+
+    The code is SELF_INTERSECTION if an edge of the face crosses itself, else BAD_SHAPE. owner: face
+    index (m,) of each triangle. narrow: maximum width, mm, of faces that need no triangles.
     """
     for k, (name, face) in enumerate(named):
         if (owner == k).any() or face.Area < 0.5 * narrow * face.Length:
@@ -105,7 +107,7 @@ def refuse_bare(
 
 
 def _crossing(chain: Array) -> Array | None:
-    """The point where a chain of points (n, 3) crosses itself, or None."""
+    """Return the point where a chain of points (n, 3) crosses itself, or None."""
     chord = np.diff(chain, axis=0)
     step = float(np.linalg.norm(chord, axis=1).max())
     pairs = cKDTree(chain[:-1] + 0.5 * chord).query_pairs(1.01 * step, output_type="ndarray")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the axis of a shape of revolution may be."""
+"""Candidate axes of a shape of revolution."""
 
 from __future__ import annotations
 
@@ -14,21 +14,20 @@ from .cylindrical import as_array, edge_points
 
 Axis = tuple[Array, Array]
 
-# their axes are known, or they have none
+# surface types with a known axis or without an axis
 ANALYTIC = tuple(
     "Part::Geom" + kind
     for kind in ("Plane", "Cylinder", "Cone", "Sphere", "Toroid", "SurfaceOfRevolution")
 )
-SAME_ANGLE = 1e-6  # rad
-SAME_LINE = 1e-4  # mm
+SAME_ANGLE = 1e-6  # rad; maximum angle between coincident axes
+SAME_LINE = 1e-4  # mm; maximum distance between coincident axes
 
 
 def candidates(faces: list[Any]) -> list[Axis]:
-    """Possible axes as (point (3,), unit direction (3,)), the most likely one first.
+    """Return candidate axes as (point (3,), unit direction (3,)), the most likely axis first.
 
-    The axes of analytic and revolved surfaces weigh their area, axes of circular edges less; last
-    comes the axis that the surface normals point to, which needs no knowledge of the kind of
-    surface.
+    Axes of analytic and revolved surfaces are weighted by area; axes of circular edges have lower
+    weights. Axes fitted to surface normals come last and apply to any surface type.
     """
     ordered = [axis for axis, _ in sorted(_weighed(faces), key=lambda pair: -pair[1])][:6]
     free = [face for face in faces if face.Surface.TypeId not in ANALYTIC]
@@ -40,11 +39,11 @@ def candidates(faces: list[Any]) -> list[Axis]:
 
 
 def _weighed(faces: list[Any]) -> list[tuple[Axis, float]]:
-    """Axes of faces and their edges, each once, with all that speaks for it."""
+    """Return the distinct axes of faces and their edges, with total weights."""
     axes: list[tuple[Axis, float]] = []
     rows = np.zeros(
         (64, 6)
-    )  # the axes as rows for one comparison: a plate may have hundreds of holes
+    )  # axes as rows for a vectorised comparison: a plate may have hundreds of holes
     for face in faces:
         for axis, weight in _face_axes(face):
             same = np.flatnonzero(_alike(rows[: len(axes)], axis))
@@ -83,7 +82,7 @@ def _face_axes(face: Any) -> list[tuple[Axis, float]]:
 
 
 def _circle_through(points: Array) -> Axis | None:
-    """The axis of the circle through points (n, 3), or None if they are not on a circle."""
+    """Return the axis of the circle through points (n, 3), None if they are not on a circle."""
     middle = points.mean(axis=0)
     _, sizes, basis = np.linalg.svd(points - middle, full_matrices=False)
     if sizes[1] < 1e-6 * sizes[0] or sizes[2] > 1e-7 * sizes[0]:
@@ -109,7 +108,7 @@ def _same(axis: Axis, other_axis: Axis) -> bool:
 
 
 def _alike(rows: Array, axis: Axis) -> Mask:
-    """Which of axes (n, 6), points and directions, are the same line as another."""
+    """Return a mask (n,) of the axes (n, 6), points and directions, that coincide with `axis`."""
     offset, along = rows[:, :3] - axis[0], rows[:, 3:]
     across = offset - (offset * along).sum(axis=1)[:, None] * along
     turned = np.linalg.norm(np.cross(along, axis[1]), axis=1)
@@ -117,11 +116,11 @@ def _alike(rows: Array, axis: Axis) -> Mask:
 
 
 def from_normals(faces: list[Any]) -> Axis | None:
-    """The line that every surface normal meets (the upright one on a sphere), or None.
+    """Return the line that every surface normal meets, None without such a line.
 
-    A normal n at p meets the axis (point c, direction a) when n . (c x a) + (p x n) . a = 0. With m
-    = c x a that is linear in (a, m): the axis is the null direction of all samples that has no
-    pitch (a . m = 0).
+    On a sphere, return the vertical line through the centre. A normal n at p meets the axis (point
+    c, direction a) if n . (c x a) + (p x n) . a = 0. With m = c x a, this is linear in (a, m): the
+    axis is the null direction of all samples with zero pitch (a . m = 0).
     """
     points, normals = [], []
     for face in faces:
@@ -131,7 +130,7 @@ def from_normals(faces: list[Any]) -> Axis | None:
                 try:
                     normals.append(face.Surface.normal(u, v))
                 except (RuntimeError, Part.OCCError):
-                    continue  # where the surface is degenerate
+                    continue  # degenerate point of the surface
                 points.append(face.Surface.value(u, v))
     p, n = as_array(points), as_array(normals)
     good = np.isfinite(n).all(axis=1)
@@ -141,11 +140,11 @@ def from_normals(faces: list[Any]) -> Axis | None:
     middle = p.mean(axis=0)
     size = np.abs(p - middle).max()
     rows = np.hstack([np.cross((p - middle) / size, n), n])
-    # without full_matrices=False the first factor would be a square matrix over all samples
+    # full_matrices=False avoids a square first factor over all samples
     values, vectors = np.linalg.svd(rows, full_matrices=False)[1:]
     exact = int((values < 1e-6 * values[0]).sum())
-    # a cylinder that is not quite round is still exactly invariant to sliding along its axis, so
-    # the next best motion is tried too
+    # a cylinder that is not quite round is still exactly invariant to translation along its axis,
+    # so try the next best motion too
     for count in (max(exact, 1), max(exact, 1) + 1):
         null = vectors[-count:]
         directions = null[:, :3]
@@ -163,7 +162,7 @@ def from_normals(faces: list[Any]) -> Axis | None:
 
 
 def _through_centre(middle: Array, size: float, null: Array) -> Axis | None:
-    """The upright axis through the point about which a shape may turn in every direction, or None."""
+    """Return the vertical axis through the centre of a sphere-like shape, None without a centre."""
     # m = c x a for every null direction (a, m) is linear in the centre c
     rows = np.vstack([np.cross(np.eye(3), a).T for a in null[:, :3]])
     centre, _, rank, _ = np.linalg.lstsq(rows, null[:, 3:].ravel(), rcond=None)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves and surfaces of the geometry kernel in cylindrical coordinates about an axis; lost poles
-of faces."""
+"""Kernel curves and surfaces in cylindrical coordinates about an axis, and lost poles of faces."""
 
 from __future__ import annotations
 
@@ -17,33 +16,35 @@ from ...core.types import Array
 
 @dataclass(frozen=True, eq=False)
 class AxisFrame:
-    """A frame whose Z is an axis: origin (3,) mm, rotation (3, 3) with X Y Z as columns, in part coordinates."""
+    """A frame with Z along an axis, in part coordinates.
+
+    origin: (3,), mm. rotation: (3, 3) with X, Y, Z as columns.
+    """
 
     origin: Array
     rotation: Array
 
     def local(self, points: Any) -> Array:
-        """(n, 3) mm in this frame from points (n, 3), or kernel vectors, in part coordinates."""
+        """Convert points (n, 3) or kernel vectors from part coordinates to this frame, mm."""
         moved: Array = (as_array(points) - self.origin) @ self.rotation
         return moved
 
     def cylindrical(self, points: Any) -> tuple[Array, Array, Array]:
-        """Radius, height (n,) mm and azimuth (n,) rad."""
+        """Return radius (n,), mm, height (n,), mm, and azimuth (n,), rad."""
         p = self.local(points)
         return np.hypot(p[:, 0], p[:, 1]), p[:, 2], np.arctan2(p[:, 1], p[:, 0])
 
 
 def as_array(points: Any) -> Array:
-    """(n, 3) from a sequence of kernel vectors or of triples."""
+    """Convert a sequence of kernel vectors or triples to an array (n, 3)."""
     return np.array([tuple(point) for point in points], dtype=np.float64).reshape(-1, 3)
 
 
 def axis_frame(origin: Any, direction: Any) -> AxisFrame:
-    """The frame of an axis as the feature frame wants it (interface.md, `mount`), except the height
-    of its origin.
+    """Return the frame of an axis: the feature frame (interface.md, `mount`) except for its height.
 
-    Z points the way with a positive component along the part's Z, else X, else Y. X is the part's X projected, Y if X
-    is along the axis. The origin is the axis point nearest to the part's origin.
+    Z has a positive component along the part's Z, else X, else Y. X is the projection of the part's
+    X, or of Y if X is along the axis. The origin is the axis point nearest to the part's origin.
     """
     z = np.asarray(tuple(direction), dtype=np.float64)
     z = z / np.linalg.norm(z)
@@ -62,7 +63,10 @@ def axis_frame(origin: Any, direction: Any) -> AxisFrame:
 
 
 def edge_points(edge: Any, count: int) -> Array:
-    """(count, 3) points along an edge, its ends included; (0, 3) for a degenerate one."""
+    """Return `count` points (count, 3) along an edge including its ends.
+
+    For a degenerate edge, return its vertices.
+    """
     if edge.Degenerated:
         return as_array([vertex.Point for vertex in edge.Vertexes])
     t_start, t_end = edge.ParameterRange
@@ -70,7 +74,7 @@ def edge_points(edge: Any, count: int) -> Array:
 
 
 def projected(curve: Any, frame: AxisFrame, t_start: float, t_end: float) -> Curve:
-    """The curve in (radius, height) with its derivative, as a callable on parameters (n,)."""
+    """Return a function of parameters (n,) that gives (radius, height) and their derivatives."""
     middle = 0.5 * (t_start + t_end)
 
     def evaluate(t: Array) -> tuple[Array, Array]:
@@ -82,8 +86,10 @@ def projected(curve: Any, frame: AxisFrame, t_start: float, t_end: float) -> Cur
 
 
 def flattened(p: Array, d: Array, ending: Any) -> tuple[Array, Array]:
-    """Points p and derivatives d (n, 3) of the axis' frame in (radius, height), (n, 2) each. ending: (n,) bool, whether
-    a point on the axis is an end, where the radius falls, or a start.
+    """Convert points p and derivatives d (n, 3) of the axis frame to (radius, height), (n, 2) each.
+
+    ending: (n,) bool, whether a point on the axis is a curve end, where the radius decreases, or a
+    start.
     """
     r = np.hypot(p[:, 0], p[:, 1])
     on_axis = r < 1e-7
@@ -97,7 +103,7 @@ def flattened(p: Array, d: Array, ending: Any) -> tuple[Array, Array]:
 def pieces_of(
     curve: Any, frame: AxisFrame, t_start: float, t_end: float
 ) -> list[tuple[Array, Array]]:
-    """The curve between two parameters as samples (points (n, 2), tangents (n, 2)), one piece per smooth stretch."""
+    """Sample a curve between two parameters; return points and tangents (n, 2) per smooth piece."""
     evaluate = projected(curve, frame, t_start, t_end)
     corners, knots = _breaks(curve, t_start, t_end)
     return smooth_pieces(evaluate, corners, knots)
@@ -106,8 +112,9 @@ def pieces_of(
 def smooth_pieces(
     evaluate: Curve, corners: Sequence[float], knots: Sequence[float]
 ) -> list[tuple[Array, Array]]:
-    """Samples between neighbouring corners; the slope at a corner is taken at a small distance from
-    it. knots: other breaks.
+    """Sample a curve between successive corners.
+
+    The slope at a corner is evaluated at a small distance from the corner. knots: other breaks.
     """
     result = []
     for a, b in pairwise(corners):
@@ -123,7 +130,7 @@ def smooth_pieces(
 
 
 def _breaks(curve: Any, t_start: float, t_end: float) -> tuple[list[float], list[float]]:
-    """Parameters of corners, the two ends included, and of the other knots of a B-spline."""
+    """Return the parameters of corners, including both ends, and of other B-spline knots."""
     corners, knots = [], []
     if curve.TypeId == "Part::GeomBSplineCurve":
         span = t_end - t_start
@@ -133,21 +140,23 @@ def _breaks(curve: Any, t_start: float, t_end: float) -> tuple[list[float], list
     return [t_start, *corners, t_end], knots
 
 
-# ---- Faces that close on the axis and come out of a STEP file without extent
+# ---- Faces closed on the axis that have no area after STEP import
 #
 # The geometry kernel writes a dome revolved from a circle or an ellipse with its rim as the only
-# edge, and on reading takes the rim for the whole face: area 0. The surface is still exact, and
-# the sense of the rim gives the side of the face. For a dome that is part of a turn, OpenCASCADE
-# 7.8 and later also lose the point on the axis and take the whole surface for the face; there the
-# edges that lead to the axis are the meridian.
+# edge. On reading, it takes the rim for the whole face, with area 0. The surface is still exact,
+# and the orientation of the rim gives the side of the face. For a partly revolved dome, OpenCASCADE
+# 7.8 and later also lose the point on the axis and use the whole surface as the face. In this case,
+# the edges that lead to the axis are the meridian.
 
 SAMPLES = 721
 ON_AXIS = 1e-6  # mm
 
 
 def has_lost_pole(face: Any) -> bool:
-    """Whether a face closes on its axis without the edge of no length that says so: it is bounded by one closed edge and
-    yet has no area, or two of its edges meet on the axis."""
+    """Whether a face is closed on its axis but lacks the degenerate edge there.
+
+    Such a face has one closed edge but no area, or two edges that meet on the axis.
+    """
     edges = [edge for edge in face.Edges if not edge.Degenerated]
     if len(edges) == 1:
         return bool(edges[0].isClosed() and 2.0 * face.Area < 1e-3 * edges[0].Length)
@@ -155,7 +164,7 @@ def has_lost_pole(face: Any) -> bool:
 
 
 def edges_of(face: Any) -> list[Any]:
-    """The edges of a face with a lost pole; the kernel adds the bounds of the whole surface, as wires of their own."""
+    """Return the edges of a face with a lost pole, without surface bounds added by the kernel."""
     if _to_axis(face) is None:
         return list(face.Edges)
     return next(
@@ -166,8 +175,9 @@ def edges_of(face: Any) -> list[Any]:
 
 
 def restore_meridian(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
-    """The meridian from the rim to the axis as samples (points (n, 2), tangents (n, 2)), or None if
-    it is undetermined.
+    """Return the meridian from rim to axis as samples (points (n, 2), tangents (n, 2)).
+
+    None if the meridian cannot be determined.
     """
     meridian = _to_axis(face)
     if meridian is not None:
@@ -176,7 +186,7 @@ def restore_meridian(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] |
 
 
 def _to_axis(face: Any) -> Any:
-    """An edge that leads to the axis of a surface of revolution and ends on it, or None."""
+    """Return an edge that ends on the axis of its surface of revolution, or None."""
     surface = face.Surface
     if surface.TypeId != "Part::GeomSurfaceOfRevolution":
         return None
@@ -199,7 +209,7 @@ def _from_rim(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
     t_start, t_end = edge.ParameterRange
     parameters = t_start + np.array([0.25, 0.26]) * (t_end - t_start)
     (u, start), (next_u, _) = (surface.parameter(edge.valueAt(t)) for t in parameters.tolist())
-    # in the surface's parameters the face is left of its rim
+    # in surface parameters, the face is left of its rim
     rising = (np.mod(next_u - u + np.pi, 2.0 * np.pi) - np.pi) > 0.0
     sense = 1.0 if rising == (edge.Orientation == face.Orientation) else -1.0
     curve = surface.uIso(u)

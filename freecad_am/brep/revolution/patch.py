@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One face of a shape as a piece of meridian turned about an axis, and how far it is from being that."""
+"""Convert a face to a meridian piece revolved about an axis, and measure the deviation."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ from .cylindrical import (
     smooth_pieces,
 )
 
-MERIDIAN_MM = 1e-3  # mm; closer meridians count as one
+MERIDIAN_MM = 1e-3  # mm; maximum distance of coincident meridians
 SAME_AZIMUTH = 1e-4  # rad
 
 Turn = tuple[float, float]
 
 
 def merged(segments: Sequence[Piece], label: str) -> list[Piece]:
-    """One segment for all segments that share a meridian, over their joint turn.
+    """Merge segments with the same meridian into one segment over their joint azimuth range.
 
-    Raises InputError 'NOT_REVOLUTION' where they leave more than one opening around the axis.
+    Raises InputError NOT_REVOLUTION if merged segments leave more than one opening around the axis.
     """
     groups: list[list[Piece]] = []
     ends = np.array([segment.points[[0, -1]] for segment in segments]).reshape(-1, 2, 2)
@@ -87,8 +87,7 @@ def _union(turns: Sequence[Turn | None], group: Sequence[Piece], label: str) -> 
             joined.append((start, start + span))
     if any(end - start >= 2.0 * np.pi - SAME_AZIMUTH for start, end in joined):
         return None
-    # each range is listed twice, a turn apart, so that every joined range appears whole at least
-    # once
+    # ranges are listed twice, one revolution apart, so that each joined range is complete once
     distinct = {round((start % (2.0 * np.pi)) / SAME_AZIMUTH) for start, _ in joined[1:]}
     if len(distinct) > 1:
         names = ", ".join(segment.name for segment in group)
@@ -100,9 +99,9 @@ def _union(turns: Sequence[Turn | None], group: Sequence[Piece], label: str) -> 
 
 
 def common_turn(chain: Chain, label: str) -> Turn | None:
-    """The turn (start, end) rad that all pieces of a wall make, None for a full one.
+    """Return the common azimuth range (start, end), rad, of all pieces; None for a full revolution.
 
-    Raises InputError 'NOT_REVOLUTION' naming the faces that turn differently.
+    Raises InputError NOT_REVOLUTION, naming the faces whose ranges differ.
     """
     first_segment = chain[0]
     for segment in chain[1:]:
@@ -140,10 +139,10 @@ def _degrees(turn: Turn | None) -> str:
     )
 
 
-TOLERANCE = 1e-3  # mm a face may be off its own surface of revolution
-EDGE_TOLERANCE = 1e-2  # mm an edge may be off a parallel or a meridian
+TOLERANCE = 1e-3  # mm; maximum deviation of a face from its surface of revolution
+EDGE_TOLERANCE = 1e-2  # mm; maximum deviation of an edge from a parallel or a meridian
 FULL_TURN_RAD = 2.0 * np.pi - 1e-5
-# surfaces whose first parameter is the azimuth about their axis
+# surface types whose first parameter is the azimuth about their axis
 NATURAL = (
     "Part::GeomCylinder",
     "Part::GeomCone",
@@ -154,9 +153,11 @@ NATURAL = (
 
 @dataclass(frozen=True)
 class Patch:
-    """A face in relation to an axis. segments: its meridian, empty for a plane along the axis that
-    only bounds a part of a turn. deviation: mm off a surface of revolution, inf without a meridian.
-    what: the deviation in words.
+    """A face in relation to an axis.
+
+    segments: the meridian; empty for a plane along the axis that only bounds a partial revolution.
+    deviation: distance from a surface of revolution, mm; inf without a meridian. what: description
+    of the deviation.
     """
 
     name: str
@@ -166,12 +167,12 @@ class Patch:
 
     @property
     def sound(self) -> bool:
-        """True for a face of revolution within the tolerance."""
+        """Whether the face is a surface of revolution within TOLERANCE."""
         return self.deviation <= TOLERANCE
 
 
 def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
-    """The face about the axis of the frame."""
+    """Return the patch of a face about the axis of the frame."""
     if has_lost_pole(face):
         return _closed_on_axis(face, name, frame)
     if _ends_a_turn(face, frame):
@@ -179,9 +180,7 @@ def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
     try:
         curves = _meridian(face, frame)
     except (ValueError, RuntimeError, Part.OCCError):
-        curves = (
-            None  # a line without extent is not a meridian, and the kernel fails on some surfaces
-        )
+        curves = None  # a zero-length line is not a meridian, and the kernel fails on some surfaces
     if curves is None:
         return Patch(name, (), _radial_spread(face, frame), "it does not turn about the axis")
     deviation = _deviation(face, frame, curves)
@@ -199,7 +198,7 @@ def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
 
 
 def _closed_on_axis(face: Any, name: str, frame: AxisFrame) -> Patch:
-    """The patch of a face whose file has lost its pole."""
+    """Return the patch of a face whose pole is lost in the file."""
     curves, edges = restore_meridian(face, frame), edges_of(face)
     edge = _edge_deviation(edges, frame)
     if curves is None or edge > EDGE_TOLERANCE:
@@ -229,7 +228,7 @@ def _ends_a_turn(face: Any, frame: AxisFrame) -> bool:
 
 
 def planar(face: Any) -> bool:
-    """Whether a face is flat, whatever kind of surface it has."""
+    """Whether a face is flat, for any surface type."""
     surface = face.Surface
     if surface.TypeId in ("Part::GeomBSplineSurface", "Part::GeomBezierSurface"):
         return bool(surface.isPlanar(1e-6))
@@ -252,7 +251,7 @@ def _boundary(face: Any, frame: AxisFrame, count: int = 9) -> tuple[Array, Array
 
 
 def _flat(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
-    """A plane across the axis: a straight piece from its inner to its outer radius."""
+    """Return the meridian of a plane normal to the axis: a line from inner to outer radius."""
     radius, height, _ = _boundary(face, frame)
     if np.ptp(height) > TOLERANCE:
         return None
@@ -262,7 +261,7 @@ def _flat(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
 
 
 def _sphere(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
-    """A sphere centred on the axis, for any direction of its own poles."""
+    """Return the meridian of a sphere centred on the axis, for any direction of its poles."""
     centre = frame.local([face.Surface.Center])[0]
     if np.hypot(centre[0], centre[1]) > TOLERANCE:
         return None
@@ -278,12 +277,12 @@ def _sphere(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
 
 
 def _snapped(angle: float) -> float:
-    """Latitudes within rounding of a pole, put on it: a file may say a pole with ten digits."""
+    """Snap a latitude to a pole within rounding: a file may store a pole with ten digits."""
     return float(np.copysign(0.5 * np.pi, angle)) if abs(abs(angle) - 0.5 * np.pi) < 1e-9 else angle
 
 
 def _along_parameter(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
-    """The meridian as a line of one parameter of the surface, where such lines lead across all parallels."""
+    """Return the meridian as a surface parameter line that crosses all parallels, or None."""
     u0, u1, v0, v1 = face.ParameterRange
     surface = face.Surface
     middle_u, middle_v = 0.5 * (u0 + u1), 0.5 * (v0 + v1)
@@ -312,7 +311,7 @@ def _along_parameter(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] |
 
 
 def _offset_line(face: Any, frame: AxisFrame, along_v: bool, t_start: float, t_end: float) -> Curve:
-    """A parameter line of a surface whose own curves the kernel only approximates."""
+    """Evaluate a parameter line exactly, for surfaces whose curves the kernel approximates."""
     u0, u1, v0, v1 = face.ParameterRange
     surface, order = face.Surface, (0, 1) if along_v else (1, 0)
 
@@ -332,8 +331,9 @@ def _offset_line(face: Any, frame: AxisFrame, along_v: bool, t_start: float, t_e
 
 
 def _section(face: Any, frame: AxisFrame) -> list[tuple[Array, Array]] | None:
-    """The meridian cut by the half plane through the face's middle, each point brought back onto the exact surface; the
-    tangent is across the surface normal.
+    """Return the meridian from a section with the half plane through the centre of the face.
+
+    Points are projected back onto the exact surface. Tangents are normal to the surface normal.
     """
     radius, _, azimuth = frame.cylindrical(_grid(face, True) or _grid(face, False))
     middle_azimuth = float(azimuth[np.argmax(radius)])
@@ -380,12 +380,12 @@ def _grid(face: Any, inside_only: bool) -> list[Any]:
 
 
 def _deviation(face: Any, frame: AxisFrame, curves: list[tuple[Array, Array]]) -> float:
-    """Largest distance, mm, between the face and what its meridian makes when turned about the axis."""
+    """Return the maximum distance, mm, between the face and the revolved meridian."""
     if planar(face):
         return 0.0
     off = _distance(frame, _grid(face, False), curves)
     if off > TOLERANCE:
-        # the surface extends past the edges of the face: only the face itself counts
+        # the surface extends beyond the edges of the face, so sample only the face
         off = _distance(frame, _grid(face, True) or _grid(face, False), curves)
     return max(
         off, _distance(frame, np.vstack([edge_points(edge, 9) for edge in face.Edges]), curves)
@@ -406,13 +406,13 @@ def _distance(frame: AxisFrame, points: Any, curves: list[tuple[Array, Array]]) 
 
 
 def _radial_spread(face: Any, frame: AxisFrame) -> float:
-    """How far a face without a meridian is from turning about the axis: the play of its radius or height, mm."""
+    """Return the deviation, mm, of a face without a meridian: the range of its radius or height."""
     radius, height, _ = frame.cylindrical(_grid(face, True) or _grid(face, False))
     return float(max(min(np.ptp(radius), np.ptp(height)), 2.0 * TOLERANCE))
 
 
 def _edge_deviation(edges: list[Any], frame: AxisFrame) -> float:
-    """Largest distance, mm, of an edge from the nearer of a parallel and a meridian."""
+    """Return the maximum deviation, mm, of edges from the nearer of a parallel and a meridian."""
     worst = 0.0
     for edge in edges:
         if edge.Degenerated:
@@ -427,7 +427,7 @@ def _edge_deviation(edges: list[Any], frame: AxisFrame) -> float:
 
 
 def _turn(face: Any, frame: AxisFrame) -> tuple[float, float] | None:
-    """Azimuths (start, end) rad of a part of a turn, None for a full one."""
+    """Return the azimuth range (start, end), rad, of a face; None for a full revolution."""
     u0, u1, v0, v1 = face.ParameterRange
     if face.Surface.TypeId in NATURAL and u1 - u0 > FULL_TURN_RAD:
         return None
@@ -441,9 +441,7 @@ def _turn(face: Any, frame: AxisFrame) -> tuple[float, float] | None:
 
 
 def _reach(frame: AxisFrame, points: Array) -> tuple[float, float] | None:
-    """Azimuths (start, end) rad of the range that holds all points; the complement is the widest
-    empty range.
-    """
+    """Return the smallest azimuth range (start, end), rad, that contains all points."""
     radius, _, azimuth = frame.cylindrical(points)
     azimuth = np.sort(np.mod(azimuth[radius > 1e-3 * max(radius.max(), 1e-9)], 2.0 * np.pi))
     gaps = np.diff(np.r_[azimuth, azimuth[0] + 2.0 * np.pi])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The wall of a part of revolution: which faces, about which axis, with which meridian."""
+"""Detect the wall of a part of revolution: its faces, axis and meridian."""
 
 from __future__ import annotations
 
@@ -18,18 +18,18 @@ from .axis import candidates
 from .cylindrical import AxisFrame, as_array, axis_frame, edge_points, has_lost_pole, pieces_of
 from .patch import Patch, common_turn, merged, patch_of, planar
 
-# ---- Faces of a shape that are certainly not of revolution about an axis, judged by a few normals
+# ---- Quick test by a few normals: faces that are certainly not of revolution about an axis
 
-SAMPLES_ACROSS = 5  # places along each parameter of a face that is not flat
-SLOPE = 0.2  # component of a normal around the axis; rounding in files is far smaller
-NARROW = 0.1  # mm; a face as narrow as this may be of revolution within its tolerance all the same
+SAMPLES_ACROSS = 5  # number of samples along each parameter of a curved face
+SLOPE = 0.2  # maximum circumferential component of a normal; far above rounding in files
+NARROW = 0.1  # mm; narrower faces may be of revolution within tolerance despite their normals
 ON_AXIS = 1e-3  # mm
 
 
 class Normals(NamedTuple):
-    """Points (n, 3) on faces, their unit normals (n, 3), and the number (n,) of the face of each.
-    flat: (faces,) bool; wide: (faces,) bool, faces that are wide enough for a judgement by their
-    normals.
+    """Points (n, 3) on faces, unit normals (n, 3), and face indices (n,).
+
+    flat: (faces,) bool. wide: (faces,) bool, whether a face is wide enough for the normal test.
     """
 
     points: Array
@@ -57,8 +57,10 @@ def normals_of(faces: Sequence[Any]) -> Normals:
 
 
 def surely_off(samples: Normals, frame: AxisFrame) -> Mask:
-    """(faces,) bool: faces with a normal that leans around the axis, so that they are not of
-    revolution about it; planes along the axis, which only bound a part of a turn, are excluded.
+    """Return a mask (faces,) of faces that are certainly not of revolution about the axis.
+
+    Such faces have a normal with a circumferential component. Planes along the axis, which only
+    bound a partial revolution, are excluded.
     """
     points, normals = frame.local(samples.points), samples.normals @ frame.rotation
     radius = np.hypot(points[:, 0], points[:, 1])
@@ -72,7 +74,7 @@ def surely_off(samples: Normals, frame: AxisFrame) -> Mask:
 
 
 def _flat(face: Any) -> list[tuple[Any, Any]]:
-    """Starts of its first edges: its normal is the same everywhere."""
+    """Return the start points of the first edges of a flat face, with the constant normal."""
     u, v = (0.5 * (low + high) for low, high in (face.ParameterRange[:2], face.ParameterRange[2:]))
     return [
         (edge.valueAt(edge.FirstParameter), face.Surface.normal(u, v)) for edge in face.Edges[:4]
@@ -89,18 +91,18 @@ def _curved(face: Any) -> list[tuple[Any, Any]]:
                 try:
                     samples.append((face.Surface.value(u, v), face.Surface.normal(u, v)))
                 except (RuntimeError, Part.OCCError):
-                    continue  # where the surface is degenerate
+                    continue  # degenerate point of the surface
     return samples
 
 
-ACROSS = 1e-3  # mm an edge may leave the half plane of the wire
+ACROSS = 1e-3  # mm; maximum distance of an edge from the half plane of the wire
 
 
 def pieces_of_edges(shape: Any, frame: AxisFrame, label: str) -> list[Piece]:
-    """Return the edges as meridian pieces of a full turn each, without edges on the axis itself.
+    """Return the edges as meridian pieces of a full revolution, without edges on the axis.
 
-    Raises InputError 'NOT_REVOLUTION' if the edges cross the axis or are not coplanar with it,
-    'NO_WALL' if no edge remains.
+    Raises InputError NOT_REVOLUTION if the edges cross the axis or are not coplanar with the axis,
+    NO_WALL if no edge remains.
     """
     edges = [
         (f"Edge{i}", edge) for i, edge in enumerate(shape.Edges, start=1) if not edge.Degenerated
@@ -139,9 +141,9 @@ def pieces_of_edges(shape: Any, frame: AxisFrame, label: str) -> list[Piece]:
     ]
 
 
-SLIVER = 1e-3  # mm; faces narrower than this are ignored
-MOSTLY = 0.5  # least share of the surface of several solids for the one with a wall
-JUDGED = 24  # faces off an axis among which the message names one
+SLIVER = 1e-3  # mm; narrower faces are ignored
+MOSTLY = 0.5  # minimum fraction of the total surface for the only solid with a wall
+JUDGED = 24  # maximum number of deviating faces that are evaluated for the message
 
 Named = tuple[str, Any]
 
@@ -153,13 +155,14 @@ def find_wall(
     axis: tuple[Any, Any] | None = None,
     label: str = "part",
 ) -> RevolvedWall:
-    """The wall of a Part.Shape as a meridian turned about its axis, in the shape's own coordinates.
+    """Detect the wall of a Part.Shape as a meridian revolved about an axis, in shape coordinates.
 
-    faces: names such as 'Face3' of the wall's faces; all when left out; a solid or closed shell
-    then gives the outer or inner wall without its flat end faces, or the middle, halfway between
-    the two. axis: point and direction, needed by wires and sketches, found on surfaces. Raises
-    InputError 'NO_WALL', 'NOT_REVOLUTION' (naming face and deviation in mm), 'NO_AXIS',
-    'UNKNOWN_FACE', 'SEVERAL_SOLIDS', 'NOT_OF_REVOLUTION' where most of several solids are not.
+    faces: names of the wall faces, such as 'Face3'; empty for all. wall: for a solid or closed
+    shell without face names, the outer or inner wall without flat end faces, or the middle surface.
+    axis: point and direction; required for wires and sketches, detected on surfaces.
+
+    Raises InputError NO_WALL, NOT_REVOLUTION (naming face and deviation in mm), NO_AXIS,
+    UNKNOWN_FACE, SEVERAL_SOLIDS; NOT_OF_REVOLUTION if most of several solids are not of revolution.
     """
     if shape is None or shape.isNull():
         raise InputError("NO_WALL", label, "the shape is empty; choose an object with a shape")
@@ -187,7 +190,7 @@ def _chosen(named: list[Named], faces: Sequence[str], label: str) -> list[Named]
 def _only_solid(
     shape: Any, named: list[Named], wall: str, axis: tuple[Any, Any] | None, label: str
 ) -> RevolvedWall:
-    """The wall of the one solid that has one, where that is most of the shape."""
+    """Return the wall of the only solid of revolution, if it has most of the shape's surface."""
     walls: list[tuple[str, RevolvedWall, float]] = []
     area = sum(solid.Area for solid in shape.Solids)
     for index, solid in enumerate(shape.Solids, start=1):
@@ -240,7 +243,7 @@ def _from_faces(
     selected: bool,
     is_closed: bool = False,
 ) -> RevolvedWall:
-    """whole: the faces are all of a closed surface."""
+    """Detect the wall of faces. is_closed: whether the faces form a closed surface."""
     wide = [
         (name, face)
         for name, face in named
@@ -290,8 +293,10 @@ def _from_faces(
 def _about_best(
     wide: Sequence[Named], lines: Sequence[tuple[Any, Any]]
 ) -> tuple[AxisFrame, list[Patch]]:
-    """The axis about which all faces turn, and their patches; else the axis that the least area
-    deviates from, and the largest deviating faces.
+    """Return the axis about which all faces are of revolution, and their patches.
+
+    Without such an axis, return the axis with the smallest deviating area, and the patches of the
+    largest deviating faces.
     """
     normals = normals_of([face for _, face in wide])
     area = np.array([face.Area + SLIVER for _, face in wide])
@@ -338,7 +343,7 @@ def _assembled(
     selected: bool,
     closed_source: bool = False,
 ) -> RevolvedWall:
-    """The wall made of meridian segments about the axis of the frame."""
+    """Assemble the wall from meridian segments about the axis of the frame."""
     chains, gap = contour.chains(segments)
     if len(chains) > 1:
         names = Text.joined(
@@ -389,7 +394,7 @@ def _loops(chain: Chain) -> bool:
 
 
 def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridian]:
-    """Return the requested wall of a closed contour: its pieces and its meridian."""
+    """Return the pieces and the meridian of the requested wall of a closed contour."""
     walls = contour.walls(chain)
     if not walls:
         raise InputError(
@@ -409,7 +414,7 @@ def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridi
 
 
 def _step_notes(chain: Chain, label: str) -> list[Issue]:
-    """Notes on tiny faces inside the wall, such as the step of a curve given in two formulas."""
+    """Return notes on tiny steps inside the wall, such as between two formulas of a curve."""
     return [
         Issue(
             NOTE,

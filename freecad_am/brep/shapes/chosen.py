@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Some solids or faces of a shape as a shape of their own."""
+"""Extract solids or faces of a shape as a new shape, and compare shapes."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ import Part
 
 
 def common_volume(shape: Any, other_shape: Any) -> float:
-    """Volume, mm3, that the solids of two Part.Shapes share; 0 if they only touch, or a shape has
-    no solid.
+    """Return the common volume, mm3, of the solids of two Part.Shapes.
+
+    The volume is 0 if the solids only touch, or if a shape has no solid.
     """
     if (
         not shape.Solids
@@ -28,12 +29,12 @@ def common_volume(shape: Any, other_shape: Any) -> float:
 
 
 def volume(shape: Any) -> float:
-    """mm3 of the solids of a Part.Shape."""
+    """Return the volume of the solids of a Part.Shape, mm3."""
     return sum(abs(solid.Volume) for solid in shape.Solids)
 
 
 def touching(shape: Any, other_shape: Any, tolerance: float) -> bool:
-    """Whether two Part.Shapes come within a tolerance, mm, of one another."""
+    """Whether the distance between two Part.Shapes is at most `tolerance` mm."""
     box = shape.BoundBox
     box.enlarge(tolerance)
     return bool(
@@ -42,14 +43,19 @@ def touching(shape: Any, other_shape: Any, tolerance: float) -> bool:
 
 
 def solids_of(shape: Any, numbers: Sequence[int]) -> Any:
-    """The solids with these numbers, from 1, of a Part.Shape. IndexError for a missing number."""
+    """Return the solids of a Part.Shape with the given numbers, which start at 1.
+
+    Raises IndexError for a missing number.
+    """
     solids = [shape.Solids[number - 1] for number in numbers]
     return solids[0] if len(solids) == 1 else Part.makeCompound(solids)
 
 
 def owners_of(shape: Any, names: Sequence[str]) -> tuple[Any, tuple[str, ...]]:
-    """The solids that own some faces of a Part.Shape, together with the faces without a solid, and
-    the names of the faces in that result. The shape itself if a name is not one of its faces.
+    """Return the solids that own the named faces, and the names of the faces in the result.
+
+    The result also contains named faces without a solid. Return the shape itself if a name is not
+    one of its faces.
     """
     faces = shape.Faces
     numbers = [int(name.removeprefix("Face")) for name in names]

@@ -17,7 +17,7 @@ SEW = Text(
 
 
 def no_solid(source: Any, label: str, remedy: str) -> InputError:
-    """The error NO_SOLID for a Part.Shape, or None. remedy: what to choose instead, for the end of the sentence."""
+    """Return the error NO_SOLID for a Part.Shape or None. remedy: end of the message."""
     faces = [] if source is None or source.isNull() else list(source.Faces)
     if not faces:
         return InputError("NO_SOLID", label, "it is not a solid; {}", remedy)
@@ -46,7 +46,7 @@ def no_solid(source: Any, label: str, remedy: str) -> InputError:
 
 
 def _open_edge(faces: list[Any]) -> tuple[str, str]:
-    """The midpoint of an edge that only one face uses, and the name of the face."""
+    """Return the midpoint of an edge that only one face uses, and the name of the face."""
     owners: dict[int, list[int]] = {}
     edges = {}
     for number, face in enumerate(faces, start=1):

@@ -18,13 +18,16 @@ from ...core.issues import InputError
 from ...core.types import Array, Index
 from ..kernel.process import in_kernel_process
 
-DEFLECTION = 0.1  # mm, largest distance of the triangles from a curved face
-WELDED = 1e-5  # mm; vertices of the tessellations of two faces
-ANGLE = 0.35  # rad between neighbouring triangles of the first, coarse mesh
+DEFLECTION = 0.1  # mm; maximum distance of triangles from a curved face
+WELDED = 1e-5  # mm; maximum distance of vertices of two faces to merge
+ANGLE = 0.35  # rad; maximum angle between neighbouring triangles of the first, coarse mesh
 
 
 def body(source: Any, name: str) -> Body:
-    """The triangles of a Part.Shape with faces, or of a Mesh.Mesh, in its coordinates; raises InputError 'NO_FACES'."""
+    """Return the triangles of a Part.Shape or Mesh.Mesh in the coordinates of the source.
+
+    Raises InputError NO_FACES.
+    """
     mesh = hasattr(source, "Topology")
     vertices, triangles = (
         _rows(*source.Topology) if mesh else in_kernel_process(triangles_of, source, DEFLECTION)
@@ -39,7 +42,7 @@ def body(source: Any, name: str) -> Body:
 
 
 def triangles_of(shape: Any, deflection: float) -> tuple[Array, Index]:
-    """Points (n, 3) and triangles (m, 3) of a Part.Shape, within `deflection` mm."""
+    """Return points (n, 3) and triangles (m, 3) of a Part.Shape, within `deflection` mm."""
     return _rows(*shape.tessellate(deflection))
 
 
@@ -50,8 +53,10 @@ def _rows(points: Any, triangles: Any) -> tuple[Array, Index]:
 
 
 class Tessellation(NamedTuple):
-    """Vertices (n, 3), triangles (m, 3), the face (m,) of each, and for each face the parameters
-    (k, 2) of its vertices.
+    """Triangles of a shape.
+
+    vertices: (n, 3), mm. triangles: (m, 3). owner: face index (m,) of each triangle. nodes: for
+    each face, the parameters (k, 2) of its vertices.
     """
 
     vertices: Array
@@ -61,12 +66,13 @@ class Tessellation(NamedTuple):
 
 
 def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
-    """Triangles within `chord` mm of the shape; faces share the vertices of their common edges.
+    """Tessellate a shape within `chord` mm, with shared vertices on common edges.
+
     Faces on which the kernel fails have no triangles.
     """
     import MeshPart  # slow to import
 
-    # all faces at once, so that shared edges are divided alike; coarser than a call per face
+    # mesh all faces in one call, so that shared edges get the same points; coarser than per face
     MeshPart.meshFromShape(
         Shape=shape, LinearDeflection=chord, AngularDeflection=angle, Relative=False
     )
@@ -84,9 +90,10 @@ def tessellated(shape: Any, chord: float, angle: float = ANGLE) -> Tessellation:
 
 
 def divided(face: Any) -> bool:
-    """Whether the kernel made triangles of a face when it meshed the shape. Meshing a single face
-    that failed before may take minutes without a way to end it, for a few triangles that do not
-    meet the neighbours'.
+    """Whether the kernel made triangles for a face when it meshed the shape.
+
+    Meshing a failed face separately may take minutes, cannot be cancelled, and gives few triangles
+    that do not meet their neighbours.
     """
     try:
         face.getUVNodes()
@@ -114,15 +121,17 @@ def welded(points: Array, triangles: Index, owner: Index) -> tuple[Array, Index,
 SLOW_TRIANGLES, QUICK_TRIANGLES = (
     150_000,
     40_000,
-)  # triangles of a face that take the kernel eight seconds, and half a second
-PLACES = 7  # samples along u and along v on a face
-SHARE = 0.75  # triangles of the kernel, of the area over the distance and the mean radius
-NEARER = 0.7  # share of the requested chord error, as some of the few triangles are a quarter farther off
+)  # triangle counts of a face that take the kernel 8 s and 0.5 s
+PLACES = 7  # number of samples along u and along v on a face
+SHARE = 0.75  # ratio of the kernel's triangle count to area / (chord error * mean radius)
+NEARER = 0.7  # factor on the requested chord error, which some coarse triangles exceed by a quarter
 
 
 def fine(shape: Any, chord: float) -> Tessellation:
-    """Triangles within `chord` mm of the shape, as `tessellated` has them; without nodes after
-    quartering, or if splines replace faces on which the kernel fails, such as some countersinks.
+    """Tessellate a shape within `chord` mm, as `tessellated`, faster and for more faces.
+
+    Large faces are refined by quartering. Splines replace faces on which the kernel fails, such as
+    some countersinks. In both cases, the result has no nodes.
     """
     tessellation = _fine(shape, chord)
     if len(np.unique(tessellation.owner)) == len(shape.Faces):
@@ -137,12 +146,12 @@ def _fine(shape: Any, chord: float) -> Tessellation:
     about = max((_about(face, chord) for face in shape.Faces), default=0.0)
     if about < SLOW_TRIANGLES:
         return tessellated(shape, chord)
-    # not above: it imports splines, which parts of revolution do without
+    # import here, because parts of revolution do not need splines
     from ..walls.surface_patch import Places, patch_of
 
     try:
         patches = [patch_of(face, "") for face in shape.Faces]
-    except InputError:  # only the kernel knows this kind of face
+    except InputError:  # only the kernel supports this surface type
         return tessellated(shape, chord)
     times = math.ceil(math.log(about / QUICK_TRIANGLES, 4.0))
     vertices, triangles, owner, nodes = tessellated(shape, NEARER * chord * 4.0**times)
@@ -160,8 +169,9 @@ def _fine(shape: Any, chord: float) -> Tessellation:
 
 
 def _about(face: Any, chord: float) -> float:
-    """Estimated number of triangles that the kernel makes of a face; 0 for one that is curved in
-    one direction only.
+    """Estimate the number of triangles that the kernel makes for a face.
+
+    The estimate is 0 for a face that is curved in one direction only.
     """
     low_u, high_u, low_v, high_v = face.ParameterRange
     if not all(map(math.isfinite, (low_u, high_u, low_v, high_v))):
@@ -172,12 +182,12 @@ def _about(face: Any, chord: float) -> float:
         for v in low_v + share * (high_v - low_v):
             try:
                 bends.append(math.sqrt(abs(math.prod(face.curvatureAt(float(u), float(v))))))
-            except Exception:  # a place at which the surface has no curvature
+            except Exception:  # the surface has no curvature at this point
                 continue
     return SHARE * float(face.Area) * float(np.mean(bends or [0.0])) / chord
 
 
-# ---- Exact distances of points from the faces of a shape, their place on it found by triangles
+# ---- Exact distances of points from the faces of a shape, with triangles for the initial search
 
 MIN_DEFLECTION_MM, DEFLECTION_SHARE = (
     0.02,
@@ -189,9 +199,10 @@ TURNED = 0.1  # and this share of its distance: triangles are turned against the
 
 @dataclass(frozen=True, eq=False)
 class Skin:
-    """Triangles of a shape, vertices (n, 3) mm and corners (m, 3), within `deflection` mm; `exact`
-    gives distances (k,) of points (k, 3), outside with a plus, and the unit normals (k, 3) along
-    which they count.
+    """Triangles of a shape within `deflection` mm: vertices (n, 3), mm, and triangles (m, 3).
+
+    exact: function of points (k, 3) that returns signed distances (k,), positive outside, and unit
+    normals (k, 3) along which the distances are measured.
     """
 
     vertices: Array
@@ -201,7 +212,7 @@ class Skin:
 
 
 def skin(shape: Any, label: str) -> Skin:
-    """The faces of a Part.Shape, to measure from. Raises InputError NO_FACES."""
+    """Return the faces of a Part.Shape for distance measurement. Raises InputError NO_FACES."""
     if not shape.Faces:
         raise InputError(
             "NO_FACES", label, "it has no faces to compare points with; choose a solid or a surface"
@@ -220,7 +231,7 @@ def skin(shape: Any, label: str) -> Skin:
 
 
 def _by_face(shape: Any, deflection: float) -> tuple[Array, Index, Index]:
-    """Vertices (n, 3), triangles (m, 3), and the number of the face (m,) of each."""
+    """Return vertices (n, 3), triangles (m, 3) and face indices (m,)."""
     points, corners = shape.tessellate(deflection)
     counts = [
         len(one_face.tessellate(deflection)[1]) if divided(one_face) else 0
@@ -251,7 +262,7 @@ def _exact(
             tuple(nearest_face.normalAt(u, v)),
         )
     distance = ((points - foot) * normal).sum(axis=1)
-    if closed:  # what is past the edge of its face is nearest to the edge
+    if closed:  # a point beyond the edge of its face is nearest to the edge
         flat = np.array([one.Surface.TypeId == "Part::GeomPlane" for one in faces])[face[triangle]]
         slack = np.where(flat, 1e-6, MAX_FOOT_GAP_DEFLECTIONS * deflection + TURNED * np.abs(rough))
         past = np.linalg.norm(foot - mesh_foot, axis=1) > slack

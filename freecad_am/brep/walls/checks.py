@@ -21,14 +21,14 @@ from ...core.issues import InputError
 from ...core.types import Array, Index, Mask
 from .sheet import SEWN
 
-CREASE = np.radians(1.0)  # of the normals of two faces along their common edge
-SLIT = 0.2  # mm; boundaries of two faces nearer than this are a gap between them, not a design
-STEP = 1e-5  # of the size of a parameter's step, for curvatures
-PLACES = 96  # up and around a tube at which its radii are taken
+CREASE = np.radians(1.0)  # minimum angle between the normals of two faces at a crease
+SLIT = 0.2  # mm; maximum width of an unintended gap between face boundaries
+STEP = 1e-5  # parameter step for curvatures, relative to the parameter range
+PLACES = 96  # number of radius samples along and around a tube
 
 
 def refuse_gaps(wall: PatchWall, label: str) -> None:
-    """InputError GAP where faces that should join do not, or are nowhere near each other."""
+    """Raise InputError GAP if faces that should join do not, or are far apart."""
     ends, _ = boundary(wall.triangles)
     if not len(ends):
         return
@@ -95,7 +95,7 @@ def _owners(wall: PatchWall, ends: Index) -> Index:
 
 
 def _to_segments(points: Array, segments: Array) -> Array:
-    """Distances (n, k) of points (n, 3) to segments (n, k, 2, 3)."""
+    """Return distances (n, k) of points (n, 3) to segments (n, k, 2, 3)."""
     start, chord = segments[:, :, 0], segments[:, :, 1] - segments[:, :, 0]
     t = np.clip(
         dot(points[:, None] - start, chord) / np.maximum(dot(chord, chord), 1e-300), 0.0, 1.0
@@ -105,7 +105,7 @@ def _to_segments(points: Array, segments: Array) -> Array:
 
 
 def refuse_creases(wall: PatchWall, shape: Any, label: str) -> None:
-    """InputError CREASE where two faces meet at an angle, BRANCHING_FACES where three meet."""
+    """Raise InputError CREASE if two faces meet at an angle, BRANCHING_FACES if three meet."""
     edges = Edges(wall.triangles)
     middle = wall.vertices[edges.ends].mean(axis=1)
     if (edges.count > 2).any():
@@ -158,8 +158,9 @@ def _edge_at(shape: Any, point: Array) -> str:
 
 
 def refuse_tight(wall: PatchWall, selected: Mask, height: float, label: str) -> None:
-    """InputError LAYER_HEIGHT where the smaller principal radius of the vertices `selected` (n,) is
-    below the layer height.
+    """Raise InputError LAYER_HEIGHT if a principal radius of the wall is below the layer height.
+
+    selected: mask (n,) of the vertices to check.
     """
     radius, patch = smallest_radii(wall)
     radius = np.where(selected, radius, np.inf)
@@ -173,11 +174,13 @@ def refuse_tight(wall: PatchWall, selected: Mask, height: float, label: str) -> 
 
 
 def refuse_tight_tube(tube: SurfaceWall, height: float, label: str) -> None:
-    """InputError LAYER_HEIGHT where the smaller principal radius of a tube, from its first layer to its end, is below the
-    layer height."""
+    """Raise InputError LAYER_HEIGHT if a principal radius of a tube is below the layer height.
+
+    The tube is checked from its first layer to its end.
+    """
     surface = tube.surface()
     low, around = surface.inverse(tube.first[:: max(1, len(tube.first) // PLACES)])
-    rise = np.linspace(0.0, 1.0, PLACES)[1:-1, None]  # steps stay inside
+    rise = np.linspace(0.0, 1.0, PLACES)[1:-1, None]  # keep difference steps inside the surface
     u = low + rise * (tube.end - low)
     v = np.broadcast_to(around, u.shape)
     slopes = surface.derivatives(u, v)[1:]
@@ -208,7 +211,7 @@ def _refuse_below(height: float, radius: float, point: Array, where: str) -> Non
 
 
 def smallest_radii(wall: PatchWall) -> tuple[Array, Index]:
-    """Smallest principal radius (n,) mm at each vertex, and the patch (n,) it was taken from."""
+    """Return the minimum principal radius (n,), mm, and the patch index (n,), at each vertex."""
     corner = np.zeros(len(wall.vertices), dtype=np.intp)
     corner[wall.triangles.ravel()] = np.arange(wall.triangles.size)
     patch = wall.patch[corner // 3]
@@ -219,7 +222,7 @@ def smallest_radii(wall: PatchWall) -> tuple[Array, Index]:
         surface_patch, uv_inside = wall.patches[k], uv[members]
         reach = np.maximum(np.ptp(wall.uv[wall.patch == k].reshape(-1, 2), axis=0), 1e-9)
         middle = wall.uv[wall.patch == k].reshape(-1, 2).mean(axis=0)
-        uv_inside = middle + (1.0 - 4.0 * STEP) * (uv_inside - middle)  # steps stay inside
+        uv_inside = middle + (1.0 - 4.0 * STEP) * (uv_inside - middle)  # keep steps inside
         slopes, turns = [], []
         for axis in (0, 1):
             step = STEP * reach[axis] * np.eye(2)[axis]
@@ -234,8 +237,10 @@ def smallest_radii(wall: PatchWall) -> tuple[Array, Index]:
 
 
 def principal_radii(slopes: Sequence[Array], turns: Sequence[Array]) -> Array:
-    """Smaller principal radius (...,) mm, given the derivatives (..., 3) of point and unit normal along both parameters;
-    infinite at poles."""
+    """Return the smaller principal radius (...,), mm; infinite at poles.
+
+    slopes, turns: derivatives (..., 3) of point and unit normal along both parameters.
+    """
     a, b, c = dot(slopes[0], slopes[0]), dot(slopes[0], slopes[1]), dot(slopes[1], slopes[1])
     e, g = dot(slopes[0], turns[0]), dot(slopes[1], turns[1])
     f = 0.5 * (dot(slopes[0], turns[1]) + dot(slopes[1], turns[0]))

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls of any connected smooth faces: full tubes and open shells, with openings and slanted
-ends, on any substrate, from start edges or without."""
+"""Walls of any connected smooth faces, on any substrate, on the platform or from start edges.
+
+Full tubes and open shells are supported, with openings and slanted ends.
+"""
 
 from __future__ import annotations
 
@@ -29,12 +31,13 @@ from .checks import refuse_creases, refuse_gaps, refuse_tight, smallest_radii
 from .sheet import MAX_TRIANGLES, Substrate, sheet
 
 SAMPLES = 9
-DIGITS = 3  # decimals of mm; edges of unsewn faces are closer
+DIGITS = 3  # decimals of mm; coincident edges of unsewn faces agree to this precision
 
 
 def standing_edges(faces: Sequence[Any], lowest: float) -> list[Any]:
-    """Edges of faces that are within TOUCH of the plane Z = `lowest` mm, through the faces' lowest
-    point, and that bound only one face.
+    """Return the free edges of faces that lie within TOUCH_MM of the platform.
+
+    A free edge bounds only one face. lowest: Z of the platform, the lowest point of the faces, mm.
     """
     edges_by_key: dict[tuple[float, ...], list[Any]] = {}
     for face in faces:
@@ -51,7 +54,7 @@ def standing_edges(faces: Sequence[Any], lowest: float) -> list[Any]:
 
 
 def stand(faces: Sequence[Any]) -> bool:
-    """Whether faces have such edges."""
+    """Whether faces have free edges on the platform."""
     vertices, _ = triangles_of(Part.Compound([face.copy(False) for face in faces]), DEFLECTION)
     return len(vertices) > 0 and bool(standing_edges(faces, float(vertices[:, 2].min())))
 
@@ -59,20 +62,20 @@ def stand(faces: Sequence[Any]) -> bool:
 BENT, FOLDED = (
     0.3,
     -0.7,
-)  # cosines between the normals at the ends of an edge, and at the ends of a short section
+)  # maximum cosines between the normals at the ends of an edge, and of a short section of it
 STEPS, CLOSER = (
     np.linspace(0.0, 1.0, 33),
     4,
-)  # samples of the normal on an edge, and refinements between two samples
+)  # samples of the normal along an edge (fractions), and number of refinements between samples
 MAX_TESTED_CUTS, CLOSING_STEPS = (
     12,
     20,
-)  # cuts of triangles that are followed up, and steps to the place where the faces meet
-CROSSING = 0.05  # rad; faces that touch at less run into each other, or are the same one
+)  # maximum number of triangle cuts to test, and of iterations to the crossing of the exact faces
+CROSSING = 0.05  # rad; minimum angle of crossing faces; below, the faces are tangent or the same
 
 
 def refuse_folded(wall: PatchWall, label: str) -> None:
-    """InputError SELF_INTERSECTION where the surface of a face folds back: its normal turns over at once."""
+    """Raise InputError SELF_INTERSECTION if a face folds back, flipping its normal abruptly."""
     for k, patch in enumerate(wall.patches):
         uv = wall.uv[wall.patch == k]
         if patch.kind != SPLINE or not len(uv):
@@ -83,7 +86,7 @@ def refuse_folded(wall: PatchWall, label: str) -> None:
         if not bent.any():
             continue
         start, end = start[bent], end[bent]
-        # a sharp nose turns over within a part of a step, a fold at once however small the step is
+        # at a sharp nose the normal turns gradually under refinement; at a fold it always flips
         for _ in range(CLOSER):
             line = start[:, None] + STEPS[None, :, None] * (end - start)[:, None]
             normal = patch.at(line.reshape(-1, 2))[1].reshape(line.shape[:2] + (3,))
@@ -107,7 +110,7 @@ def refuse_folded(wall: PatchWall, label: str) -> None:
 FOLDS_TUBE = Text("use a bend radius larger than the tube radius")
 FOLDS = Text("redraw it with a larger radius there, or divide it and deposit its parts in turn")
 MIN_BEND_SHARE = (
-    0.02  # least distance, as a share of the length of a tube, of places that cross in a bend
+    0.02  # minimum distance along the tube of crossing triangles in a bend, fraction of tube length
 )
 
 
@@ -127,22 +130,25 @@ def _remedy(wall: PatchWall, triangles: tuple[int, int]) -> str:
 
 
 def _is_bend(wall: PatchWall, patch: int, triangles: tuple[int, int]) -> bool:
-    """Whether two triangles of a tube, a patch that closes one way, are at different positions
-    along the tube.
+    """Whether two crossing triangles are at different positions along a tube.
+
+    A tube is a patch that is closed in one direction.
     """
     closed = np.array(wall.patches[patch].periods) > 0.0
     if closed.sum() != 1:
         return bool(closed.all())
     along = wall.uv[..., int(np.argmin(closed))]
-    # the triangles of a skin that crosses itself overlap along it, those of a bend are far apart
+    # triangles of a self-crossing skin overlap along the tube; triangles in a bend are far apart
     low, high = along[list(triangles)].min(axis=1), along[list(triangles)].max(axis=1)
     gap = low.max() - high.min()
     return bool(gap > MIN_BEND_SHARE * np.ptp(along[wall.patch == patch]))
 
 
 def refuse_crossing(wall: PatchWall, label: str) -> None:
-    """InputError SELF_INTERSECTION where triangles of the wall that are not neighbours cut each other, and the exact faces
-    do so too."""
+    """Raise InputError SELF_INTERSECTION if the wall intersects itself.
+
+    Triangles that are not neighbours must cut each other, and the exact faces too.
+    """
     corner = wall.vertices[wall.triangles]
     normal = doubled_areas(corner)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
@@ -151,7 +157,7 @@ def refuse_crossing(wall: PatchWall, label: str) -> None:
     for pairs in near_pairs(middle, reach):
         chord = middle[pairs[:, 1]] - middle[pairs[:, 0]]
         length = np.maximum(np.linalg.norm(chord, axis=1), 1e-300)
-        # neighbours on a smooth wall are about level with each other
+        # neighbours on a smooth wall are nearly coplanar
         odd = np.abs(dot(chord, normal[pairs[:, 0]])) > 0.3 * length
         odd |= dot(normal[pairs[:, 0]], normal[pairs[:, 1]]) < 0.7
         pairs = pairs[odd]
@@ -171,8 +177,9 @@ def _refuse_cuts(
     cut_triangles: Index,
     label: str,
 ) -> None:
-    """InputError SELF_INTERSECTION where edges of `edge_triangles` (k,) cut `cut_triangles` (k,)
-    and the exact faces cut as well.
+    """Raise InputError SELF_INTERSECTION if edges of triangles cut the paired triangles.
+
+    edge_triangles, cut_triangles: paired triangle indices (k,). The exact faces must cut too.
     """
     for k in range(3):
         start, end = corner[edge_triangles, k], corner[edge_triangles, (k + 1) % 3]
@@ -202,8 +209,9 @@ def _refuse_cuts(
 
 
 def _crossing(wall: PatchWall, triangles: tuple[int, int], point: Array) -> Array | None:
-    """The point where the exact faces cut each other near the cut of two triangles at `point`, or
-    None.
+    """Return the point where the exact faces cross near the cut of two triangles at `point`.
+
+    None if the exact faces do not cross there.
     """
     estimate = point[None]
     patches = [wall.patches[wall.patch[k]] for k in triangles]
@@ -216,7 +224,7 @@ def _crossing(wall: PatchWall, triangles: tuple[int, int], point: Array) -> Arra
         separation = float(np.linalg.norm(foot - other_foot))
         if separation < 1e-6 or np.linalg.norm(foot[0] - point) > 2.0 * wall.mesh.longest_edge:
             break
-        # where the two tangent planes meet, nearest to the middle between the feet
+        # move to the intersection line of the two tangent planes, nearest to the estimate
         planes = np.stack([foot_normal[0], other_normal[0]])
         gap = np.array(
             [
@@ -229,11 +237,11 @@ def _crossing(wall: PatchWall, triangles: tuple[int, int], point: Array) -> Arra
     return foot[0] if separation < 1e-6 and steep else None
 
 
-EQUILATERAL_AREA = 0.433  # area of a triangle with equal sides of 1
+EQUILATERAL_AREA = 0.433  # area of an equilateral triangle with side length 1
 COARSE, SHARE = (
     4.0,
     0.04,
-)  # edge lengths of the first mesh, which gives the radii: shares of the layer height and of the wall's size
+)  # edge length of the first mesh, for radii: fractions of layer height and wall size
 
 
 def find_patch_wall(
@@ -244,12 +252,13 @@ def find_patch_wall(
     label: str = "part",
     start_edges: Sequence[str] = (),
 ) -> PatchWall:
-    """The wall of the faces `named` of a shape, for layers of `height` mm, on a substrate, from
-    edges of its own, or from its edges on the platform.
+    """Build the wall of the faces `named` of a shape, for layers of `height` mm.
 
-    It starts from every curve in which it leaves the substrate; an issue locates them if there are
-    several. Raises InputError GAP, CREASE, BRANCHING_FACES, SELF_INTERSECTION, LAYER_HEIGHT,
-    ROUGH_WALL, TOO_FINE, NOT_ORIENTABLE, NO_CONTACT, INSIDE, NO_START, UNKNOWN_EDGE.
+    The wall starts from `start_edges`, or else from every curve in which it leaves the substrate,
+    or without a substrate from its edges on the platform. An issue locates several start curves.
+
+    Raises InputError GAP, CREASE, BRANCHING_FACES, SELF_INTERSECTION, LAYER_HEIGHT, ROUGH_WALL,
+    TOO_FINE, NOT_ORIENTABLE, NO_CONTACT, INSIDE, NO_START, UNKNOWN_EDGE.
     """
     _refuse_fine(named, height)
     wall = sheet(named, _edge(named, height, label), label)
@@ -282,7 +291,10 @@ def find_patch_wall(
 def _from_platform(
     wall: PatchWall, faces: Sequence[Any], label: str
 ) -> tuple[list[FirstCurve], list[Issue]]:
-    """The edges on the platform, and a note. Raises InputError NO_SUBSTRATE."""
+    """Return the first curves along edges on the platform, and a note.
+
+    Raises InputError NO_SUBSTRATE if no edge is on the platform.
+    """
     lowest = wall.vertices[np.argmin(wall.vertices[:, 2])]
     edges = standing_edges(faces, float(lowest[2]))
     if not edges:
@@ -304,7 +316,7 @@ def _from_platform(
 
 
 def several_loops(curves: Sequence[FirstCurve], label: str) -> list[Issue]:
-    """A note if a wall has several first curves."""
+    """Return a note if a wall has several first curves."""
     if len(curves) < 2:
         return []
     positions = Text.joined(", ", (place(curve.points.mean(axis=0)) for curve in curves))
@@ -323,7 +335,7 @@ def several_loops(curves: Sequence[FirstCurve], label: str) -> list[Issue]:
 
 
 def _refuse_fine(named: Sequence[tuple[str, Any]], height: float) -> None:
-    """InputError TOO_FINE where even triangles with sides of a layer height are more than a mesh may have."""
+    """Raise InputError TOO_FINE if a mesh with edges of a layer height exceeds MAX_TRIANGLES."""
     area = sum(face.Area for _, face in named)
     about, enough = (
         area / (EQUILATERAL_AREA * height) / height,
@@ -343,15 +355,20 @@ def _refuse_fine(named: Sequence[tuple[str, Any]], height: float) -> None:
 
 
 def _edge(named: Sequence[tuple[str, Any]], height: float, label: str) -> float:
-    """Longest edge of the mesh: the layer height, a quarter of the wall's smallest radius if that is less."""
-    # checked early: where a surface is bent that tightly, a finer mesh takes long
+    """Return the maximum mesh edge length, mm: a quarter of the minimum radius of the wall.
+
+    The length is limited to between 0.25 and 1 layer heights.
+    """
+    # take radii from a coarse mesh, because a fine mesh of a tightly bent surface takes long
     radius = float(smallest_radii(sound(named, label, COARSE * height))[0].min())
     return float(np.clip(0.25 * radius, 0.25 * height, height))
 
 
 def sound(named: Sequence[tuple[str, Any]], label: str, edge: float = 0.0) -> PatchWall:
-    """A coarse mesh of the faces, edges not longer than `edge` mm or a share of their size, without
-    self-intersection. Raises InputError SELF_INTERSECTION, and the errors of `sheet`.
+    """Return a coarse mesh of the faces, checked for self-intersection.
+
+    Mesh edges are at most `edge` mm or a fraction of the faces' size. Raises InputError
+    SELF_INTERSECTION, and the errors of `sheet`.
     """
     size = Part.Compound([face for _, face in named]).BoundBox.DiagonalLength
     coarse = sheet(named, max(edge, SHARE * size), label)
@@ -361,7 +378,7 @@ def sound(named: Sequence[tuple[str, Any]], label: str, edge: float = 0.0) -> Pa
 
 
 def _outward(wall: PatchWall, shape: Any) -> PatchWall:
-    """The wall with its outer side outwards: as the faces of a solid look, or away from what the wall surrounds."""
+    """Orient the wall outwards: as the faces of a solid, or away from the enclosed volume."""
     if shape.Solids:
         return wall
     if outward_volume(wall) >= 0.0:
@@ -377,14 +394,15 @@ def _outward(wall: PatchWall, shape: Any) -> PatchWall:
 def from_substrate(
     wall: PatchWall, substrate: Substrate, rims: Any, label: str
 ) -> tuple[list[FirstCurve], Mask, list[Issue]]:
-    """The curves where a wall leaves its substrate, its vertices (n,) behind them, and notes.
-    Raises InputError NO_CONTACT, INSIDE, OWN_SUBSTRATE.
+    """Return the curves where a wall leaves its substrate, vertices behind them, and notes.
+
+    The vertices are given as a mask (n,). Raises InputError NO_CONTACT, INSIDE, OWN_SUBSTRATE.
     """
     ground = substrate.ground(wall.mesh.typical_edge)
     value = contact.ground_distances(wall, ground)
     if np.abs(value).max() < contact.TOUCH_MM + getattr(
         wall, "smoothing", 0.0
-    ):  # a mesh's smooth surface is off it
+    ):  # the smooth surface of a mesh wall deviates from the mesh by `smoothing`
         raise InputError(
             "OWN_SUBSTRATE",
             label,
@@ -445,8 +463,11 @@ def from_substrate(
 
 
 def _stays_in(wall: PatchWall, outside: Mask, substrate: Substrate) -> Mask:
-    """Vertices of the parts of the wall that are out of the substrate but never leave its box (a stub in the bore of a
-    pipe), while another part does."""
+    """Return a mask of vertices in wall parts to drop, such as a stub in the bore of a pipe.
+
+    Such a part is outside the substrate but never leaves the substrate's bounding box. Nothing is
+    dropped unless another part leaves the box.
+    """
     low, high = substrate.solid.vertices.min(axis=0), substrate.solid.vertices.max(axis=0)
     leaves = ((wall.vertices < low - 1e-3) | (wall.vertices > high + 1e-3)).any(axis=1)
     count, component = connected_parts(wall, outside)
@@ -457,18 +478,20 @@ def _stays_in(wall: PatchWall, outside: Mask, substrate: Substrate) -> Mask:
     return dropped if goes.any() and not_kept.any() else np.zeros(len(outside), dtype=bool)
 
 
-# ---- Edges of the part chosen as the first layer
+# ---- Part edges selected as the first layer
 
-ON_WALL = 1e-3  # mm
-NODE_TOLERANCE_MM = 1e-5  # mm between nodes, at the THIRDS of each arc
+ON_WALL = 1e-3  # mm; maximum distance of a start edge from the wall
+NODE_TOLERANCE_MM = 1e-5  # mm; maximum deviation between nodes, tested at THIRDS of each arc
 THIRDS = np.array([1.0 / 3.0, 2.0 / 3.0])
 ROUNDS = 12
-SMOOTH = np.radians(1.0)  # smaller turns from edge to edge are not corners
+SMOOTH = np.radians(1.0)  # minimum angle of a corner between edges
 
 
 def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> list[FirstCurve]:
-    """The chains and loops that the edges form, on the wall.
-    Raises InputError UNKNOWN_EDGE, NO_START (off the wall)."""
+    """Return the chains and loops of the named edges, projected onto the wall.
+
+    Raises InputError UNKNOWN_EDGE; NO_START for an edge off the wall.
+    """
     edges = []
     for name in dict.fromkeys(names):
         number = int(name.removeprefix("Edge")) if name.removeprefix("Edge").isdigit() else 0
@@ -496,7 +519,7 @@ def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> 
 
 
 def curves_along(edges: Sequence[Any], wall: PatchWall) -> list[FirstCurve]:
-    """The chains and loops that edges of the wall's faces form."""
+    """Return the chains and loops of edges of the wall faces."""
     return [_curve(chain, wall) for chain in Part.sortEdges(list(edges))]
 
 
@@ -523,8 +546,10 @@ def _curve(chain: list[Any], wall: PatchWall) -> FirstCurve:
 
 
 def sampled(edge: Any, step: float) -> tuple[Array, Array]:
-    """Points and unit tangents (n, 3) of an edge the way it runs, so dense that the arcs between
-    them stay within NODE_TOLERANCE_MM; about `step` mm apart at most.
+    """Sample points and unit tangents (n, 3) along an edge, in the direction of the edge.
+
+    The spacing is at most about `step` mm. The arcs between points deviate from the edge by at most
+    NODE_TOLERANCE_MM.
     """
     low, high = edge.ParameterRange
     count = step_count(edge.Length, step, 8) + 1
@@ -550,7 +575,7 @@ def sampled(edge: Any, step: float) -> tuple[Array, Array]:
 
 
 def _nodes(edge: Any, t: Array) -> tuple[Array, Array]:
-    """Points and unit tangents (n, 3) at the parameters (n,), the tangents the way these run."""
+    """Return points and unit tangents (n, 3) at parameters (n,), tangents in parameter order."""
     points = np.array([tuple(edge.valueAt(parameter)) for parameter in t.tolist()])
     along = np.array([tuple(edge.Curve.tangent(parameter)[0]) for parameter in t.tolist()])
     along /= np.linalg.norm(along, axis=1, keepdims=True)

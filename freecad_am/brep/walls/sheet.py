@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Connected faces as one sheet: a patch for each face and one watertight mesh, oriented to one
-side.
-"""
+"""Connected faces as one sheet: one patch per face and one watertight mesh, uniformly oriented."""
 
 from __future__ import annotations
 
@@ -9,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-import FreeCAD  # noqa: F401  Part crashes the process when it is loaded before FreeCAD
+import FreeCAD  # noqa: F401  Part crashes the process if imported before FreeCAD
 import numpy as np
 import Part
 
@@ -31,18 +29,18 @@ from ..shapes.no_solid import no_solid
 from ..shapes.tessellate import ANGLE, Tessellation, body, tessellated, welded
 from .surface_patch import Places, patch_of
 
-SEWN = 0.01  # mm; closer edges of faces are merged
+SEWN = 0.01  # mm; maximum distance of face edges to merge
 MAX_TRIANGLES = 1_500_000  # triangles
-SECOND_TRY = 15000  # triangles that are not worth a second try
-EDGE_SHARES = (1.0, 0.84, 0.71, 0.59)  # first meshes of edges shorter by these shares
-SIDE_SAMPLES = 200  # triangles of a face that decide its side
-COLLAPSE = 0.55  # share of the longest edge; shorter edges are collapsed
+SECOND_TRY = 15000  # triangles; smaller meshes are accepted at the first attempt
+EDGE_SHARES = (1.0, 0.84, 0.71, 0.59)  # factors on the edge length of successive first meshes
+SIDE_SAMPLES = 200  # maximum number of triangles that decide the side of a face
+COLLAPSE = 0.55  # fraction of the maximum edge length; shorter edges are collapsed
 
 
 def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWall:
-    """The faces as a wall that neither starts nor ends anywhere yet, its edges not longer than `edge` mm.
+    """Mesh the faces as a wall without start and ends, with edges of at most `edge` mm.
 
-    Triangles are turned as the faces are, and all to one side. Raises InputError ROUGH_WALL,
+    Triangles are oriented as the faces, all to the same side. Raises InputError ROUGH_WALL,
     NOT_ORIENTABLE, TOO_FINE, and the errors of `kernel.refuse_bare`.
     """
     names, faces = [name for name, _ in named], [face for _, face in named]
@@ -61,7 +59,7 @@ def sheet(named: Sequence[tuple[str, Any]], edge: float, label: str) -> PatchWal
     )
     if (
         mesh is None and about < MAX_TRIANGLES
-    ):  # long needles, as on slanted tubes: turned edges reach from side to side
+    ):  # long needles, as on slanted tubes, where flipped edges reach from side to side
         sheet_places = Places(shape, patches, nodes, vertices, edge)
         mesh = refine_mesh(
             vertices, triangles, owner, edge, sheet_places.middles, MAX_TRIANGLES, flip=False
@@ -120,7 +118,7 @@ def _too_fine(edge: float, about: float, label: str) -> InputError:
 
 
 def facing(patch: Patch, corners: Array) -> Patch:
-    """The patch with its normals on the side from which the triangles (m, 3, 3) are counter-clockwise."""
+    """Orient a patch so that triangles `corners` (m, 3, 3) are counter-clockwise from outside."""
     corners = corners[:: max(1, len(corners) // SIDE_SAMPLES)]
     facets = doubled_areas(corners)
     normals = patch.at(patch.inverse(corners.mean(axis=1)))[1]
@@ -128,7 +126,7 @@ def facing(patch: Patch, corners: Array) -> Patch:
 
 
 def _sewn(faces: list[Any]) -> tuple[Any, list[int]]:
-    """The faces as one shape that shares edges, and for each of its faces which of the given ones it is."""
+    """Sew faces to one shape; return the shape and the index of each of its faces in `faces`."""
     shape = Part.Compound(faces)
     if len(faces) > 1:
         shape.sewShape(SEWN)
@@ -148,8 +146,10 @@ def _sewn(faces: list[Any]) -> tuple[Any, list[int]]:
 
 
 def tessellated_for(shape: Any, edge: float) -> tuple[Tessellation, float]:
-    """The tessellation, out of several, that needs the fewest triangles after halving edges down to
-    at most `edge`, and about how many: halves of slightly long edges are far too short.
+    """Return the best of several tessellations, and the estimated number of triangles.
+
+    The best tessellation needs the fewest triangles after halving edges to at most `edge` mm:
+    halves of slightly too long edges are much too short.
     """
     candidates: list[tuple[float, Tessellation]] = []
     for share in EDGE_SHARES:
@@ -162,7 +162,7 @@ def tessellated_for(shape: Any, edge: float) -> tuple[Tessellation, float]:
 
 
 def _orient_triangles(triangles: Index, owner: Index, names: list[str], label: str) -> Index:
-    """The triangles, with some faces flipped so that neighbours agree. Raises InputError NOT_ORIENTABLE."""
+    """Flip faces so that neighbouring triangles agree. Raises InputError NOT_ORIENTABLE."""
     edges = Edges(triangles)
     half = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2)
     forward = half[:, :, 0] < half[:, :, 1]
@@ -214,15 +214,17 @@ def _twisted(label: str, face_name: str, other_name: str) -> InputError:
     )
 
 
-CHORD = 0.1  # mm between a solid and its triangles
-WELD_MM = 1e-5  # mm; closer vertices of a mesh are merged
-CROSSED = 0.01  # mm; a mesh that cuts itself by no more only touches itself
+CHORD = 0.1  # mm; chord error of a solid's triangles
+WELD_MM = 1e-5  # mm; maximum distance of mesh vertices to merge
+CROSSED = 0.01  # mm; maximum overlap of a mesh that counts as touching itself
 
 
 @dataclass(frozen=True)
 class Substrate:
-    """shape: a Part.Shape with solids, None for a mesh. solid: the mesh, or the solid's triangles
-    within CHORD; then face: (m,) the face of each, from 0. issues: notes on repairs of a mesh.
+    """A substrate.
+
+    shape: a Part.Shape with solids, None for a mesh. solid: the mesh, or the triangles of the shape
+    within CHORD. face: (m,) face index of each triangle of a shape. issues: notes on mesh repairs.
     """
 
     label: str
@@ -232,7 +234,7 @@ class Substrate:
     issues: tuple[Issue, ...] = ()
 
     def ground(self, edge: float) -> Ground:
-        """Prepared for a wall whose mesh has edges of `edge` mm."""
+        """Return the ground for a wall whose mesh has edges of `edge` mm."""
         if self.shape is None:
             return FacetGround(self.solid, edge)
         corners = self.solid.vertices[self.solid.triangles]
@@ -244,8 +246,9 @@ class Substrate:
 
 
 def substrate_of(source: Any, label: str, mend: float = 0.0) -> Substrate:
-    """The substrate of a Part.Shape or of a mesh (a Body, or a Mesh.Mesh), in part coordinates. mend: the largest hole of a
-    mesh that is closed, mm.
+    """Return the substrate of a Part.Shape or a mesh (Body or Mesh.Mesh), in part coordinates.
+
+    mend: maximum size of a mesh hole to close, mm.
 
     Raises InputError NO_SOLID, INSIDE_OUT, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, SELF_CROSSING.
     """
@@ -280,7 +283,7 @@ def substrate_of(source: Any, label: str, mend: float = 0.0) -> Substrate:
 
 
 def _as_one(shape: Any) -> Any:
-    """The shape with touching solids fused, as the contact between them is not an outside."""
+    """Return the shape with touching solids fused, because their contact is not an outer face."""
     solids = shape.Solids
     boxes = [solid.BoundBox for solid in solids]
     box_overlaps = [
@@ -293,9 +296,11 @@ def _as_one(shape: Any) -> Any:
 def mesh_solid(
     points: Any, triangles: Any, label: str, mend: float = 0.0
 ) -> tuple[SolidMesh, tuple[Issue, ...]]:
-    """The solid of a mesh's points (n, 3) and triangles (m, 3), points closer than WELD_MM merged,
-    triangles that then lack a corner left out; else the mesh as `mesh_repair` repairs it, with
-    notes. Raises InputError NO_SOLID, BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE, SELF_CROSSING.
+    """Return the solid of a mesh with points (n, 3) and triangles (m, 3), and notes on repairs.
+
+    Points closer than WELD_MM are merged, and degenerate triangles removed. An unsound mesh is
+    repaired. Raises InputError NO_SOLID, BAD_FILE, OPEN_MESH, NON_MANIFOLD, NOT_ORIENTABLE,
+    SELF_CROSSING.
     """
     if not len(triangles):
         raise InputError(

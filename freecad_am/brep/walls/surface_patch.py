@@ -18,18 +18,18 @@ from ...core.issues import InputError
 from ...core.types import Array, Index, Mask
 
 STEPS = 8
-NODE_MM = 1e-4  # mm between a vertex and the node of a tessellation that it came from
+NODE_MM = 1e-4  # mm; maximum distance between a vertex and its tessellation node
 MAX_MOVE_SHARE = (
-    0.7  # of half an edge; its middle is not moved farther than this on a smooth surface
+    0.7  # maximum movement of an edge midpoint on a smooth surface, fraction of half the edge
 )
 
 
 class Places:
-    """Move the new middles of edges onto their faces and edges.
+    """Move new edge midpoints onto their faces and edges.
 
-    It keeps the parameters of all vertices on spline faces: where a surface comes near itself the nearest
-    point may be the wrong one, so each is sought from its neighbours'. `nodes` in the constructor: for
-    each face the parameters (k, 2) of the first vertices (n, 3), in any order.
+    Parameters of all vertices on spline faces are stored. Where a surface comes close to itself,
+    the nearest point may be wrong, so each search starts from neighbouring parameters. nodes: for
+    each face, the parameters (k, 2) of the initial vertices (n, 3), in any order.
     """
 
     def __init__(
@@ -46,9 +46,10 @@ class Places:
                 self.uv[k][off < NODE_MM] = nodes[k][nearest_node[off < NODE_MM]]
 
     def middles(self, points: Array, adjacent: Index, ends: Index) -> Array:
-        """The middles (n, 3) of the edges between the vertices `ends` (n, 2), moved; they become the next vertices.
+        """Return the moved midpoints (n, 3) of the edges between vertices `ends` (n, 2).
 
-        adjacent: the faces (n, 2) on either side, -1 for none.
+        The midpoints become the next vertices. adjacent: face indices (n, 2) on both sides of each
+        edge, -1 for no face.
         """
         inner = adjacent[:, 0] == adjacent[:, 1]
         placed = points.copy()
@@ -67,7 +68,8 @@ class Places:
         return placed
 
     def _near(self, k: int, points: Array, ends: Index, inner: Mask) -> Array:
-        """Parameters of the points on patch k, next to the parameters of the ends of their edges;
+        """Return parameters of points on patch k, searched from the parameters of the edge ends.
+
         inner: mask of points to move.
         """
         patch, (start_uv, end_uv) = self.patches[k], (self.uv[k][ends[:, side]] for side in (0, 1))
@@ -85,7 +87,7 @@ class Places:
             < MAX_MOVE_SHARE * half[has_start]
         )
         uv_found[is_lost] = patch.inverse(points[is_lost])
-        # an edge across a narrow tube: the nearest place to its middle may be an end, and no halving would end
+        # across a narrow tube, the point nearest to a midpoint may be an end: halving never stops
         tips = [patch.at(side[is_lost])[0] for side in (start_uv, end_uv)]
         farther = [
             np.max([np.linalg.norm(patch.at(uv_point)[0] - tip, axis=1) for tip in tips], axis=0)
@@ -96,7 +98,7 @@ class Places:
         return uv_found
 
     def parameters(self, k: int, vertices: Array, used: Index) -> Array:
-        """Parameters (n, 2) on patch k of the vertices with the numbers `used` (n,)."""
+        """Return parameters (n, 2) on patch k of the vertices with indices `used` (n,)."""
         patch = self.patches[k]
         if k not in self.uv:
             return patch.inverse(vertices[used])
@@ -107,7 +109,7 @@ class Places:
 
 
 class _Curves:
-    """The edges of a shape as splines, for the nearest points on them."""
+    """Edges of a shape as splines, for nearest-point searches."""
 
     def __init__(self, shape: Any, edge: float) -> None:
         self.splines, points, spline_numbers, parameters = [], [], [], []
@@ -126,7 +128,7 @@ class _Curves:
         self.which, self.at = np.concatenate(spline_numbers), np.concatenate(parameters)
 
     def nearest(self, points: Array) -> Array:
-        """Nearest points (n, 3) on the edges."""
+        """Return the nearest points (n, 3) on the edges."""
         if not len(points):
             return points
         nearest_sample = self.tree.query(points)[1]
@@ -144,13 +146,14 @@ class _Curves:
 
 
 ERROR = 5e-5  # mm; maximum deviation of a patch from its face
-KINK = np.radians(1.0)  # a surface that turns more across a line of knots has an edge there
+KINK = np.radians(1.0)  # minimum angle of a crease along a knot line
 
 
 def patch_of(face: Any, where: str) -> Patch:
-    """The patch of a face; its sign is still open. Surfaces of revolution and extrusion become splines, exactly.
+    """Return the patch of a face, with undetermined sign.
 
-    Raises InputError ROUGH_WALL where the spline departs from the face, or has an edge.
+    Surfaces of revolution and extrusion are converted to splines exactly. Raises InputError
+    ROUGH_WALL if the spline deviates from the face or has a crease.
     """
     surface = face.Surface
     kind = surface.TypeId.removeprefix("Part::Geom")
@@ -211,7 +214,7 @@ def _spline(face: Any, where: str) -> Patch:
     else:
         surface = surface.copy()
     if surface.isUPeriodic() or surface.isVPeriodic():
-        # segment makes it not periodic with its ends repeated, which setUNotPeriodic does not do of a single span
+        # segment() removes periodicity and repeats the ends, unlike setUNotPeriodic for one span
         surface.segment(*surface.bounds())
     weights = np.array(surface.getWeights(), dtype=float)
     points = np.array([[tuple(point) for point in row] for row in surface.getPoles()])
@@ -232,7 +235,7 @@ def _spline(face: Any, where: str) -> Patch:
 
 
 def _refuse_kinks(patch: Patch, face: Any, where: str) -> None:
-    """InputError ROUGH_WALL where the spline has an edge along a line of knots."""
+    """Raise InputError ROUGH_WALL if the spline has a crease along a knot line."""
     ranges = np.reshape(face.ParameterRange, (2, 2))
     for axis, (knots, count) in enumerate(
         ((patch.knots_u, patch.poles.shape[0]), (patch.knots_v, patch.poles.shape[1]))
@@ -262,7 +265,7 @@ def _refuse_kinks(patch: Patch, face: Any, where: str) -> None:
 
 
 def _checked(patch: Patch, face: Any, where: str) -> Patch:
-    """The patch, if it is the face's surface. Raises InputError ROUGH_WALL."""
+    """Return the patch if it matches the surface of the face. Raises InputError ROUGH_WALL."""
     low_u, high_u, low_v, high_v = face.ParameterRange
     surface = face.Surface
     parameters = [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A wall around one closed direction from the faces of a shape: torus, cylinder, cone, or any closed surface as a table."""
+"""Tube-like walls from shape faces: torus, cylinder, cone, or a tabulated closed surface."""
 
 from __future__ import annotations
 
@@ -15,15 +15,18 @@ from ...core.issues import InputError, Word
 from ...core.types import Array
 
 AGREEMENT_MM = 1e-6  # mm; faces of one surface agree within this
-TABLE_ERROR = 5e-5  # mm, between the places a table was taken from
+TABLE_ERROR = 5e-5  # mm; maximum interpolation error between the samples of a table
 SMALLEST_TABLE, LARGEST_TABLE = (24, 48), (384, 768)
-SMOOTH = 1e-6  # rad of turn allowed where a closed surface meets itself
+SMOOTH = 1e-6  # maximum difference of the unit tangents at the seam of a closed surface
 _ANALYTIC = {"Part::GeomToroid": TORUS, "Part::GeomCylinder": CONE, "Part::GeomCone": CONE}
 
 
 @dataclass(frozen=True, eq=False)
 class Tube:
-    """A tube-like surface in part coordinates, u from 0 at its lower end to `end`. See `SurfaceWall` for the rest."""
+    """A tube-like surface in part coordinates. u runs from 0 at the lower end to `end`.
+
+    `SurfaceWall` describes the other fields.
+    """
 
     kind: str
     sizes: tuple[float, ...]
@@ -36,7 +39,7 @@ class Tube:
     period: float = TURN
 
     def surface(self) -> Placed:
-        """The surface in part coordinates."""
+        """Return the surface in part coordinates."""
         return Placed(
             own_surface(self.kind, self.sizes, self.u, self.v, self.table, self.period), self.frame
         )
@@ -45,11 +48,11 @@ class Tube:
 def tubes(
     shape: Any, names: Sequence[str], label: str
 ) -> tuple[list[tuple[str, Any]], tuple[Tube, Tube]]:
-    """The faces of the wall and its surface, described from each end: (named faces, (from one end,
-    from the other)).
+    """Return the named wall faces, and their surface as two tubes, one starting from each end.
 
-    names: of the wall's faces; when left out the only face that is not flat. Raises InputError NO_WALL, UNKNOWN_FACE,
-    NOT_ONE_SURFACE (faces of different surfaces), NOT_CLOSED (the wall has no closed direction).
+    names: names of the wall faces; empty for the only curved face. Raises InputError NO_WALL,
+    UNKNOWN_FACE; NOT_ONE_SURFACE for faces of different surfaces; NOT_CLOSED for a wall without a
+    closed direction.
     """
     named = _chosen(shape, names, label)
     first_name, first_face = named[0]
@@ -76,8 +79,9 @@ def tubes(
 
 
 def faces_by_name(shape: Any, names: Sequence[str], label: str) -> dict[str, Any]:
-    """The faces of a shape by their names, Face1 and on. Raises InputError NO_WALL without any,
-    UNKNOWN_FACE for a name that the shape lacks.
+    """Return all faces of a shape by name (Face1 and so on).
+
+    Raises InputError NO_WALL for a shape without faces, UNKNOWN_FACE for an unknown name.
     """
     if shape is None or shape.isNull() or not shape.Faces:
         raise InputError("NO_WALL", label, "it has no faces; choose a part with wall faces")
@@ -108,7 +112,7 @@ def _chosen(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any
 
 
 def _refuse_other(first_face: Any, face: Any, where: str, first_name: str) -> None:
-    """InputError unless both faces share one surface."""
+    """Raise InputError unless both faces have the same surface."""
     surface = first_face.Surface
     low_u, high_u, low_v, high_v = face.ParameterRange
     points = [
@@ -129,7 +133,10 @@ def _refuse_other(first_face: Any, face: Any, where: str, first_name: str) -> No
 
 
 def _ranges(faces: list[Any], kind: str, label: str) -> tuple[float, float]:
-    """Range of the rising parameter of the first face's surface; NOT_CLOSED where the faces do not close around."""
+    """Return the range of the axial parameter of the first face's surface.
+
+    Raises InputError NOT_CLOSED if the faces do not close around the tube.
+    """
     surface, rising, around = faces[0].Surface, [], []
     for face in faces:
         low_u, high_u, low_v, high_v = face.ParameterRange
@@ -165,7 +172,10 @@ def _ranges(faces: list[Any], kind: str, label: str) -> tuple[float, float]:
 
 
 def _about(middle: float, own_range: tuple[float, float], period: float) -> tuple[float, float]:
-    """A range as wide as the face's own about a middle given on the first surface, near the face's own middle."""
+    """Return a range as wide as `own_range`, centred at `middle` on the first surface.
+
+    If `middle` differs from the centre of `own_range` by whole periods, keep `own_range`.
+    """
     half, own_middle = 0.5 * (own_range[1] - own_range[0]), 0.5 * (own_range[0] + own_range[1])
     if (
         period
@@ -176,7 +186,7 @@ def _about(middle: float, own_range: tuple[float, float], period: float) -> tupl
 
 
 def _covered(ranges: list[tuple[float, float]]) -> bool:
-    """Whether ranges of an angle cover the full turn."""
+    """Whether angle ranges cover a full revolution."""
     ends = sorted((float(np.mod(low, TURN)), high - low) for low, high in ranges)
     reached = ends[0][0]
     for low, width in ends:
@@ -271,7 +281,7 @@ def _tables(face: Any, faces: tuple[str, ...], label: str) -> tuple[Tube, Tube]:
                 m,
             )
         n, m = 2 * n, 2 * m
-    turned = points[::-1, ::-1]  # both ways, so that the outside stays outside
+    turned = points[::-1, ::-1]  # reverse both directions, so that the outside stays outside
     return (
         Tube(TABLE, (), np.eye(4), span, faces, u, v, points, period),
         Tube(TABLE, (), np.eye(4), span, faces, u, v, np.ascontiguousarray(turned), period),
@@ -289,7 +299,7 @@ def _refuse_seam(
     around: tuple[float, float],
     where: str,
 ) -> None:
-    """InputError where a closed surface has an edge along its seam."""
+    """Raise InputError ROUGH_WALL if a closed surface has a crease along its seam."""
     for a in np.linspace(*along, 5)[1:-1]:
         ends = [surface.tangent(b, a)[0] if closed_u else surface.tangent(a, b)[1] for b in around]
         tangent, other_tangent = (_unit(_array(end)) for end in ends)

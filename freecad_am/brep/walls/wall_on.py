@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The wall on a substrate, as the layers of the most exact kind that its faces allow."""
+"""Walls on a substrate, in the most exact representation that the faces allow."""
 
 from __future__ import annotations
 
@@ -40,13 +40,12 @@ from .patch_wall import EQUILATERAL_AREA, find_patch_wall, from_substrate, sever
 from .sheet import Substrate, substrate_of
 from .wall import Tube, faces_by_name, tubes
 
-# ---- Where a wall leaves its substrate: the intersection by OpenCASCADE, in order, brought onto
-# both surfaces
+# ---- Intersection of wall and substrate by OpenCASCADE, ordered and projected onto both surfaces
 
-TOUCH = 0.05  # mm; a wall that ends this short of its substrate counts as touching
-ON_EDGE = 1e-3  # mm; tolerance of an edge on the end of the wall
+TOUCH = 0.05  # mm; maximum gap between a wall and its substrate
+ON_EDGE = 1e-3  # mm; tolerance of an edge at the end of the wall
 END_SAMPLES = 12  # samples around an end that decide which end is in the substrate
-POINTS = 480  # points of the first layer
+POINTS = 480  # number of points of the first layer
 STEPS = 12
 EXACT = 1e-9  # mm
 
@@ -58,16 +57,17 @@ def find_wall(
     label: str = "part",
     substrate_label: str = "substrate",
 ) -> SurfaceWall:
-    """The wall of a Part.Shape on the solid `substrate`, in the coordinates of both.
+    """Build the wall of a Part.Shape on the solid `substrate`, both in part coordinates.
 
-    The first layer is the loop in which the wall leaves the substrate for good; an issue reports
-    several loops. Raises the InputErrors of `brep.wall.tubes`, and NO_SOLID, INSIDE_OUT,
-    NO_CONTACT, OPEN_CONTACT, INSIDE, WALL_EDGE, SELF_INTERSECTION.
+    The first layer is the uppermost loop of the intersection. An issue reports several loops.
+
+    Raises the InputErrors of `brep.walls.wall.tubes`, and NO_SOLID, INSIDE_OUT, NO_CONTACT,
+    OPEN_CONTACT, INSIDE, WALL_EDGE, SELF_INTERSECTION.
     """
     solid = _solid(substrate, substrate_label)
     named, tubes_both_ways = tubes(shape, faces, label)
     if tubes_both_ways[0].kind == TABLE:
-        sound(named, label)  # the kernel may crash on faces that cut themselves
+        sound(named, label)  # the kernel may crash on self-intersecting faces
     tube = min(tubes_both_ways, key=lambda candidate: _distance_outside(candidate, solid))
     surface = tube.surface()
     loops = _intersection_loops(tube, named, solid)
@@ -131,7 +131,7 @@ def _solid(substrate: Any, label: str) -> Any:
 
 
 def _distance_outside(tube: Tube, solid: Any) -> float:
-    """Mean distance (mm) of the tube's lower end from the solid; 0 for points inside."""
+    """Return the mean distance, mm, of the tube's lower end from the solid; 0 for points inside."""
     return float(np.mean([_distance(point, solid) for point in _ring(tube, 0.0)]))
 
 
@@ -148,25 +148,25 @@ def _distance(point: Array, solid: Any) -> float:
 
 
 def _intersection_loops(tube: Tube, named: list[tuple[str, Any]], solid: Any) -> list[list[Any]]:
-    """Closed loops of edges in which the wall, made TOUCH longer at its lower end, meets the solid."""
+    """Return closed edge loops of the wall, extended by TOUCH at its lower end, and the solid."""
     wall = _longer(tube) or Part.Shell([face for _, face in named])
     loops, is_complete = _closed(solid.section(wall).Edges)
     if is_complete:
         return loops
-    # of elementary surfaces OpenCASCADE 7.8 and later leave out a piece at times; of B-splines they do not
+    # OpenCASCADE 7.8 and later may omit a piece with elementary surfaces, but not with B-splines
     again, _ = _closed(solid.section(wall.toNurbs()).Edges)
     return again if len(again) > len(loops) else loops
 
 
 def _closed(edges: list[Any]) -> tuple[list[list[Any]], bool]:
-    """The closed loops among edges, and whether there are no others."""
+    """Return the closed loops of edges, and whether all edges belong to closed loops."""
     wires = [Part.Wire(chain) for chain in Part.sortEdges(edges)] if edges else []
     loops = [wire.OrderedEdges for wire in wires if wire.isClosed()]
     return loops, len(loops) == len(wires)
 
 
 def _longer(tube: Tube) -> Any:
-    """The tube as a face, a little longer below; None for a table, whose face is taken as it is."""
+    """Return the tube as a face extended at its lower end; None for a tabulated surface."""
     if tube.kind == TABLE:
         return None
     origin, x, y, z = (
@@ -199,7 +199,10 @@ def _posed(face: Any, origin: Any, x: Any, y: Any, z: Any) -> Any:
 
 
 def _chain(edges: list[Any], surface: Placed, solid: Any) -> tuple[Array, float, float]:
-    """Points (m, 3) around a loop on both surfaces, their mean u, and how far they are off the substrate, mm."""
+    """Return points (m, 3) around a loop on both surfaces, their mean u, and the error, mm.
+
+    The error is the maximum distance of the points from the substrate.
+    """
     length = sum(edge.Length for edge in edges)
     point_runs, error = [], 0.0
     last_point = None
@@ -226,7 +229,7 @@ def _chain(edges: list[Any], surface: Placed, solid: Any) -> tuple[Array, float,
 
 
 def _face_under(edge: Any, solid: Any) -> Any:
-    """The face of the solid that carries an edge of the intersection."""
+    """Return the face of the solid on which an intersection edge lies."""
     vertices = [Part.Vertex(point) for point in edge.discretize(Number=5)[1:4]]
     return min(
         solid.Faces, key=lambda face: max(face.distToShape(vertex)[0] for vertex in vertices)
@@ -234,7 +237,7 @@ def _face_under(edge: Any, solid: Any) -> Any:
 
 
 def _fit_to_both(points: Array, surface: Placed, face: Any) -> tuple[Array, float]:
-    """Points moved up or down the wall onto the face's surface, and the largest remaining distance."""
+    """Move points along the wall onto the face's surface; return the maximum remaining gap too."""
     u, v = surface.inverse(points)
     under = face.Surface
     for _ in range(STEPS):
@@ -252,7 +255,7 @@ def _fit_to_both(points: Array, surface: Placed, face: Any) -> tuple[Array, floa
 
 
 def _feet(points: Array, under: Any) -> tuple[Array, Array]:
-    """Nearest points (n, 3) of a surface and its normals there."""
+    """Return the nearest points (n, 3) on a surface, and the surface normals there."""
     feet, normals = [], []
     for point in points:
         a, b = under.parameter(FreeCAD.Vector(*point))
@@ -275,7 +278,10 @@ def _refuse_inside(tube: Tube, solid: Any, label: str, substrate_label: str) -> 
 
 
 def _refuse_edges(tube: Tube, points: Array, named: list[tuple[str, Any]], label: str) -> None:
-    """InputError where an edge of the wall above the first layer, points (m, 3), is not its end across the tube."""
+    """Raise InputError WALL_EDGE if a wall edge above the first layer is not the straight end.
+
+    points: first layer, (m, 3).
+    """
     surface = tube.surface()
     first_u, first_v = surface.inverse(points)
     order = np.argsort(first_v)
@@ -298,11 +304,11 @@ def _refuse_edges(tube: Tube, points: Array, named: list[tuple[str, Any]], label
                 )
 
 
-# ---- The kinds of layers that faces allow, the most exact first
+# ---- Wall representations that faces allow, the most exact first
 
-UPRIGHT = 0.7  # Z share of a normal; the floor of a cup faces down by more
-FLOOR = 0.1  # layer heights over the lowest point; surfaces up to this height are a floor
-ABOVE = 0.5  # layer heights over a floor at which the wall about it begins
+UPRIGHT = 0.7  # minimum Z component of the normal of a floor
+FLOOR = 0.1  # layer heights; maximum height of a floor above the lowest point
+ABOVE = 0.5  # layer heights; height above a floor at which the wall begins
 
 
 def find_mesh_wall(
@@ -313,10 +319,14 @@ def find_mesh_wall(
     start_edges: Sequence[str],
     mend: float,
 ) -> MeshWall:
-    """The wall of a mesh for layers of `height` mm, on a substrate, from the edges named, or from the platform under its
-    lowest place along Z. Its edges are the loops of its boundary, Edge1 and on, the lowest middle first.
+    """Build the wall of a mesh, for layers of `height` mm.
 
-    InputErrors of `core.geometry.walls.mesh_wall`, and NO_CONTACT, INSIDE, NO_START, UNKNOWN_EDGE, GAP.
+    The wall starts from `start_edges`, or else where it leaves the substrate, or without a
+    substrate from the platform below its lowest point. Edges are the boundary loops, named Edge1
+    and so on, sorted by the height of their centres. mend: maximum size of a hole to close, mm.
+
+    Raises the InputErrors of `core.geometry.walls.mesh_wall`, and NO_CONTACT, INSIDE, NO_START,
+    UNKNOWN_EDGE, GAP.
     """
     corner = body.corners()
     area = 0.5 * float(np.linalg.norm(doubled_areas(corner), axis=1).sum())
@@ -361,7 +371,10 @@ class _Start(NamedTuple):
 
 
 def _loops(wall: MeshWall) -> list[Array]:
-    """The loops (n, 3) of the boundary, the first point not repeated, in the order of the heights of their middles."""
+    """Return the boundary loops (n, 3), sorted by the height of their centres.
+
+    The first point is not repeated.
+    """
     ends, _ = boundary(wall.triangles)
     loops = []
     if len(ends):
@@ -409,8 +422,9 @@ def _lowest(wall: MeshWall) -> float:
 
 
 def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
-    """Start from the open ends on the plane through the lowest point, else around a floor in that
-    plane, else from the lowest open end.
+    """Start from open ends on the platform, else around a floor, else from the lowest open end.
+
+    The platform is the plane through the lowest point.
     """
     lowest = _lowest(wall)
     loops = _loops(wall)
@@ -461,7 +475,7 @@ def _from_platform(wall: MeshWall, height: float, label: str) -> _Start:
 
 
 def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:
-    """InputError GAP where a piece of the wall has no connection to a start of layers."""
+    """Raise InputError GAP if no layer starts on a separate piece of the wall."""
     number, component = connected_parts(wall, ~start.behind)
     if number < 2:
         return
@@ -484,9 +498,9 @@ def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:
 
 
 PLANE_TYPE = "Part::GeomPlane"
-MOST_NAMED = 8  # faces named in a message
-BELOW = 9  # samples up the tube that decide whether it stays in the substrate's box
-# a wall need not be a closed tube of one surface that starts in one loop
+MOST_NAMED = 8  # maximum number of face names in a message
+BELOW = 9  # samples along the tube that decide whether it stays in the substrate's bounding box
+# errors after which the wall is tried as a patch wall, which need not be a closed tube
 OTHER_KIND = frozenset(
     {"NOT_ONE_SURFACE", "NOT_CLOSED", "WALL_EDGE", "NO_WALL", "ROUGH_WALL", "NO_CONTACT", "INSIDE"}
 )
@@ -503,14 +517,17 @@ def wall_on(
     mend: float = 0.0,
     fronts: bool = False,
 ) -> SurfaceWall | PatchWall:
-    """The wall of a Part.Shape, or of a mesh (Body), for layers of `height` mm, in its coordinates. mend: the largest hole
-    of a mesh that is closed, mm.
+    """Build the wall of a Part.Shape or mesh (Body), for layers of `height` mm.
 
-    substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None where layers start from
-    edges of the part; from its edges on the platform if none are named. A SurfaceWall where the
-    faces are one surface that closes around, its end straight across, and the first layer one loop;
-    a PatchWall otherwise, and always for fronts. Raises InputErrors as in `find_patch_wall` and
-    `substrate_of`, LAYER_HEIGHT, BAD_SHAPE.
+    The result is a SurfaceWall if the faces form one closed surface with a straight end and the
+    first layer is one loop. Otherwise, and always with `fronts`, it is a PatchWall. Coordinates are
+    those of the shape.
+
+    substrate: a Part.Shape with solids, a mesh (Body or Mesh.Mesh), or None if layers start from
+    `start_edges`, or without names from edges on the platform. mend: maximum size of a mesh hole to
+    close, mm. fronts: whether layers are offset fronts.
+
+    Raises InputErrors as in `find_patch_wall` and `substrate_of`, LAYER_HEIGHT, BAD_SHAPE.
     """
     with reported(substrate_label, substrate):
         carrier = None if substrate is None else substrate_of(substrate, substrate_label, mend)
@@ -541,7 +558,7 @@ def _wall_on(
             if error.code not in OTHER_KIND:
                 raise
         except FAULTS:
-            pass  # the wall as a sheet asks less of the kernel
+            pass  # a patch wall needs fewer kernel operations
     named = named_faces(shape, faces, label)
     wall = find_patch_wall(shape, named, carrier, height, label, start_edges)
     if carrier is None or carrier.shape is not None or start_edges or fronts:
@@ -550,8 +567,10 @@ def _wall_on(
 
 
 def _starts_all_around(tube: SurfaceWall, solid: Any) -> bool:
-    """Whether the first layer runs around the tube, and the tube below stays within the box of the
-    substrate, so that the wall's other loops are inside, such as in the bore of a pipe.
+    """Whether the first layer runs around the tube and all other loops are inside the substrate.
+
+    Other loops are inside, such as in the bore of a pipe, if the tube below the first layer stays
+    in the substrate's bounding box.
     """
     surface = tube.surface()
     u, v = surface.inverse(np.vstack([tube.first, tube.first[:1]]))
@@ -569,8 +588,10 @@ def _starts_all_around(tube: SurfaceWall, solid: Any) -> bool:
 
 
 def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any]]:
-    """The chosen faces: named ones, else every face of a shape without solids, else the curved
-    faces of a solid if they connect and no flat face joins them smoothly.
+    """Return the wall faces of a shape as (name, face).
+
+    These are the named faces. Without names, use all faces of a shape without solids, or the curved
+    faces of a solid if they are connected and no flat face is tangent to them.
 
     Raises InputError NO_WALL, UNKNOWN_FACE.
     """
@@ -614,7 +635,7 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
 
 
 def _one_piece(faces: list[Any]) -> bool:
-    """Whether faces hang together by common edges."""
+    """Whether faces are connected by common edges."""
     edges = [{edge.hashCode() for edge in face.Edges} for face in faces]
     reached, unreached = edges[0], edges[1:]
     while unreached:
@@ -643,9 +664,7 @@ def _runs_on(face: Any, other_face: Any) -> bool:
 def _as_tube(
     wall: PatchWall, shape: Any, faces: Sequence[str], substrate: Substrate, label: str
 ) -> SurfaceWall | None:
-    """A wall on a mesh as a tube of one surface that ends straight across, or None if it is not
-    one.
-    """
+    """Convert a wall on a mesh substrate to a tube of one surface with a straight end, or None."""
     ends = [rim for rim in wall.rims if rim.end]
     if len(wall.first) != 1 or not wall.first[0].closed or len(ends) != 1:
         return None

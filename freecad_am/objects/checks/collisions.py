@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Collisions of a planned job with arm or platform, and the margins of its axes: findings of every
-joint path, whether or not planning kept clearances.
+"""Collisions of the arm and the platform, and axis margins, of a planned job.
+
+Every joint path is checked, whether or not planning kept clearances.
 """
 
 from __future__ import annotations
@@ -31,15 +32,16 @@ ARM_COLLISION, PLATFORM_COLLISION, ARM_NEAR, LOW_MARGIN = (
     "LOW_MARGIN",
 )
 ROUNDING = 1e-6  # deg or mm
-LEAST_MARGIN = 0.5  # deg or mm to a limit, below which it is reported; as Simulate marks it
+LEAST_MARGIN = 0.5  # deg or mm; smaller margins to limits are reported, and marked in Simulate
 
 
 def collision_issues(
     motion: Motion, cell: Cell, toolpath: Toolpath, process: ProcessParameters
 ) -> list[Issue]:
-    """Errors about collisions of the arm, on the whole motion, and of the platform, and warnings
-    and notes about links that are drawn only from the kinematics. Empty for machines whose links no
-    file describes well enough.
+    """Return issues on collisions of the arm over the whole motion, and of the platform.
+
+    Collisions of links whose shape is only derived from the kinematics are warnings and notes.
+    Empty for machines whose links are not described well enough.
     """
     if not cell.arrangement.links_known:
         return []
@@ -68,8 +70,9 @@ def collision_issues(
 
 
 def look(path: JointPath, cell: Cell, toolpath: Toolpath) -> list[Issue]:
-    """The collisions of a joint path, maybe of only some layers of a toolpath, at the points of its
-    beads.
+    """Return the collisions of a joint path at the points of its beads.
+
+    The joint path may cover only some layers of the toolpath.
     """
     if not cell.arrangement.links_known:
         return []
@@ -105,9 +108,10 @@ def look(path: JointPath, cell: Cell, toolpath: Toolpath) -> list[Issue]:
 
 
 def in_platform(cell: Cell, toolpath: Toolpath, level: str = ERROR) -> list[Issue]:
-    """The issues about parts of the substrate and the fixtures that reach into the platform. No
-    program depends on the platform's plate, whose usual size is a guess, so a planned job has them
-    as warnings; a proposed cell must have none.
+    """Return the issues on substrate and fixtures that reach into the platform.
+
+    The default plate size is a guess and does not affect programs. So these issues are warnings in
+    a planned job, but a proposed cell must not have any.
     """
     collisions = platform_collisions(cell, toolpath.surroundings)
     return [_platform_issue(cell, collision, level) for collision in collisions]
@@ -128,7 +132,7 @@ def _platform_issue(cell: Cell, collision: Collision, level: str) -> Issue:
 
 
 def _arm_issue(collision: Collision, motion: Motion, rows: Index, sample_count: int) -> Issue:
-    """The issue about a link, at the first row of the motion where it is in something."""
+    """Return the issue on a colliding link, located at the first colliding motion row."""
     row = int(rows[0])
     share = 100.0 * len(rows) / max(sample_count, 1)
     location = {
@@ -185,8 +189,11 @@ def _arm_issue(collision: Collision, motion: Motion, rows: Index, sample_count: 
 
 
 def margin_issues(motion: Motion, cell: Cell) -> list[Issue]:
-    """An issue for each limit that an axis comes nearer to than LEAST_MARGIN, where it is nearest: a warning, but a note about
-    the last axis of a robot, whose range plans often use up for the rotation about the tool."""
+    """Return an issue for each axis with a margin below LEAST_MARGIN, at the smallest margin.
+
+    Issues are warnings, but notes for the last robot axis, because plans often use its full range
+    for the tool rotation.
+    """
     margins = shown_margins(cell, motion.joints)
     is_known = np.isfinite(margins)
     if not is_known.any():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machines and motions that the controller of a post does not read, refused before anything is planned."""
+"""Reject machines and motions that the controller of a post does not support, before planning."""
 
 from __future__ import annotations
 
@@ -18,14 +18,16 @@ from ...core.toolpath import Toolpath
 from ...posts.catalogue import NAMES, controller, fitting, motion_written
 
 MB = 1e6
-LARGE_MB, MANY_FILES = 2.0, 20  # from which the size of a program is noted
-MOVES_A_BEAD = 4  # of the ways to and from it
-APPROACH_POINTS = 50  # of the ways to a bead, which are counted with it, at most
+LARGE_MB, MANY_FILES = 2.0, 20  # program size and file count above which a note is given
+MOVES_A_BEAD = 4  # number of approach and retract moves per bead
+APPROACH_POINTS = 50  # maximum number of approach points counted per bead
 
 
 def check(cell: Cell, parameters: ProgramParameters) -> None:
-    """InputError for what the controller of the program's post does not take of the cell: WRONG_CONTROLLER,
-    UNSUPPORTED_AXES, NOT_FOR_WRIST, NO_PULSES, NO_SPEED_UNIT."""
+    """Check that the controller of the program's post supports the cell.
+
+    Raises InputError WRONG_CONTROLLER, UNSUPPORTED_AXES, NOT_FOR_WRIST, NO_PULSES, NO_SPEED_UNIT.
+    """
     check_controller(cell.robot, parameters.post)
     check_external(cell, parameters.post)
     check_wrist(cell.machine, parameters.motion, parameters.post)
@@ -33,7 +35,7 @@ def check(cell: Cell, parameters: ProgramParameters) -> None:
 
 
 def check_controller(machine: Machine, post: str) -> None:
-    """InputError WRONG_CONTROLLER when the machine file says that its controller does not read that post's programs."""
+    """Raise InputError WRONG_CONTROLLER if the machine file excludes the post."""
     if machine.posts is None or post in machine.posts:
         return
     if machine.controller_remark == UNKNOWN_REMARK:
@@ -60,8 +62,9 @@ def check_controller(machine: Machine, post: str) -> None:
 
 
 def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
-    """InputError BEAD_TOO_LONG if one bead has more points than a file of the program may have:
-    programs hold all points of beads.
+    """Raise InputError BEAD_TOO_LONG if a bead has more points than a program file may have.
+
+    Applies to posts that keep a whole bead in one file.
     """
     if not controller(post).whole_beads:
         return
@@ -82,9 +85,10 @@ def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
 
 
 def size_issues(toolpath: Toolpath, parameters: ProgramParameters) -> list[Issue]:
-    """A warning if the program will be larger than the known capacity of such controllers, a note
-    if it is large or has many files. It is estimated from the points of the toolpath, before
-    anything is planned.
+    """Return a warning if the program will exceed the controller's known capacity.
+
+    Return a note if the program is large or has many files. The size is estimated from the toolpath
+    points, before joint planning.
     """
     if parameters.post == "none":
         return []
@@ -123,13 +127,13 @@ def size_issues(toolpath: Toolpath, parameters: ProgramParameters) -> list[Issue
 
 
 def likely_size_issues(toolpath: Toolpath, cell: Cell) -> list[Issue]:
-    """The findings of `size_issues` before a program is set up: with the first post of the machine and files as usual."""
+    """Return `size_issues` before a program exists, for the machine's first post and defaults."""
     posts = readers(cell)
     return size_issues(toolpath, ProgramParameters(post=posts[0])) if posts else []
 
 
 def base_issues(machine: Machine, parameters: ProgramParameters) -> list[Issue]:
-    """A warning where positions of a Cartesian program count from a base frame that may not be the controller's."""
+    """Return a warning if a Cartesian program's base frame may differ from the controller's."""
     if machine.base_is_known or parameters.motion != "cartesian" or parameters.post == "none":
         return []
     return [
@@ -148,7 +152,7 @@ def base_issues(machine: Machine, parameters: ProgramParameters) -> list[Issue]:
 
 
 def machine_issues(cell: Cell, parameters: ProgramParameters) -> list[Issue]:
-    """A note with the doubts of the machine file that concern a program: its joint values, limits and speeds."""
+    """Return a note with the machine file's uncertainties on joint values, limits and speeds."""
     if parameters.post == "none":
         return []
     kinds = ["limits", f"limits.{cell.limits.name}", "speeds"]
@@ -165,7 +169,7 @@ def machine_issues(cell: Cell, parameters: ProgramParameters) -> list[Issue]:
 
 
 def check_external(cell: Cell, post: str) -> None:
-    """InputError UNSUPPORTED_AXES when a post of the robot does not write its external axes."""
+    """Raise InputError UNSUPPORTED_AXES if the post does not support the cell's external axes."""
     written = readers(cell)
     if cell.external is None or written is None or post in written:
         return
@@ -190,7 +194,10 @@ def check_external(cell: Cell, post: str) -> None:
 
 
 def check_wrist(machine: Machine, motion: str, post: str) -> None:
-    """InputError NOT_FOR_WRIST: Cartesian programs of robots without a spherical wrist by posts that name configurations."""
+    """Raise InputError NOT_FOR_WRIST for a Cartesian program of a robot without a spherical wrist.
+
+    Applies to posts that write configurations, which are unknown for such robots.
+    """
     if (
         motion == "cartesian"
         and machine.arm is not None
@@ -207,8 +214,9 @@ def check_wrist(machine: Machine, motion: str, post: str) -> None:
 
 
 def check_pulses(machine: Machine, motion: str, post: str) -> None:
-    """InputError NO_PULSES, NO_SPEED_UNIT where a post needs figures that only the robot's own
-    controller has.
+    """Raise InputError NO_PULSES or NO_SPEED_UNIT if the machine file lacks data that a post needs.
+
+    Only the robot's own controller shows this data.
     """
     if controller(post).pulses and not machine.pulses_per_degree:
         raise InputError(
@@ -230,15 +238,16 @@ def check_pulses(machine: Machine, motion: str, post: str) -> None:
 
 
 def written_by(machine: Machine) -> tuple[str, ...] | None:
-    """The posts that can write programs for a machine, by its file; None for any."""
+    """Return the posts that can write programs for a machine, by its file; None for any post."""
     if machine.posts is None or machine.pulses_per_degree:
         return machine.posts
     return tuple(post for post in machine.posts if not controller(post).pulses)
 
 
 def writers(machine: Machine, posts: Sequence[str], setup: str) -> list[tuple[str, str]]:
-    """The usable `posts` with the motion in which they write programs of a machine in a set-up:
-    posts that write the usual motion first, then posts that write the other one.
+    """Return the usable posts with their motion type, for a machine in a set-up.
+
+    Posts that write the default motion type come first.
     """
     usual = ProgramParameters().motion
     written = [(post, usual) for post in fitting(posts, usual, setup)]
@@ -261,8 +270,10 @@ def _is_written(machine: Machine, motion: str, post: str) -> bool:
 
 
 def post_of(settings: CellParameters, preferred: str, folders: Sequence[str]) -> tuple[str, str]:
-    """Post and motion of a new program in a cell: the preferred post ('' for the usual one) if the
-    controller reads it, else another post that writes for it; ('', '') if none does.
+    """Return post and motion type of a new program in a cell.
+
+    Use the preferred post ('' for the default) if the controller reads its format, else another
+    suitable post. Return ('', '') without a suitable post.
     """
     machine, usual = machines.load(settings.machine, tuple(folders)), ProgramParameters()
     posts = written_by(machine)
@@ -275,8 +286,10 @@ def post_of(settings: CellParameters, preferred: str, folders: Sequence[str]) ->
 
 
 def usual_motion(joint_path: Any, post: Any) -> dict[str, str]:
-    """The motion, by its key, of a program of a joint path object that names none, where the post does not write the usual
-    one in its set-up; empty where it does, or not all is known."""
+    """Return the motion type to use, as {"motion": ...}, if the post cannot write the default type.
+
+    Empty if the post can, or if post or set-up are unknown.
+    """
     linked = getattr(joint_path, "Cell", None)
     setup = getattr(linked, "Setup", "")
     usual = ProgramParameters()
@@ -290,8 +303,9 @@ def usual_motion(joint_path: Any, post: Any) -> dict[str, str]:
 
 
 def readers(cell: Cell) -> tuple[str, ...] | None:
-    """The posts that the controller of a cell reads; with external axes only posts that write them.
-    None for any.
+    """Return the posts that the controller of a cell reads, None for any post.
+
+    With external axes, return only posts that support external axes.
     """
     posts = cell.machine.posts
     if cell.external is None:
@@ -300,7 +314,7 @@ def readers(cell: Cell) -> tuple[str, ...] | None:
 
 
 def _select_external(posts: Sequence[str] | None) -> tuple[str, ...]:
-    """The posts (any post for None) that write external axes."""
+    """Return those `posts` (None for all posts) that support external axes."""
     return tuple(
         post for post in sorted(NAMES if posts is None else posts) if controller(post).external
     )

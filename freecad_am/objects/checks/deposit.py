@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Checks of a deposit: regions of a part that it would leave out, its distance from the part, its
-contact with the substrate."""
+"""Checks of a deposit: omitted regions of the part, distance from the part, substrate contact."""
 
 from __future__ import annotations
 
@@ -27,14 +26,15 @@ from ..work import progress
 
 
 def expected(value: Any, feature: Any = None) -> tuple[Issue, ...]:
-    """Findings about the result of a feature (and its object, if given), with the beads of its
-    toolpath, else with beads of a new one.
+    """Return the deposit balance issues of a feature result.
+
+    feature: feature object, whose toolpath sets the bead width; None for the default width.
     """
     return deposit_balance.issues(deposit_balance.feature_balance(value, bead_width(feature)))
 
 
 def bead_width(feature: Any = None) -> float:
-    """Bead width of the toolpath of a feature, else of a new one, mm."""
+    """Return the bead width of a feature's toolpath, or the default bead width, mm."""
     for following in () if feature is None else feature.InList:
         stage = stage_of(following)
         if stage is not None and stage.kind == "toolpath":
@@ -42,14 +42,15 @@ def bead_width(feature: Any = None) -> float:
     return float(preferences.process().get("bead_width", ProcessParameters().bead_width))
 
 
-# ---- Distance of a finished toolpath from the shapes that it was made for
+# ---- Distance of a finished toolpath from its source shapes
 
-LOOKED = 0.95  # of the time, after planning
+LOOKED = 0.95  # progress fraction at the start of this check
 
 
 def check_on_part(toolpath: CoreToolpath, inputs: Given, sources: Sequence[Taken]) -> CoreToolpath:
-    """The toolpath with a judgement of its distance from the shapes that it was made for; unchanged
-    if these have no faces.
+    """Check the distance of a toolpath from its source shapes; return the toolpath with the result.
+
+    The toolpath is unchanged if the shapes have no faces.
     """
     planner = planner_for(inputs.strategy)
     if not planner.is_on_part(inputs.wall):
@@ -61,18 +62,18 @@ def check_on_part(toolpath: CoreToolpath, inputs: Given, sources: Sequence[Taken
     places, off, limit = distances
     if (
         toolpath.checks.fitted is not None
-    ):  # these layers follow the scan and are no farther off than they were moved
-        from ...core.inspection.fit_layers import max_moves  # jobs without a scan need none of it
+    ):  # layers fitted to a scan may deviate by the distance that they were moved
+        from ...core.inspection.fit_layers import (
+            max_moves,
+        )  # only jobs with a scan need this import
 
         off = np.maximum(off - max_moves(toolpath.checks.fitted, places.layer), 0.0)
     return on_part.check_on_part(toolpath, places, off, limit)
 
 
-# ---- Whether a deposit touches its named substrate
+# ---- Contact between a deposit and its substrate
 
-REACH = (
-    1.5  # layer heights; a deposit this near to a body counts as supported by it, as in `support`
-)
+REACH = 1.5  # layer heights; maximum gap between a deposit and its support, as in `support`
 
 
 def gap_issues(
@@ -82,8 +83,11 @@ def gap_issues(
     ground: Sequence[Taken],
     layer_height: float,
 ) -> tuple[Issue, ...]:
-    """A warning where nothing of bodies, or of points (n, 3) of curves, is near the substrate that is named, with how far it
-    is and where it comes nearest."""
+    """Return a warning for each substrate that the deposit does not reach.
+
+    The warning gives the minimum distance and its location. deposited: bodies to print. points:
+    (n, 3) for each curve to print.
+    """
     issues = []
     for substrate in ground:
         under = substrate.body()

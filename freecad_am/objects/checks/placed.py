@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The toolpath or joint path of a document that is to be placed in a cell, with its planning
-parameters.
-"""
+"""Inputs and arm checks for placing a toolpath or joint path of a document in a cell."""
 
 from __future__ import annotations
 
@@ -35,9 +33,7 @@ from ..work import progress
 
 
 def cylinders_of(cell: Cell) -> arm_clearance.Cylinders:
-    """The capsules of each link of the robot; empty for machines with rotary axes, whose links no
-    file describes well enough.
-    """
+    """Return the capsules of each robot link; empty for machines without link data."""
     has_links = cell.arrangement.links_known
     return (
         external_links.robot_cylinders(cell.robot.chain, meshes_of(cell.machine))
@@ -55,9 +51,9 @@ def arm_of(
     max_positions: int | None = None,
     clearance: float = 0.0,
 ) -> ArmTouches | None:
-    """What the links of a robot touch, or come nearer to than `clearance` mm, checked at up to
-    `max_positions` positions; None for machines with rotary axes, whose links no file describes
-    well enough.
+    """Return the contacts of robot links, including distances below `clearance` mm.
+
+    At most `max_positions` positions are checked. None for machines without link data.
     """
     if not cell.arrangement.links_known:
         return None
@@ -99,8 +95,9 @@ def arm_issues(
     cylinders: arm_clearance.Cylinders,
     known_issues: Sequence[Issue],
 ) -> tuple[Issue, ...]:
-    """An error for each bead without a known issue on which, or on the way to which, a link (given
-    as cylinders) gets too close.
+    """Return an error for each bead on which, or on whose approach, a link comes too close.
+
+    cylinders: capsules of the links. Beads in `known_issues` with the same code are skipped.
     """
     assert cell.arm_clearance is not None
     touches = _touches(motion, cell, toolpath, process, cylinders, None, cell.arm_clearance)
@@ -123,8 +120,10 @@ def arm_issues(
 
 
 class Placing(NamedTuple):
-    """The inputs of a placement, read from a document: its cell, and a function that makes the job
-    without the document. names: of the objects; document: its name; cell: the object.
+    """Inputs of a placement, read from a document.
+
+    job: function that makes the job without the document. cell: the cell object. names: names of
+    the objects. document: name of the document.
     """
 
     settings: CellParameters
@@ -134,15 +133,15 @@ class Placing(NamedTuple):
     document: str
 
     def search_poses(self, parameters: PlaceParameters) -> Placed:
-        """The results for the poses of a box; reports to `progress`. Errors as `place.place_part`."""
+        """Rate the poses of a box; report to `progress`. Errors as `place.place_part`."""
         return place_part(self.job(), self.settings, parameters, progress.report)
 
 
 def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = None) -> Placing:
-    """The inputs of a placement of a joint path or a toolpath, in its own cell or in another.
-    joints: parameters of planning, by default the joint path's.
+    """Read the inputs for placing a joint path or toolpath, in its own cell or another cell.
 
-    Raises InputError BAD_INPUT for other objects, NO_INPUT where toolpath or cell are missing or have no result.
+    joints: planning parameters, by default those of the joint path. Raises InputError BAD_INPUT for
+    other objects, NO_INPUT if toolpath or cell are missing or have no result.
     """
     stage = stage_of(path)
     if stage is None or stage.kind not in ("joint path", "toolpath"):
@@ -175,8 +174,10 @@ def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = Non
 def change_parameters(
     parameters: PlaceParameters | None, values: dict[str, Any]
 ) -> PlaceParameters:
-    """Parameters with single ones changed, in outer units by row key.
-    Raises InputError UNKNOWN_PARAMETER, BAD_VALUE."""
+    """Return the parameters with individual values replaced, by row key in outer units.
+
+    Raises InputError UNKNOWN_PARAMETER, BAD_VALUE.
+    """
     if not isinstance(parameters or PlaceParameters(), PlaceParameters):
         raise InputError(
             "BAD_INPUT",

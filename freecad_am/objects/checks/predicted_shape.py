@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The deposit that a toolpath is predicted to leave, against the part to be machined from it."""
+"""Predicted deposit of a toolpath compared with the part to be machined from the deposit."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ from ..families.registry import planner_for
 from ..shapes.bodies import Taken
 from ..work import progress
 
-DEFLECTION = 0.05  # mm, of the triangles of faces
+DEFLECTION = 0.05  # mm; deflection of the face triangles
 NOTHING = "NO_PREDICTION"
 
 Report = Callable[[float, str], None]
@@ -45,8 +45,9 @@ Report = Callable[[float, str], None]
 
 @dataclass(frozen=True)
 class Target:
-    """The target of a feature: its planning inputs, its source objects, and the chosen faces of the
-    first one (empty for the whole object).
+    """Target of a feature: planning inputs, source objects, and selected faces.
+
+    faces: face names of the first source; empty for the whole object.
     """
 
     inputs: Given
@@ -55,15 +56,17 @@ class Target:
 
     @property
     def planner(self) -> FeaturePlanner:
-        """The planner of its family."""
+        """Return the planner of the feature's family."""
         return planner_for(self.inputs.strategy)
 
 
 def add_shape_issues(
     toolpath: CoreToolpath, targets: Sequence[Target], allowance: float
 ) -> CoreToolpath:
-    """The toolpath with figures of its predicted deposit, and a warning where the deposit does not
-    enclose the part by the allowance, mm, or where that is unknown.
+    """Add the predicted deposit to a toolpath, with warnings.
+
+    Warn if the deposit does not enclose the part by the allowance, mm, or if no prediction is
+    possible.
     """
     try:
         deposit, comparison = predicted(toolpath, targets, progress.report)
@@ -84,7 +87,7 @@ def add_shape_issues(
 def issues(
     toolpath: CoreToolpath, targets: Sequence[Target], shape: PredictedShape
 ) -> tuple[Issue, ...]:
-    """The issues of a predicted deposit."""
+    """Return the issues of a predicted deposit."""
     is_first_layer = np.zeros(len(toolpath.layers), dtype=bool)
     for _, numbers in toolpath.parts:
         is_first_layer[numbers[:1]] = True
@@ -99,7 +102,10 @@ def issues(
 def predicted(
     toolpath: CoreToolpath, targets: Sequence[Target], report: Report
 ) -> tuple[PredictedDeposit, Compared]:
-    """The deposit of a toolpath, and the faces of its features against it. Raises InputError NO_PREDICTION."""
+    """Predict the deposit of a toolpath and compare the feature faces with the deposit.
+
+    Raises InputError NO_PREDICTION.
+    """
     processes: list[ProcessParameters] = [target.inputs.process for target in targets]
     parts = feature_parts(toolpath, processes)
     if any(feature_part.toolpath.bead_width is None for feature_part in parts):
@@ -133,9 +139,10 @@ def inspected(
     label: str,
     report: Report,
 ) -> Inspected:
-    """The predicted deposit of a toolpath in the form of a measurement: its surface outside the
-    part, or the part where it protrudes, at points all over the part's faces. InputError
-    NO_PREDICTION.
+    """Return the predicted deposit of a toolpath as if measured at points on the part's faces.
+
+    Points are on the deposit surface outside the part, or on the part where the part protrudes.
+    Raises InputError NO_PREDICTION.
     """
     deposit, comparison = predicted(toolpath, targets, report)
     shape = compare.figures(deposit, comparison, allowance)
@@ -167,7 +174,7 @@ def remedy(targets: Sequence[Target]) -> str:
 
 
 def _faces(target: Target) -> Faces:
-    """The faces of a feature that its deposit is to cover. Raises InputError NO_FACES."""
+    """Return the faces that the deposit of a feature must cover. Raises InputError NO_FACES."""
     bodies = target.planner.bodies_to_cover(target.inputs.wall)
     if bodies is not None:
         return thin_faces(join_faces([faces(body.vertices, body.triangles) for body in bodies]))
@@ -208,7 +215,7 @@ def _source_faces(source: Taken, names: Sequence[str]) -> Faces:
 
 
 def _closed(triangles: Any) -> bool:
-    """Whether every edge of triangles (m, 3) has one that runs the other way."""
+    """Whether triangles (m, 3) form a closed mesh: every edge has an opposite edge."""
     edges = np.concatenate(
         [triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]
     ).astype(np.int64)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The preflight of a document's stages: promises about them, read from their results."""
+"""Preflight of document stages: promises derived from the stage results."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ from ..shapes.cell_obstacles import meshes_of, platforms, resolved
 from ..toolpath import features_of
 from .placed import arm_of
 
-# sample limits for the arm, and for the nozzle depositing and on rapids: together at most a tenth
-# of the planning time
+# maximum numbers of samples for the arm, the depositing nozzle and the nozzle on rapids; together
+# these checks take at most a tenth of the planning time
 ARM_PLACES, NOZZLE_PLACES, RAPID_PLACES = 6_000, 4_000, 12_000
 
 Work = Callable[[], tuple[Promise, ...]]
@@ -47,7 +47,7 @@ Work = Callable[[], tuple[Promise, ...]]
 
 @dataclass(frozen=True, eq=False)
 class Surveyed:
-    """The slow part of the `Evidence` about a toolpath and, if given, its joint path."""
+    """Slow part of the `Evidence` on a toolpath and, if given, its joint path."""
 
     distances: tuple[Array, ...]
     balance: Balance | None
@@ -63,9 +63,10 @@ What = tuple[Toolpath, Planned, Cell, tuple[Mesh | None, ...]]
 def stage_preflight(
     toolpath: Any, path: Any = None, program: Any = None, surveyed: Survey | None = None
 ) -> tuple[Promise, ...]:
-    """The preflight of a toolpath, its joint path and its program (document objects or None).
-    surveyed: as `survey_of` gives it, if already begun. Raises InputError 'NO_RESULT' where one has
-    no result.
+    """Return the preflight promises of a toolpath, its joint path and its program.
+
+    toolpath, path, program: document objects or None. surveyed: function from `survey_of`, if
+    already started. Raises InputError NO_RESULT if a stage has no result.
     """
     if program is None:
         return prepared(toolpath, path, surveyed=surveyed)()
@@ -76,7 +77,7 @@ def stage_preflight(
 
 
 def read_back_of(program: Any) -> Verification | None:
-    """The verification of a program object, or None without a read-back."""
+    """Return the verification of a program object, None without a read-back."""
     verification: Verification | None = (
         program.Proxy.value(program).verification if program.Key else None
     )
@@ -91,10 +92,12 @@ def prepared(
     further_issues: tuple[Issue, ...] = (),
     surveyed: Survey | None = None,
 ) -> Work:
-    """A function that makes the preflight of a toolpath and its joint path (document objects)
-    without the document, which is read now. settings: of the program; verification: of the
-    program's read-back; further_issues: the program's findings; surveyed: as `survey_of` gives it.
-    Raises InputError 'NO_RESULT' where one has no result.
+    """Return a function that makes the preflight of a toolpath and its joint path.
+
+    The document is read now; the function does not use it. toolpath, path: document objects.
+    settings: program parameters. verification: read-back of the program. further_issues: issues of
+    the program. surveyed: function from `survey_of`. Raises InputError NO_RESULT if a stage has no
+    result.
     """
     stages = [stage for stage in (*features_of(toolpath), toolpath, path) if stage is not None]
     issues = tuple(
@@ -111,7 +114,7 @@ def prepared(
 
     def preflight() -> tuple[Promise, ...]:
         as_it_runs = None if run is None else run.how(issues)
-        survey_result = survey()  # last: it may be waited for
+        survey_result = survey()  # call last, because it may block
         evidence = Evidence(
             planned(),
             process,
@@ -132,10 +135,10 @@ def prepared(
 
 
 def survey_of(toolpath: Any, path: Any, settings: ProgramParameters | None) -> Survey:
-    """Return the function that finds the slow part of the preflight of a toolpath and its joint path.
+    """Return a function that computes the slow part of the preflight.
 
-    The documents are read now; the returned function needs them no more. `settings` belong to the
-    program of the joint path. Raises InputError 'NO_RESULT' if a stage has no result.
+    The document is read now; the function does not use it. settings: parameters of the joint path's
+    program. Raises InputError NO_RESULT if a stage has no result.
     """
     return _survey(toolpath, None if path is None else _Run(path, settings))
 
@@ -176,7 +179,7 @@ def _survey(toolpath: Any, run: _Run | None) -> Survey:
 def _nozzle_looked(
     toolpath: Toolpath, cell: CellParameters | None, clearance_asked: list[bool]
 ) -> Looked | None:
-    """Check what the nozzle touches on features that require clearance."""
+    """Check the nozzle for contacts on features that require clearance."""
     bodies = (*toolpath.surroundings, *platforms(cell, toolpath)) if any(clearance_asked) else ()
     nozzle = NozzleParameters() if cell is None else cell.nozzle
     return nozzle_check.join_checks(
@@ -199,8 +202,9 @@ def _survey_motion(
     shapes: tuple[Mesh | None, ...],
     as_it_runs: AsRun,
 ) -> Surveyed:
-    """The findings about the deposit, at the distances of the motion as it is run, with findings
-    about the motion.
+    """Add the survey of the motion to the survey of the deposit.
+
+    Layer distances are replaced by those of the executed motion.
     """
     path = planned.joint_path
     rapids = rapid_contacts.looked_at(
@@ -224,8 +228,9 @@ def _survey_motion(
 
 
 class _Run:
-    """How a joint path (document object) is run, by a program with `settings` if given, without the
-    document.
+    """Execution of a joint path object, by a program with `settings` if given.
+
+    The document is read in the constructor only.
     """
 
     def __init__(self, path: Any, settings: ProgramParameters | None) -> None:
@@ -241,13 +246,13 @@ class _Run:
 
     @functools.cached_property
     def what(self) -> What:
-        """The toolpath, the planned joint path, its cell, and the shapes of the machine's links."""
+        """Return the toolpath, the planned joint path, its cell, and the machine's link shapes."""
         toolpath = self._toolpath()
         cell = resolved(self._looks, toolpath, self._folders)
         return toolpath, self._planned(), cell, meshes_of(cell.machine)
 
     def how(self, issues: tuple[Issue, ...]) -> AsRun:
-        """The motion, and the findings by its points."""
+        """Return the executed motion, with issues located at its points."""
         toolpath, planned, cell, _ = self.what
         return as_run(planned, cell, toolpath.chord_error, self.settings, issues)
 
@@ -255,8 +260,9 @@ class _Run:
 def _add_motion_evidence(
     evidence: Evidence, run: _Run, as_it_runs: AsRun, verification: Verification | None
 ) -> Evidence:
-    """The evidence about a joint path or its program. evidence: about its toolpath, with the
-    survey; verification: None without a read-back.
+    """Add evidence on a joint path or its program.
+
+    evidence: evidence on the toolpath, with the survey. verification: None without a read-back.
     """
     toolpath, planned, cell, shapes = run.what
     return replace(

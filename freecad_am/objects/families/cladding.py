@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers on faces."""
+"""Plan cladding layers on faces."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from .recognition import LYING, Proposal, Refusal, SelectedPart
 
 
 class CladdingPlanner(FeaturePlanner):
-    """Plans layers that cover faces."""
+    """Planner of cladding layers on faces."""
 
     proxy = ("cladding_feature", "CladdingFeature")
     allowance_remedy = "Add one layer, or use a smaller allowance"
     recognition_rank = 40
 
     def recognise(self, part: SelectedPart, remark: str) -> Proposal | Refusal:
-        """Propose faces of a part thicker than a bead, and open meshes and skins that lie flat."""
+        """Propose faces of a part thicker than a bead, and mostly level open meshes and skins."""
         if part.substrate is not None or part.edges:
             return Refusal()
         if part.shape is None:
@@ -87,14 +87,14 @@ class CladdingPlanner(FeaturePlanner):
     def keep_clear(
         self, toolpath: Toolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
     ) -> Toolpath:
-        """The machine turns the part so that its faces look up: no vertical bounds the tool axes."""
+        """Tilt the tool axes without a limit, because the machine rotates the part."""
         free = dataclasses.replace(inputs.build, max_tilt=np.pi)
         return tilt_clear(toolpath, inputs, bodies, feature, free)
 
     def part_distances(
         self, toolpath: Toolpath, inputs: Given, sources: Sequence[Taken], places: on_part.Places
     ) -> PartDistances | None:
-        """Return how far layers are off their heights above the faces."""
+        """Return the deviation of layers from their heights above the faces."""
         up = (places.layer % inputs.strategy.layers) * inputs.strategy.layer_height
         limit = toolpath.chord_error + on_part.ROUNDED
         feet = places.points - up[:, None] * places.build

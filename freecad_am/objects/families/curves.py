@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Edges and tables of points as beads."""
+"""Plan beads along edges and along the curves of point tables."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .recognition import Proposal, Refusal, SelectedPart
 
 
 class CurvesPlanner(FeaturePlanner):
-    """Plans beads along curves."""
+    """Planner of beads along curves."""
 
     proxy = ("curves_feature", "CurvesFeature")
     has_faces = False
@@ -46,13 +46,13 @@ class CurvesPlanner(FeaturePlanner):
         return toolpath
 
     def is_on_part(self, wall: Any) -> bool:
-        """Return whether there are edges; a table of points is itself the part."""
+        """Whether the curves come from edges; a point table has no part to compare with."""
         return wall.edges is not None
 
     def part_distances(
         self, toolpath: Toolpath, inputs: Given, sources: Sequence[Taken], places: on_part.Places
     ) -> PartDistances | None:
-        """Return how far layers are off their heights above the edges."""
+        """Return the deviation of layers from their heights above the edges."""
         up = (
             places.layer
             // (len(toolpath.layers) // inputs.strategy.repeat)

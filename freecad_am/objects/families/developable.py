@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids on a hub."""
+"""Plan solids on a hub."""
 
 from __future__ import annotations
 
@@ -19,15 +19,15 @@ from ..shapes.bodies import Taken
 from .filled_planner import FilledPlanner
 from .recognition import Proposal, Refusal, SelectedPart
 
-COARSE = 0.3  # mm; chord error that suffices for a first look at solids
-TOUCHING = 0.05  # mm from the surface of a hub
-MAX_TESTED_CORNERS = 60  # corners of a solid that are tested against a hub
-MIN_CORNERS = 3  # least number of corners of a solid on its support
+COARSE = 0.3  # mm; chord error for the recognition of solids
+TOUCHING = 0.05  # mm; maximum distance of a corner that touches the surface of a hub
+MAX_TESTED_CORNERS = 60  # maximum number of corners of a solid tested against a hub
+MIN_CORNERS = 3  # minimum number of corners of a solid on its support
 ROUND = ("Part::GeomCylinder", "Part::GeomCone")
 
 
 class DevelopablePlanner(FilledPlanner):
-    """Plans solids in equidistant layers around a hub."""
+    """Planner of solids in equidistant layers around a hub."""
 
     proxy = ("developable_feature", "DevelopableFeature")
     recognition_rank = 20
@@ -57,15 +57,16 @@ class DevelopablePlanner(FilledPlanner):
 
 
 def _is_own_hub_clicked(part: SelectedPart) -> bool:
-    """Whether the clicked faces are the base of the rest of the part, which is no part of revolution."""
+    """Whether the clicked faces carry the rest of a part that is not of revolution."""
     if not part.is_several_solids and part.revolved_wall is not None:
         return False
     return _has_own_hub(part.source, part.clicked)
 
 
 def _has_own_hub(source: Taken, faces: Sequence[str] = ()) -> bool:
-    """Whether most solids of a part rest on a cylinder or cone of another solid, or the rest of the
-    part rests on its given faces.
+    """Whether most solids of a part rest on a cylinder or cone of another solid of the part.
+
+    With `faces`, whether the rest of the part rests on these faces.
     """
     selected = [source.shape.getElement(name) for name in faces]
     if any(face.Surface.TypeId not in ROUND for face in selected):
@@ -78,11 +79,13 @@ def _has_own_hub(source: Taken, faces: Sequence[str] = ()) -> bool:
 
 
 def stands_on_hub(source: Taken, substrate: Taken, faces: Sequence[str] = ()) -> bool:
-    """Whether a solid or mesh has corners on a cylinder or cone of the substrate, on its chosen
-    faces or any, or reaches through one into the substrate, as the root of a blade does.
+    """Whether a solid or mesh stands on a cylinder or cone of the substrate.
+
+    Corners must touch the cylinder or cone, or reach through it into the substrate, as the root of
+    a blade does. faces: names of the substrate faces to test; empty for all.
     """
     if substrate.shape is None or (source.shape is not None and not source.shape.Solids):
-        return False  # a surface is not a solid to be filled
+        return False  # a surface cannot be filled
     corners = (
         source.body().vertices
         if source.shape is None
@@ -99,8 +102,10 @@ def stands_on_hub(source: Taken, substrate: Taken, faces: Sequence[str] = ()) ->
 
 
 def _reaches_into(substrate: Taken, corners: Array, heights: Array) -> bool:
-    """Whether corners (n, 3) above a cylinder or cone, by their heights (n,) mm, have others below it that are in the
-    substrate."""
+    """Whether corners lie both above a cylinder or cone and below it inside the substrate.
+
+    corners: (n, 3). heights: heights (n,) above the cylinder or cone, mm.
+    """
     below = np.flatnonzero(heights < -TOUCHING)
     if (heights > TOUCHING).sum() < MIN_CORNERS or len(below) < MIN_CORNERS:
         return False

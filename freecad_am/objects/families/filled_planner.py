@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Planner of filled solids, common to all kinds of layers."""
+"""Base planner of filled solids, for all layer kinds."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 
 class FilledPlanner(FeaturePlanner):
-    """Plans solids that are filled."""
+    """Base of planners for filled solids."""
 
     allowance_remedy = "Increase strategy.margin by {} mm, or use wider beads"
 
@@ -52,7 +52,7 @@ class FilledPlanner(FeaturePlanner):
     def keep_clear(
         self, toolpath: Toolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
     ) -> Toolpath:
-        """On a hub the machine turns them, so that no vertical bounds the tool axes."""
+        """Tilt the tool axes; on a hub without a limit, because the machine rotates the part."""
         from ...core.strategies.solids import plan
 
         if not inputs.wall.has_plane_layers():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The planning inputs of a feature, read from the document."""
+"""Planning inputs of a feature, read from the document."""
 
 from __future__ import annotations
 
@@ -18,9 +18,10 @@ from ...core.types import Array
 
 @dataclass(frozen=True, eq=False)
 class Given:
-    """The planning inputs of a feature: its wall or solids, which the feature object has found, and
-    parameters. cell: as `seen_of` leaves it. stands: (4, 4) in part coordinates, the frame on the
-    platform if an earlier feature sets it; else None.
+    """Planning inputs of a feature.
+
+    wall: result of the feature object, a wall or solids. cell: cell reduced by `seen_of`. stands:
+    frame (4, 4) on the platform in part coordinates if an earlier feature sets it, else None.
     """
 
     wall: Any
@@ -32,12 +33,12 @@ class Given:
 
     @property
     def nozzle(self) -> NozzleParameters:
-        """The nozzle of the cell, or the usual one."""
+        """Return the nozzle of the cell, or the default nozzle."""
         return NozzleParameters() if self.cell is None else self.cell.nozzle
 
     @property
     def model(self) -> BeadModel | None:
-        """The bead model of the process."""
+        """Return the bead model of the process, None without a model."""
         return wire.process_model(self.process)
 
 

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a family plans a feature of a document: layers and beads, clearance of the nozzle, checks
-against the part.
+"""Base of the family planners: layers and beads, nozzle clearance, checks against the part.
 
-A planner imports its strategy when a feature is planned: importing every family takes longer than
-planning a small part.
+A planner imports its strategy when it plans a feature, because importing every family takes longer
+than planning a small part.
 """
 
 from __future__ import annotations
@@ -29,13 +28,13 @@ from .recognition import Proposal, Refusal, SelectedPart
 if TYPE_CHECKING:
     from ...core.inspection.planned import Planned
 
-STRATEGY = 0.7  # share of the time for layers and beads, the rest keeps the nozzle clear
-CHECKED = 0.92  # the remaining share is for the final checks
+STRATEGY = 0.7  # progress fraction after layers and beads, before nozzle clearance
+CHECKED = 0.92  # progress fraction before the final checks
 CLEARING = "keeping the nozzle clear"
 
 
 class PartDistances(NamedTuple):
-    """Checked places, their distances (n,) mm from the part, and the allowed distance, mm."""
+    """Checked points, their distances (n,) from the part, mm, and the maximum distance, mm."""
 
     places: on_part.Places
     off: Array
@@ -43,12 +42,12 @@ class PartDistances(NamedTuple):
 
 
 class FeaturePlanner:
-    """What a family of `core.families` does with document objects; the file has its kind as name.
+    """Base of planners, which connect a family of `core.families` to document objects.
 
-    proxy: module and class of its features in `objects`, a file format. allowance_remedy: how to
-    deposit more where a deposit is too small, with {} for by how much. has_faces: whether its parts
-    have faces that a deposit can cover. recognition_rank: of families that recognise a part, the one
-    with the lowest rank is proposed; None: a user chooses the family.
+    proxy: module and class of the feature objects in `objects`, a file format. allowance_remedy:
+    remedy for a deposit that is too small, with {} for the shortfall. has_faces: whether parts of
+    the family have faces to cover. recognition_rank: the family with the lowest rank that
+    recognises a part is proposed; None if only a user chooses the family.
     """
 
     proxy: ClassVar[tuple[str, str]]
@@ -59,40 +58,42 @@ class FeaturePlanner:
     has_faces: ClassVar[bool] = True
 
     def recognise(self, part: SelectedPart, remark: str) -> Proposal | Refusal:
-        """Return whether to propose this family for a part, and why. remark: of a family with a lower
-        rank, for the reason.
+        """Propose or refuse this family for a part, with a reason.
+
+        remark: remark of a family with a lower rank, to add to the reason.
         """
         raise NotImplementedError
 
     def plan_layers(self, inputs: Given) -> Toolpath:
-        """Return layers and beads. Raises the InputErrors of the family."""
+        """Plan layers and beads. Raises the InputErrors of the family."""
         raise NotImplementedError
 
     def keep_clear(
         self, toolpath: Toolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
     ) -> Toolpath:
-        """Return the toolpath with tools tilted clear of bodies and deposit.
+        """Tilt the tool axes of a toolpath clear of bodies and deposit.
 
-        feature: the number of the feature of `inputs` among several, which is kept clear.
+        feature: index of the feature of `inputs` among several; only this feature is tilted.
         """
         return tilt_clear(toolpath, inputs, bodies, feature)
 
     def is_on_part(self, wall: Any) -> bool:
-        """Return whether a feature has a part to compare its toolpath with."""
+        """Whether a feature has a part to compare its toolpath with."""
         return True
 
     def part_distances(
         self, toolpath: Toolpath, inputs: Given, sources: Sequence[Taken], places: on_part.Places
     ) -> PartDistances | None:
-        """Return the distances of places from the part; None if the part has no faces there."""
+        """Return the distances of points from the part, None if the part has no suitable faces."""
         limit = on_part.allowed_distance(toolpath)
         return PartDistances(
             places, distances_from_faces(inputs.wall, sources[0], places.points, limit), limit
         )
 
     def planned_surface(self, value: Any, name: str) -> Planned:
-        """Return the surface of a feature's wall or solids to compare measured points with. Raises
-        InputError NOT_FOR_FAMILY naming it.
+        """Return the nominal surface of a feature, for comparison with measured points.
+
+        Raises InputError NOT_FOR_FAMILY, naming the feature, if the family has no such surface.
         """
         raise InputError(
             "NOT_FOR_FAMILY",
@@ -101,16 +102,19 @@ class FeaturePlanner:
         )
 
     def bodies_to_cover(self, wall: Any) -> list[Body] | None:
-        """Return the solids that a deposit is to enclose; None if it is to cover faces."""
+        """Return the solids that a deposit must enclose, None if it must cover faces."""
         return None
 
     def faces_to_cover(self, wall: Any, selected: tuple[str, ...]) -> tuple[str, ...]:
-        """Return the names of the faces to cover, none for the whole part. selected: of the link."""
+        """Return the names of the faces to cover, empty for the whole part.
+
+        selected: face names of the feature's link.
+        """
         return selected
 
 
 def distances_from_faces(wall: Any, source: Taken, points: Array, limit: float) -> Array:
-    """Return the distances (n,) mm of points (n, 3) from the faces of a wall, exact up to a limit."""
+    """Return distances (n,), mm, of points (n, 3) from the faces of a wall, exact up to `limit`."""
     if source.shape is not None:
         return off_faces(source.shape, wall.faces, points, limit)
     body = source.body()
@@ -118,7 +122,7 @@ def distances_from_faces(wall: Any, source: Taken, points: Array, limit: float) 
 
 
 def distances_from_solids(sources: Sequence[Taken], points: Array, limit: float) -> Array:
-    """Return the distances (n,) mm of points (n, 3) from the nearest solid, exact up to a limit."""
+    """Return distances (n,), mm, of points (n, 3) from the nearest solid, exact up to `limit`."""
     distances: Array = np.min(
         [_distances_from_solid(source, points, limit) for source in sources], axis=0
     )
@@ -142,7 +146,7 @@ def refuse_below(toolpath: Toolpath, inputs: Given, remedy: str = clearance.MOVE
 
 
 def share_strategy(fraction: float, text: str) -> None:
-    """Report the progress of layers and beads."""
+    """Report the progress of planning layers and beads."""
     progress.report(STRATEGY * fraction, text)
 
 
@@ -154,8 +158,9 @@ def tilt_clear(
     build: BuildDirectionParameters | None = None,
     plane: Array | None = None,
 ) -> Toolpath:
-    """As `clear_by_tilt.keep_clear`; reports its progress, and once that it takes long. build: in place
-    of the feature's.
+    """Call `clear_by_tilt.keep_clear` with progress reports and a notice of long run time.
+
+    build: build direction parameters that replace those of the feature.
     """
     from ...core.strategies import estimated_size
     from ...core.strategies.clearance import clear_by_tilt

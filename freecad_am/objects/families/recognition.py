@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A part with what the user selected of it, what a family answers about it, and facts that several
-families ask for, each computed once.
-"""
+"""Recognition of a part: the selection, the answers of families, and cached part properties."""
 
 from __future__ import annotations
 
@@ -29,16 +27,22 @@ from ..shapes.bodies import Taken
 
 UP = (0.0, 0.0, 1.0)
 STEEP_RAD = float(np.radians(45.0))
-MAX_HOLE_SHARE = 0.1  # share of its size; a mesh with a wider hole is a wall
-LYING = 0.95  # share of its area; an open mesh with a larger share below STEEP_RAD from level is not an upright wall
-MAX_BEAD_FACTOR = 1.5  # factor of the part's volume; one bead along the side of a part that is not a shell deposits more: on a rod it meets itself in the middle
+# maximum hole size of a closed mesh, fraction of the mesh size
+MAX_HOLE_SHARE = 0.1
+# area fraction inclined less than STEEP_RAD from level, above which an open mesh is not a wall
+LYING = 0.95
+# maximum ratio of deposit to part volume for a shell one bead thick; a bead along the side of a
+# solid part deposits more, since on a rod it meets itself at the centre
+MAX_BEAD_FACTOR = 1.5
 
 
 @dataclass(frozen=True)
 class Proposal:
-    """A family, by its `strategy.kind`, and why. layers: of solids, '' for other families. mend:
-    width, mm, of the largest hole that has to be closed for it; 0 if the usual limit suffices.
-    stands: a wall that starts on the platform.
+    """A proposed family and the reason.
+
+    kind: `strategy.kind`. layers: layer kind of solids, '' for other families. mend: size of the
+    largest hole to close, mm; 0 if the default limit suffices. stands: whether a wall starts on the
+    platform.
     """
 
     kind: str
@@ -48,24 +52,24 @@ class Proposal:
     stands: bool = False
 
     def text(self) -> str:
-        """The proposal in one sentence."""
+        """Return the proposal as one sentence."""
         layers = f", layers: {self.layers}" if self.layers else ""
         return f"kind: {self.kind}{layers}: {self.reason}"
 
 
 @dataclass(frozen=True)
 class Refusal:
-    """The answer of a family that a part does not suit. remark: a clause that the reason for another
-    family adds; '' for none.
-    """
+    """Refusal of a part by a family. remark: clause to add to another family's reason, or ''."""
 
     remark: str = ""
 
 
 class MeshFacts(NamedTuple):
-    """Triangles (m, 3, 3) of a mesh, the number of its holes and the size of the largest, mm. is_open:
-    whether it is wide open. crossings: number of pairs of triangles that intersect and cannot be
-    separated, crossing: the position of the longest intersection as text.
+    """Properties of a mesh.
+
+    corners: triangles (m, 3, 3). holes: number of holes. opening: size of the largest hole, mm.
+    is_open: whether this hole exceeds MAX_HOLE_SHARE. crossings: number of intersecting triangle
+    pairs that cannot be separated. crossing: location of the longest intersection, as text.
     """
 
     corners: Array
@@ -77,18 +81,19 @@ class MeshFacts(NamedTuple):
 
     @property
     def is_sheet(self) -> bool:
-        """Whether it can be a wall or a face to cover."""
+        """Whether the mesh can be a wall or a face to cover."""
         return self.is_open and not self.crossings
 
 
 @dataclass(frozen=True, eq=False)
 class SelectedPart:
-    """A part as the user selected it, and how it is printed.
+    """A part as selected by the user, and its print settings.
 
-    names: faces or edges of it, none for the whole part. substrate: what it grows on, base: faces
-    of that. edges: it names edges to start from. width: mm of a bead. tilts: a machine is known,
-    which can tilt. clicked: a face by which the whole part was chosen, maybe its hub. direction: in
-    which planes are stacked, layer_height mm apart, None for the best.
+    names: names of faces or edges, empty for the whole part. substrate: the object below the part.
+    base: face names of the substrate. edges: whether start edges are named. width: bead width, mm.
+    tilts: whether the machine is known and can tilt. clicked: face by which the whole part was
+    selected, possibly its hub. direction: stacking direction of planes, None for the best.
+    layer_height: mm.
     """
 
     source: Taken
@@ -104,17 +109,17 @@ class SelectedPart:
 
     @property
     def label(self) -> str:
-        """The name of the part in messages."""
+        """Return the part name for messages."""
         return self.source.label
 
     @property
     def shape(self) -> Any:
-        """The shape; None for a mesh."""
+        """Return the shape, None for a mesh."""
         return self.source.shape
 
     @property
     def solids(self) -> int:
-        """The number of solids of the shape; 0 for a mesh."""
+        """Return the number of solids in the shape, 0 for a mesh."""
         return 0 if self.shape is None else len(self.shape.Solids)
 
     @property
@@ -124,12 +129,15 @@ class SelectedPart:
 
     @property
     def is_several_solids(self) -> bool:
-        """Whether several solids are to be printed as a whole."""
+        """Whether the whole part is selected and has several solids."""
         return self.solids > 1 and not self.names
 
     @cached_property
     def revolved_wall(self) -> RevolvedWall | None:
-        """The wall of revolution of the shape or its named faces, or None. Raises InputError FAULTY."""
+        """Return the wall of revolution of the shape or its named faces, or None.
+
+        Raises InputError FAULTY.
+        """
         try:
             with kernel.reported(self.label, self.shape):
                 return find_wall(self.shape.copy(False), tuple(self.names), label=self.label)
@@ -140,7 +148,7 @@ class SelectedPart:
 
     @cached_property
     def is_one_bead_thick(self) -> bool:
-        """Whether the faces of the solid, named or else detected, form a wall of one bead."""
+        """Whether the named or detected faces of the solid form a wall one bead thick."""
         try:
             from ...brep.walls.wall_on import named_faces  # loads splines
 
@@ -159,7 +167,7 @@ class SelectedPart:
 
     @cached_property
     def mesh(self) -> MeshFacts:
-        """The mesh of a part without a shape. Raises InputError NO_FACES."""
+        """Return the mesh properties of a part without a shape. Raises InputError NO_FACES."""
         body = self.source.body()
         mesh = connected_triangles(body.vertices, body.triangles, self.label, 0.0)
         holes = find_holes(separate_vertices(mesh.vertices, mesh.triangles))
@@ -181,7 +189,7 @@ class SelectedPart:
 
     @cached_property
     def lying_share(self) -> float:
-        """The share of a mesh or skin, by its area, that is less than STEEP_RAD from level."""
+        """Return the area fraction of a mesh or skin inclined less than STEEP_RAD from level."""
         if self.shape is None:
             corners = self.mesh.corners
         else:

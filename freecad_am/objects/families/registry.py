@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The planner of each family, imported when one of its features is made or planned.
+"""Planner of each family, imported when a feature of the family is made or planned.
 
-`core.families.registry` lists the families; the module here has the kind as its name.
+`core.families.registry` lists the families. Each planner module is named after the family kind.
 """
 
 from __future__ import annotations

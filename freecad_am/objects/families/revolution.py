@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts of revolution: layers and build directions are determined together."""
+"""Plan parts of revolution, with layers and build directions determined together."""
 
 from __future__ import annotations
 
@@ -33,15 +33,13 @@ if TYPE_CHECKING:
 
 
 class RevolutionPlanner(FeaturePlanner):
-    """Plans walls of parts of revolution."""
+    """Planner of walls of parts of revolution."""
 
     proxy = ("feature", "RevolutionFeature")
     recognition_rank = 30
 
     def recognise(self, part: SelectedPart, remark: str) -> Proposal | Refusal:
-        """Propose parts without a substrate that have one axis, and whose solid is no thicker than a
-        bead.
-        """
+        """Propose parts of revolution without a substrate, with solids no thicker than a bead."""
         if part.shape is None or part.substrate is not None or part.edges:
             return Refusal()
         if part.is_several_solids or part.revolved_wall is None:
@@ -98,8 +96,10 @@ class RevolutionPlanner(FeaturePlanner):
     def keep_clear(
         self, toolpath: Toolpath, inputs: Given, bodies: Sequence[Body], feature: int | None
     ) -> Toolpath:
-        """Check clearance to the surroundings and to other features; the strategy has kept clear of
-        the rest."""
+        """Check clearance to surroundings and other features.
+
+        The strategy has already kept the nozzle clear of the feature itself.
+        """
         if feature is None:
             touch_issues = nozzle_check.nozzle_issues(
                 toolpath, inputs.wall.surroundings, inputs.nozzle
@@ -116,7 +116,7 @@ class RevolutionPlanner(FeaturePlanner):
     def part_distances(
         self, toolpath: Toolpath, inputs: Given, sources: Sequence[Taken], places: on_part.Places
     ) -> PartDistances | None:
-        """Return distances from the faces; a middle wall lies between two faces."""
+        """Return distances from the faces, or from the solid for a middle wall."""
         if inputs.strategy.wall != "middle":
             return super().part_distances(toolpath, inputs, sources, places)
         if not sources[0].shape.Solids:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids in planes, curved layers, or layers along a guide."""
+"""Plan solids in planes, curved layers, or layers along a guide."""
 
 from __future__ import annotations
 
@@ -28,25 +28,25 @@ from .given import Given
 from .planner import PartDistances
 from .recognition import STEEP_RAD, UP, Proposal, Refusal, SelectedPart
 
-OVER = 0.1  # share of the surface; with more overhang, parts get layers that need no support
-NEGLIGIBLE_SHARE = 0.005  # share of the surface that rounds to nothing
+OVER = 0.1  # overhang area fraction above which parts get layers that need no support
+NEGLIGIBLE_SHARE = 0.005  # surface fraction that rounds to zero
 LEVEL_COSINE = float(np.cos(np.radians(1.0)))
-BOTTOM_SHARE = 0.01  # share of the height above the lowest point that counts as supported
-MAX_MEND_MM = 10000.0  # mm; the bound of `strategy.mend`
+BOTTOM_SHARE = 0.01  # height above the lowest point that counts as supported, fraction of height
+MAX_MEND_MM = 10000.0  # mm; maximum of `strategy.mend`
 PLANE = "Part::GeomPlane"
-TOUCHING_FACE = 0.05  # mm from a curved face
-ACROSS = (0.2, 0.5, 0.8)  # of a face, either way
-MAX_TESTED_SOLIDS = 8  # solids that are tested
+TOUCHING_FACE = 0.05  # mm; maximum distance of a face that touches a curved face
+ACROSS = (0.2, 0.5, 0.8)  # sample positions along both parameters of a face, fractions
+MAX_TESTED_SOLIDS = 8  # maximum number of tested solids
 
 
 class SolidPlanner(FilledPlanner):
-    """Plans solids in layers of any kind."""
+    """Planner of solids in layers of any kind."""
 
     proxy = ("solid_feature", "SolidFeature")
     recognition_rank = 60
 
     def recognise(self, part: SelectedPart, remark: str) -> Proposal | Refusal:
-        """Propose everything that no other family recognises."""
+        """Propose every part that no other family recognises."""
         if part.shape is None:
             return _propose_for_mesh(part)
         why = (
@@ -59,15 +59,17 @@ class SolidPlanner(FilledPlanner):
     def part_distances(
         self, toolpath: Toolpath, inputs: Given, sources: Sequence[Taken], places: on_part.Places
     ) -> PartDistances | None:
-        """Return distances where the part was cut, above the surface below the beads of a layer."""
+        """Return distances at the slicing height, above the lower surface of a layer's beads."""
         up = inputs.strategy.share_of_cut * inputs.strategy.layer_height * places.build
         cut_places = places._replace(points=places.points + up)
         return super().part_distances(toolpath, inputs, sources, cut_places)
 
 
 def _propose_for_mesh(part: SelectedPart) -> Proposal:
-    """Fill a mesh. Pieces of a model for display that are pushed into one another intersect: they
-    are filled too, with their openings closed, as they are no wall of one bead.
+    """Propose to fill a mesh.
+
+    Intersecting pieces, as in display models, are filled too, with openings closed, because they
+    are not a wall one bead thick.
     """
     mesh = part.mesh
     if not mesh.is_open:
@@ -87,8 +89,9 @@ def _propose_for_mesh(part: SelectedPart) -> Proposal:
 
 
 def _choose_layers(part: SelectedPart, reason: str) -> Proposal:
-    """In planes, or in layers without support where the machine can tilt and much hangs over, or
-    its ground is curved.
+    """Propose planes, or curved layers if the machine can tilt and the part needs them.
+
+    A part needs curved layers if it has much overhang or rests on a curved substrate.
     """
     ground = part.substrate
     if part.tilts and ground is not None and rests_on_bend(part.source, ground):
@@ -154,8 +157,9 @@ def _choose_layers(part: SelectedPart, reason: str) -> Proposal:
 
 
 def _overhang(body: Body, direction: Array) -> float:
-    """The share of the surface that leans out by more than 45 deg from the direction of stacking
-    (3,), without its bottom.
+    """Return the surface fraction that overhangs by more than 45 deg, excluding the bottom.
+
+    direction: stacking direction, (3,).
     """
     corners, normals, areas = facets([body], None)
     heights = corners @ direction
@@ -171,8 +175,9 @@ def _overhang(body: Body, direction: Array) -> float:
 
 
 def _stands(body: Body, direction: Array, layer_height: float) -> bool:
-    """Whether the plane through the lowest point along a direction of stacking (3,) has level
-    triangles: curved layers begin there. Triangles of a round bottom do not count.
+    """Whether a body has a flat bottom normal to the stacking direction, from which layers start.
+
+    direction: stacking direction, (3,). Triangles of a rounded bottom do not count.
     """
     corners, normals, _ = facets([body], None)
     heights = corners @ direction
@@ -188,9 +193,7 @@ def _direction_text(direction: Array) -> str:
 
 
 def rests_on_bend(deposit: Taken, ground: Taken) -> bool:
-    """Whether a part rests on a curved face of the ground; False for meshes, and if the kernel
-    fails.
-    """
+    """Whether a part rests on a curved face of the ground; False for meshes or kernel failures."""
     with contextlib.suppress(*kernel.FAULTS):
         return (
             deposit.shape is not None
@@ -201,7 +204,7 @@ def rests_on_bend(deposit: Taken, ground: Taken) -> bool:
 
 
 def lies_on_bend(part: Any, ground: Any) -> bool:
-    """Whether a face of a shape rests on a curved face of its carrier, another shape."""
+    """Whether a face of a shape rests on a curved face of the shape `ground`."""
     bent = [face for face in ground.Faces if face.Surface.TypeId != PLANE]
     return any(
         all(
@@ -216,7 +219,7 @@ def lies_on_bend(part: Any, ground: Any) -> bool:
 
 
 def _face_points(face: Any) -> list[Any]:
-    """Points within a face, in its middle and around it."""
+    """Return points inside a face, at its centre and around the centre."""
     low_u, high_u, low_v, high_v = face.ParameterRange
     shares = [
         (low_u + u * (high_u - low_u), low_v + v * (high_v - low_v)) for u in ACROSS for v in ACROSS
@@ -226,7 +229,7 @@ def _face_points(face: Any) -> list[Any]:
 
 
 def bend_hint(shape: Any) -> str:
-    """A hint for several solids if most rest on a curved face of another one; else ''."""
+    """Return a hint if most of several solids rest on a curved face of another solid, else ''."""
     with contextlib.suppress(*kernel.FAULTS):
         if name := carrier(shape.Solids):
             return Text(
@@ -237,8 +240,9 @@ def bend_hint(shape: Any) -> str:
 
 
 def carrier(solids: Sequence[Any]) -> str:
-    """The name of the largest of several solids, such as `Solid1`, if most of up to MAX_TESTED_SOLIDS others
-    rest on one of its curved faces; else ''.
+    """Return the name of the largest solid, such as `Solid1`, if it carries most other solids.
+
+    Up to MAX_TESTED_SOLIDS other solids are tested for contact with its curved faces. Else ''.
     """
     sizes = [abs(solid.Volume) for solid in solids]
     largest = sizes.index(max(sizes))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls on a part, on edges or on the platform."""
+"""Plan walls on a part, on edges or on the platform."""
 
 from __future__ import annotations
 
@@ -25,14 +25,15 @@ if TYPE_CHECKING:
 
 
 class SurfacePlanner(FeaturePlanner):
-    """Plans walls, layer by layer along the surface or as fronts."""
+    """Planner of walls, in layers along the surface or as offset fronts."""
 
     proxy = ("surface_feature", "SurfaceFeature")
     recognition_rank = 50
 
     def recognise(self, part: SelectedPart, remark: str) -> Proposal | Refusal:
-        """Propose open meshes, skins, selected faces, what names start edges, and thin shells on a
-        substrate.
+        """Propose open meshes, skins, selected faces, parts with start edges, and thin shells.
+
+        Thin shells must be on a substrate.
         """
         if part.shape is None:
             return _recognise_mesh(part)
@@ -74,8 +75,9 @@ class SurfacePlanner(FeaturePlanner):
 
 
 def _refuse_start_below(inputs: Given, remedy: str) -> None:
-    """Raise InputError OFF_PLATFORM for a wall that begins below the platform: its other layers may
-    take minutes.
+    """Raise InputError OFF_PLATFORM for a wall that starts below the platform.
+
+    Checking the start first avoids planning all layers, which may take minutes.
     """
     if inputs.cell is None or (inputs.stands is None and inputs.cell.mount == "feature"):
         return

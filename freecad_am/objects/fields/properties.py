@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parameters dataclasses as properties of a document object, written and read back.
+"""Parameter dataclasses as properties of a document object: add, write and read.
 
-Adding the properties that an object lacks is the migration of an old document.
+Adding missing properties to an object also migrates old documents.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _TYPES = {
 
 
 def property_type(row: Row, obj: Any) -> str:
-    """The FreeCAD type that holds a row; times are plain numbers where FreeCAD has no type for them (0.20)."""
+    """Return the FreeCAD property type of a row. In FreeCAD 0.20, times are plain numbers."""
     if row.form == f.LENGTH:
         signed = row.spec.low is None or row.spec.low < 0
         return "App::PropertyDistance" if signed else "App::PropertyLength"
@@ -46,13 +46,13 @@ def property_type(row: Row, obj: Any) -> str:
 
 
 def tooltip(row: Row, type_name: str) -> str:
-    """The help of a row, with its unit where the property itself has none."""
+    """Return the help of a row, with the unit if the property type has no unit."""
     bare = type_name in ("App::PropertyFloat", "App::PropertyString") and row.unit
     return f"{row.spec.help} ({row.unit})" if bare else row.spec.help
 
 
 def add(obj: Any, cls: type, group: str) -> None:
-    """Give the object the properties of a parameters dataclass that it lacks, at their defaults."""
+    """Add the missing properties of a parameter dataclass to an object, with default values."""
     have = set(obj.PropertiesList)
     for row in rows(cls):
         if row.name not in have:
@@ -71,9 +71,7 @@ def add(obj: Any, cls: type, group: str) -> None:
 
 
 def write(obj: Any, parameters: Any) -> None:
-    """Set the properties of a parameters dataclass; only changed ones, so that nothing else is
-    touched.
-    """
+    """Set the changed properties of a parameter dataclass, so that FreeCAD touches no others."""
     values = flat(parameters)
     for row in rows(type(parameters)):
         if _differs(obj, row, values[row.key]):
@@ -81,9 +79,9 @@ def write(obj: Any, parameters: Any) -> None:
 
 
 def read(obj: Any, cls: type, section: str) -> Any:
-    """The parameters dataclass of the object's properties.
+    """Read a parameter dataclass from the properties of an object.
 
-    `section` is the prefix of the dataclass's own errors. Raises InputError naming the object's Label and property.
+    section: prefix in the errors of the dataclass. Raises InputError, naming Label and property.
     """
     try:
         return build(cls, _inner_values(obj, cls))
@@ -99,14 +97,20 @@ def read(obj: Any, cls: type, section: str) -> Any:
 
 
 def _inner_values(obj: Any, cls: type) -> dict[str, Any]:
-    """Inner values by row key. InputError names Label and property, or the key of bad records."""
+    """Return inner values by row key.
+
+    Raises InputError, naming Label and property, or the key of invalid records.
+    """
     return {
         row.key: row.inner(getattr(obj, row.name), f"{obj.Label}.{row.name}") for row in rows(cls)
     }
 
 
 def fingerprint(obj: Any, cls: type) -> list[str]:
-    """The properties as texts that survive saving: FreeCAD keeps 16 decimals, so the last digits do not count."""
+    """Return the properties as text that does not change on saving.
+
+    FreeCAD saves 16 decimals, so the last digits are ignored.
+    """
     return [f"{row.name}={_canonical(getattr(obj, row.name))}" for row in rows(cls)]
 
 
@@ -141,7 +145,7 @@ def _set(obj: Any, row: Row, value: Any) -> None:
     else:
         setattr(obj, row.name, row.outer(value))
         if row.form == f.ANGLE and abs(row.inner(getattr(obj, row.name), row.name) - value) > 1e-9:
-            # FreeCAD keeps angles within a turn and says nothing
+            # FreeCAD silently reduces angles to one revolution
             outer_text = f.outer_text(row.spec, value)
             raise InputError(
                 "BAD_VALUE",
@@ -152,8 +156,10 @@ def _set(obj: Any, row: Row, value: Any) -> None:
 
 
 def _retype(obj: Any, row: Row) -> None:
-    """Make a property a text, which was a quantity in older documents and takes words by now. Until it is set it stays what
-    it was, so that opening such a document changes nothing."""
+    """Change a property of older documents from a quantity to a string, which can hold words.
+
+    The property is changed when it is set, so that opening an old document changes nothing.
+    """
     group = obj.getGroupOfProperty(row.name)
     obj.setExpression(row.name, None)
     obj.removeProperty(row.name)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The one converter of numbers with units and of poses: job files, properties and macros use it.
+"""Converter of quantities and poses, used by job files, properties and macros.
 
-Outside, a number without a unit is in mm, deg, mm/s, s or %; inside, values are mm, rad, mm/s, s and plain.
+Outer numbers without a unit are in mm, deg, mm/s, s or %. Inner values are in mm, rad, mm/s, s or
+plain numbers.
 """
 
 from __future__ import annotations
@@ -63,22 +64,22 @@ DIMENSION_NAMES = {
     (-1, 0, 1): "is a turn per length",
     NONE: "has no unit",
 }
-_OTHER_DIMENSION = (-99, 0, 0)  # any dimension with a mass, a current and so on
+_OTHER_DIMENSION = (-99, 0, 0)  # placeholder for dimensions with mass, current and so on
 _UNIT = "[^\\s\\d/*^+().,%-]+"
 _SIMPLE_QUANTITY = re.compile(
     rf"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(?:({_UNIT})(?:\s*/\s*({_UNIT}))?|(%))?",
     re.ASCII,
 )
-# signs that FreeCAD skips, which would change the meaning
+# characters that FreeCAD skips, which would change the meaning
 _FOREIGN_SIGNS = re.compile("[^A-Za-z0-9\\s.+*/^()'\"\u00b5\u00b0\u2032\u2033\u2212-]")
 _INFINITE_NUMBER = re.compile(r"([+-]?)\.?inf(?:\s*[a-z/\u00b0]+)?", re.IGNORECASE)
-# non-ASCII signs that FreeCAD reads in a quantity
+# non-ASCII characters that FreeCAD reads in a quantity
 _OTHER_SIGNS = "\N{DEGREE SIGN}\N{MICRO SIGN}\N{PRIME}\N{DOUBLE PRIME}\N{MINUS SIGN}"
-# a comma that may begin decimals, a no-break blank that may group digits
+# a comma that may be a decimal comma, or a no-break space that may group digits
 _TWO_WAYS = re.compile(r"(?:^|\s),\d|\d,\d.*\s|\s.*\d,\d|\d[\u00a0\u2009\u202f]\d", re.DOTALL)
 _MILLISECONDS = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*ms\s*", re.ASCII)
 _DECIMAL_COMMA = re.compile(r"\s*[-+]?\d*,\d+(?:[eE][-+]?\d+)?(?:\s*[^\d\s,.].*)?", re.ASCII)
-# where a term of a sum without exponents ends: at a sign, or at a number right after a unit
+# end of a term in a sum without exponents: a sign, or a number directly after a unit
 _TERMS = re.compile(
     r"(?<=[^\s(*/^+\u2212-])\s*[-+\u2212]|"
     "(?<=[A-Za-z\u00b5'\"\u00b0\u2032\u2033])\\s*(?=[\\d.])"
@@ -98,7 +99,7 @@ _Reading = tuple[float, Dimension | None]  # in the outer unit; None for a numbe
 def read(
     value: Any, kind: str, where: str, words: Sequence[str] = (), unreadable: str = "BAD_UNIT"
 ) -> float:
-    """Convert a text, number or FreeCAD quantity to the inner unit; the result may be infinite.
+    """Convert a string, number or FreeCAD quantity to the inner unit; the result may be infinite.
 
     Parameters
     ----------
@@ -107,22 +108,23 @@ def read(
     kind : str
         A key of `WANTED`.
     where : str
-        Names the value in errors.
+        Name of the value in errors.
     words : sequence of str
-        Words that the caller takes in place of a number, for messages.
+        Words that the caller accepts instead of a number, for messages.
     unreadable : str
-        Code for a text that is not a quantity: job files say BAD_UNIT, properties and macros BAD_VALUE.
+        Error code for a string that is not a quantity: BAD_UNIT for job files, BAD_VALUE for
+        properties and macros.
 
     Returns
     -------
     float
-        mm, rad, mm/s, s or plain.
+        Value in mm, rad, mm/s or s, or a plain number.
 
     Raises
     ------
     InputError
-        BAD_VALUE for another type, an empty text, a comma, NaN or a number too large; BAD_UNIT for
-        another dimension; `unreadable` for any other text.
+        BAD_VALUE for another type, an empty string, a comma, NaN or a number too large; BAD_UNIT
+        for another dimension; `unreadable` for any other string.
     """
     expected, example = WANTED[kind]
     example = Text.joined(" or ", (example, *words))
@@ -140,12 +142,12 @@ def read(
 
 
 def too_large(value: Any, kind: str, where: str) -> InputError:
-    """Return the error for a number beyond any use."""
+    """Return the error for a number that is too large."""
     return InputError("BAD_VALUE", where, "{} is too large; give {}", quote(value), WANTED[kind][1])
 
 
 def quote(value: Any) -> str:
-    """A value as its user wrote it, cut short where it is long."""
+    """Return a value as the user wrote it, truncated if long."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, App.Units.Quantity):
@@ -168,9 +170,9 @@ def safe_repr(value: Any) -> str:
 
 
 def _read_number(value: Any, expected: Dimension, where: str, example: str) -> _Reading:
-    """The number and dimension of a value that is no text. Raises InputError BAD_VALUE."""
+    """Return number and dimension of a value that is not a string. Raises InputError BAD_VALUE."""
     if isinstance(value, App.Units.Quantity):
-        # a plain number may be a coefficient in a unit of its own, as what its expression gives
+        # for plain numbers, ignore the unit: a coefficient may have one, as may its expression
         return float(value.Value), None if expected == NONE else _dimension(value)
     try:
         if isinstance(value, bool):
@@ -183,7 +185,7 @@ def _read_number(value: Any, expected: Dimension, where: str, example: str) -> _
 
 
 def _read_text(text: str, kind: str, where: str, example: str, unreadable: str) -> _Reading:
-    """The number in the outer unit and the dimension of a text. Raises InputError."""
+    """Return the number in the outer unit and the dimension of a string. Raises InputError."""
     plain = plain_blanks(text).strip()
     if not plain:
         raise InputError("BAD_VALUE", where, "the value is missing; give {}", example)
@@ -218,7 +220,10 @@ def _read_text(text: str, kind: str, where: str, example: str, unreadable: str) 
 
 
 def _read_other(text: str, kind: str, where: str, example: str, unreadable: str) -> _Reading:
-    """The same by Python for plain numbers in its notation, else by FreeCAD for calculations and rare units."""
+    """Read a string that needs Python or FreeCAD.
+
+    Python reads plain numbers in Python notation. FreeCAD reads calculations and rare units.
+    """
     if WANTED[kind][0] == NONE:
         bare = text.rstrip().removesuffix("%") if kind == f.RATIO else text
         if (number := _plain_number(bare)) is not None:
@@ -233,14 +238,14 @@ def _read_other(text: str, kind: str, where: str, example: str, unreadable: str)
     try:
         value = quantity(text)
     except (ValueError, TypeError, ArithmeticError, OSError, RuntimeError):
-        raise wrong from None  # FreeCAD's versions differ in what they raise
+        raise wrong from None  # FreeCAD versions raise different errors
     if not math.isfinite(value.Value):
         raise wrong
     return float(value.Value), _dimension(value)
 
 
 def _plain_number(text: str) -> float | None:
-    """The finite number of a text in Python's notation, such as '1_000'; None for any other text."""
+    """Return the finite number of a string in Python notation, such as '1_000', or None."""
     try:
         number = float(text)
     except ValueError:
@@ -249,7 +254,7 @@ def _plain_number(text: str) -> float | None:
 
 
 def _dimension(value: Any) -> Dimension | None:
-    """The dimension of FreeCAD's quantity; None for a plain number."""
+    """Return the dimension of a FreeCAD quantity, None for a plain number."""
     length, mass, time, *others, angle = value.Unit.Signature
     if mass or any(others):
         return _OTHER_DIMENSION
@@ -257,7 +262,7 @@ def _dimension(value: Any) -> Dimension | None:
 
 
 def _comma(text: str, where: str, example: str) -> InputError:
-    """The error for a text with a comma: the same with a decimal point where that is meant."""
+    """Return the error for a string with a comma; suggest a decimal point if appropriate."""
     if not _DECIMAL_COMMA.fullmatch(text):
         return InputError("BAD_VALUE", where, "{} is not a quantity; give {}", quote(text), example)
     return InputError(
@@ -278,12 +283,12 @@ def pose(value: Any, where: str, words: Sequence[str] = ()) -> pendants.Pose:
     Parameters
     ----------
     value : object
-        A placement; three or six numbers, in a text or a list, where an entry of a list may have a
-        unit; or a text or list as a pendant shows it: kuka 1000 0 300 90 0 0.
+        A placement; three or six numbers in a string or a list, whose entries may have units; or a
+        string or list in pendant form: kuka 1000 0 300 90 0 0.
     where : str
-        Names the value in errors.
+        Name of the value in errors.
     words : sequence of str
-        Words that the caller takes in place of a pose, for messages.
+        Words that the caller accepts instead of a pose, for messages.
 
     Returns
     -------
@@ -317,7 +322,7 @@ def pose(value: Any, where: str, words: Sequence[str] = ()) -> pendants.Pose:
 
 
 def as_shown(value: Any, where: str) -> pendants.Pose | None:
-    """The pose that a text or list says as a pendant shows it; None for other values."""
+    """Return the pose of a string or list in pendant form, None for other values."""
     if isinstance(value, str):
         words = value.replace(",", " ").split()
     else:
@@ -328,7 +333,7 @@ def as_shown(value: Any, where: str) -> pendants.Pose | None:
 
 
 def is_pose(value: Any) -> bool:
-    """Whether the value of a parameter that takes a length or a pose is a pose, right or wrong."""
+    """Whether a value of a length-or-pose parameter is meant as a pose, valid or not."""
     if not isinstance(value, str):
         return isinstance(value, (list, tuple, App.Placement))
     words = value.replace(",", " ").split()
@@ -354,9 +359,11 @@ def _are_numbers(words: list[str]) -> bool:
 
 
 def split(text: str, where: str) -> list[str]:
-    """The words of a list with commas or blanks between.
-    Raises InputError 'BAD_VALUE' naming `where` for one with both, where a
-    comma may begin decimals ('10,5 20,5' is two numbers, or four), and for digits that are grouped by no-break blanks."""
+    """Split a list separated by commas or spaces.
+
+    Raises InputError BAD_VALUE, naming `where`, for an ambiguous list: a comma may be a decimal
+    comma ('10,5 20,5' is two or four numbers), or no-break spaces may group digits.
+    """
     if _TWO_WAYS.search(text.strip()):
         remedy = "write decimals with a point and one kind of separator, as in 10.5 20.5"
         raise InputError(
@@ -366,15 +373,16 @@ def split(text: str, where: str) -> list[str]:
 
 
 def plain_blanks(text: str) -> str:
-    """A text with plain blanks for no-break and thin ones, which FreeCAD does not know."""
+    """Replace no-break and thin spaces, which FreeCAD does not read, by plain spaces."""
     return re.sub(r"\s", " ", text)
 
 
 def quantity(text: str) -> Any:
-    """FreeCAD's quantity of a text. ValueError for other texts, also where FreeCAD would stop at an
-    unknown sign and drop the rest with the unit ('1’234 mm' would give 1), or where a '[' would
-    begin a comment that swallows all later quantities. 'ms', which FreeCAD does not know (0.20), is
-    read here.
+    """Convert a string to a FreeCAD quantity. Raises ValueError for other strings.
+
+    Reject unknown characters too, because FreeCAD would drop the rest with the unit ('1’234 mm'
+    gives 1). Reject '[', because FreeCAD would start a comment that swallows all later quantities.
+    Read 'ms' here, because FreeCAD 0.20 does not know this unit.
     """
     plain = plain_blanks(text).replace("\N{GREEK SMALL LETTER MU}", "\N{MICRO SIGN}")
     if "[" in plain or any(not sign.isascii() and sign not in _OTHER_SIGNS for sign in plain):
@@ -387,13 +395,16 @@ def quantity(text: str) -> Any:
 
 
 def _adds_dimensions(text: str) -> bool:
-    """Whether terms of a sum have different dimensions. A unit that is not in `UNITS` has another one than those that are."""
+    """Whether terms of a sum have different dimensions.
+
+    Units outside `UNITS` count as a different dimension.
+    """
     terms = _TERMS.split(_FUNCTIONS.sub("1", _EXPONENTS.sub("", text)))
     return len(terms) > 1 and len({_term_dimension(term) for term in terms} - {NONE}) > 1
 
 
 def _term_dimension(term: str) -> Dimension:
-    """The dimension of a product of numbers and units."""
+    """Return the dimension of a product of numbers and units."""
     length, time, angle = NONE
     for over, unit, power in _FACTORS.findall(term):
         times = (-1 if over else 1) * int(power or 1)

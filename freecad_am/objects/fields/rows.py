@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Flattened parameters dataclasses: one row per property of a document object, field of a panel,
-macro keyword.
+"""Flattened parameter dataclasses, with one row per property, panel field and macro keyword.
 
-Outside, numbers are mm, deg, mm/s and s and poses are x y z RX RY RZ; inside, angles are rad.
+Outer values are in mm, deg, mm/s and s; outer poses are x y z RX RY RZ. Inner angles are in rad.
 """
 
 from __future__ import annotations
@@ -37,7 +36,7 @@ def is_text(value: Any) -> bool:
 
 
 def checked_words(words: Any, where: str) -> list[str]:
-    """A list of texts. Raises InputError BAD_VALUE naming `where` for anything else."""
+    """Return a list of strings. Raises InputError BAD_VALUE, naming `where`, for anything else."""
     if not isinstance(words, (list, tuple)) or not all(map(is_text, words)):
         raise InputError("BAD_VALUE", where, "{} is not a text; put it in quotes", safe_repr(words))
     return list(words)
@@ -47,22 +46,22 @@ _NAME_LENGTH = 20
 
 
 def proposed_name(text: str) -> str:
-    """Return a program name that controllers take: letters A to Z, digits and underscores.
+    """Return a program name that controllers accept: letters A to Z, digits and underscores.
 
     Parameters
     ----------
     text : str
-        A label.
+        Label from which to derive the name.
 
     Returns
     -------
     str
-        The name.
+        The program name.
 
     Raises
     ------
     InputError
-        BAD_VALUE for other types.
+        BAD_VALUE if `text` is not a string.
 
     Examples
     --------
@@ -76,21 +75,23 @@ def proposed_name(text: str) -> str:
 
 
 def name_for(text: str, post: str) -> str:
-    """The same, with room for the digits of parts where the controller of a post takes few characters; '' or 'none' for no
-    post."""
+    """Return the proposed program name, shortened if the controller of a post requires short names.
+
+    A shortened name leaves space for the numbers of part files. post: '' or 'none' for no post.
+    """
     name = proposed_name(text)
     naming = catalogue.load(post).NAMING if post in catalogue.NAMES else None
     return name if naming is None or naming.fits(name) else naming.proposed(name)
 
 
 def taken_name(text: str, post: str) -> str:
-    """The proposed name as it is where the controller takes it, else one that it takes."""
+    """Return the proposed name if the controller accepts it, else a shortened name."""
     name = proposed_name(text)
     return name_for(text, post) if refusal(name, post) else name
 
 
 def refusal(name: str, post: str) -> str:
-    """Why the controller of a post refuses the name of a program, '' where it takes it."""
+    """Return why the controller of a post rejects a program name, '' if it accepts the name."""
     if post not in catalogue.NAMES:
         return ""
     try:
@@ -103,7 +104,7 @@ def refusal(name: str, post: str) -> str:
 TEXT_LIST, MIXED, LENGTH_OR_POSE = "text list", "mixed", "length or pose"
 ENDS = ("low", "high")
 _ABBREVIATED = {"rz": "RZ", "nc": "NC machines"}
-_LABELS = {  # of parameters whose keys do not say it in words
+_LABELS = {  # labels of parameters whose keys are not readable as words
     "given": "Given polynomials",
     "degree": "Degree of the polynomials",
     "parameter": "Quantity of polynomials",
@@ -120,9 +121,12 @@ _LABELS = {  # of parameters whose keys do not say it in words
 
 @dataclass(frozen=True)
 class Row:
-    """One parameter. `path` leads to it from the dataclass (an int picks an end of a range); `form` is the kind of
-    the property that holds it: the kind of its `Spec`, or one of TEXT_LIST, MIXED (a text holding a quantity or a
-    word, empty for None) and LENGTH_OR_POSE (a text)."""
+    """One parameter.
+
+    path: field names from the dataclass to the parameter; an int selects an end of a range. form:
+    kind of the property, which is the kind of the `Spec` or one of TEXT_LIST, MIXED (a string with
+    a quantity or a word, empty for None) and LENGTH_OR_POSE (a string).
+    """
 
     path: tuple[str | int, ...]
     spec: f.Spec
@@ -131,24 +135,22 @@ class Row:
 
     @cached_property
     def key(self) -> str:
-        """Its name as a macro keyword: seam_angle, rotation_range_low."""
+        """Return the macro keyword: seam_angle, rotation_range_low."""
         return "_".join(ENDS[step] if isinstance(step, int) else step for step in self.path)
 
     @cached_property
     def name(self) -> str:
-        """Its name as a property: SeamAngle, RotationRangeLow."""
+        """Return the property name: SeamAngle, RotationRangeLow."""
         return property_name(self.key)
 
     @property
     def unit(self) -> str:
-        """The outer unit, or ''."""
+        """Return the outer unit, or ''."""
         return f.OUTER_UNIT.get(self.spec.kind, "")
 
     @property
     def label(self) -> str:
-        """Its name in a panel: 'Layer height' for layer_height; the box of the group names the
-        group.
-        """
+        """Return the panel label: 'Layer height' for layer_height, without the group name."""
         words = [("from", "to")[step] if isinstance(step, int) else step for step in self.path]
         if len(words) == 1 and words[0] in _LABELS:
             return _LABELS[words[0]]
@@ -156,9 +158,9 @@ class Row:
         return _headed(" ".join(words))
 
     def inner(self, value: Any, where: str) -> Any:
-        """The value as the dataclass holds it, from a property's value, a plain value in outer units or a text.
+        """Convert a property value, a plain value in outer units or a string to the inner value.
 
-        Raises InputError 'BAD_VALUE' or 'BAD_UNIT' naming `where`.
+        Raises InputError BAD_VALUE or BAD_UNIT, naming `where`.
         """
         if isinstance(value, str):
             checked_words([value], where)
@@ -183,7 +185,7 @@ class Row:
         return self._number(value, where)
 
     def _number(self, value: Any, where: str) -> float:
-        """The number of a value. Raises InputError BAD_VALUE or BAD_UNIT."""
+        """Convert a value to an inner number. Raises InputError BAD_VALUE or BAD_UNIT."""
         if self.spec.kind == f.COUNT:
             return _count(self.spec, value, where)
         number = quantities.read(value, self.spec.kind, where, self.spec.words, "BAD_VALUE")
@@ -192,7 +194,7 @@ class Row:
         return number
 
     def _records(self, records: Records, value: Any, where: str) -> Any:
-        """Records of their text or JSON. Raises InputError BAD_VALUE, at the dotted key of a job file."""
+        """Parse records from text or JSON. Raises InputError BAD_VALUE at the dotted job key."""
         if records.single and (value is None or isinstance(value, records.record)):
             return value
         if not isinstance(value, str):
@@ -202,7 +204,7 @@ class Row:
         return records.read(pendants.plain(value, where) if self.spec.poses else value)
 
     def _list(self, value: Any, where: str) -> tuple[Any, ...]:
-        """Words, or records of words. Raises InputError BAD_VALUE."""
+        """Parse a list of words, or of records made of words. Raises InputError BAD_VALUE."""
         records = self.spec.records
         if records is not None and not isinstance(value, str) and _are(records.record, value):
             return tuple(value)
@@ -214,7 +216,7 @@ class Row:
         return tuple(words) if records is None else records.read(words)
 
     def outer(self, value: Any) -> Any:
-        """The value in outer units as a Python literal, such as a panel shows and a macro passes."""
+        """Convert a value to outer units, as a Python value for panels and macros."""
         if self.spec.records is not None:
             return self.spec.records.text(value)
         if _is_list(value) and (self.spec.kind == f.POSE or self.form == LENGTH_OR_POSE):
@@ -234,11 +236,11 @@ class Row:
         return value
 
     def text(self, value: Any) -> str:
-        """The value as a text with its unit: what a MIXED or LENGTH_OR_POSE property holds."""
+        """Format an inner value as text with its unit, as stored in MIXED or LENGTH_OR_POSE."""
         return self.outer_text(self.outer(value))
 
     def outer_text(self, outer_value: Any) -> str:
-        """The same of a value in outer units."""
+        """Format a value in outer units as text with its unit."""
         if outer_value is None or isinstance(outer_value, str):
             return outer_value or ""
         if _is_list(outer_value):
@@ -247,24 +249,24 @@ class Row:
 
 
 def group_of(row: Row) -> str:
-    """What a panel calls the group that a row is nested in: 'Seam' for seam.angle."""
+    """Return the panel label of a row's group: 'Seam' for seam.angle."""
     return _headed(str(row.path[0]))
 
 
 def _headed(key: str) -> str:
-    """A key as a heading."""
+    """Convert a key to a heading."""
     text = key.replace("_", " ")
     return _ABBREVIATED.get(text) or text[0].upper() + text[1:]
 
 
 def property_name(key: str) -> str:
-    """LayerHeight for layer_height."""
+    """Return the property name of a key: LayerHeight for layer_height."""
     return "".join(word[0].upper() + word[1:] for word in re.split(r"[_.]", key))
 
 
 @cache
 def rows(cls: type) -> tuple[Row, ...]:
-    """The rows of a parameters dataclass, groups flattened, in the order of its fields."""
+    """Return the rows of a parameter dataclass in field order, with groups flattened."""
     result: list[Row] = []
     for field in dataclasses.fields(cls):
         spec = f.spec_of(field)
@@ -282,9 +284,9 @@ def rows(cls: type) -> tuple[Row, ...]:
 
 
 def build(cls: type, values: dict[str, Any]) -> Any:
-    """Build the dataclass from inner values by row key; missing rows keep their default.
+    """Build a parameter dataclass from inner values by row key; missing rows keep their defaults.
 
-    Raises the InputError of the dataclass.
+    Raises the InputErrors of the dataclass.
     """
     nested: dict[str, Any] = {}
     for row in rows(cls):
@@ -297,7 +299,7 @@ def build(cls: type, values: dict[str, Any]) -> Any:
 
 
 def flat(parameters: Any) -> dict[str, Any]:
-    """Return the inner values of a parameters dataclass by row key."""
+    """Return the inner values of a parameter dataclass by row key."""
     values = {}
     for row in rows(type(parameters)):
         value = parameters
@@ -331,7 +333,7 @@ def _form(spec: f.Spec, annotation: str) -> str:
 
 
 def _are(cls: type, values: Any) -> bool:
-    """Whether a value is a list of objects of one class."""
+    """Whether a value is a list of instances of a class."""
     return _is_list(values) and all(isinstance(value, cls) for value in values)
 
 
@@ -340,7 +342,7 @@ def _is_list(value: Any) -> bool:
 
 
 def _count(spec: f.Spec, value: Any, where: str) -> float:
-    """A whole number where it is one; any other number is rejected with the range."""
+    """Return an integer value as a number; the dataclass rejects fractions with its range."""
     try:
         number = float(value)
     except (TypeError, ValueError):
@@ -361,20 +363,22 @@ FOLLOW = (
     f.NUMBER,
     f.TURN_RATE,
     f.COUNT,
-)  # forms of rows that can
+)  # forms of rows that can follow expressions
 
 
 def is_expression(value: Any) -> bool:
-    """Whether a value is an expression rather than a number or a word."""
+    """Whether a value is an expression, not a number or a word."""
     return isinstance(value, str) and value.lstrip().startswith(MARK)
 
 
 def evaluated(value: str, obj: Any, where: str) -> Any:
-    """What an expression gives now, a quantity or a number, names in it seen from `obj`.
-    Raises InputError 'BAD_EXPRESSION'."""
+    """Return the current result of an expression, a quantity or a number.
+
+    Names are resolved from `obj`. Raises InputError BAD_EXPRESSION.
+    """
     try:
         result = obj.evalExpression(_bare(value))
-    except Exception as error:  # FreeCAD's own errors share no base
+    except Exception as error:  # FreeCAD's errors have no common base class
         raise _wrong(value, where, error) from None
     if isinstance(result, bool) or not (
         isinstance(result, (int, float)) or hasattr(result, "Unit")
@@ -390,31 +394,35 @@ def evaluated(value: str, obj: Any, where: str) -> Any:
 
 
 def follow(obj: Any, row: Row, value: str | None) -> None:
-    """Let the property of a row follow an expression, None for none any more. Raises InputError 'BAD_EXPRESSION'."""
+    """Make the property of a row follow an expression, or no expression if None.
+
+    Raises InputError BAD_EXPRESSION.
+    """
     if value is None:
         if row.name in dict(obj.ExpressionEngine):
             obj.setExpression(row.name, None)
         return
     try:
         obj.setExpression(row.name, _bare(value))
-    except Exception as error:  # such as one that follows itself
+    except Exception as error:  # such as a cyclic expression
         raise _wrong(value, f"{obj.Label}.{row.name}", error) from None
 
 
 def of(obj: Any, row: Row) -> str:
-    """The expression that the property of a row follows, or ''."""
+    """Return the expression that the property of a row follows, or ''."""
     text = dict(obj.ExpressionEngine).get(row.name)
     return f"{MARK}{text}" if text else ""
 
 
 def broken(obj: Any) -> str:
-    """A remedy for an expression of an object that no longer gives a value, else ''. FreeCAD then
-    computes nothing and writes only to the report view.
+    """Return a remedy for an expression of an object that cannot be evaluated any more, else ''.
+
+    In this case, FreeCAD does not run the object and only writes to the report view.
     """
     for name, text in getattr(obj, "ExpressionEngine", ()):
         try:
             obj.evalExpression(text)
-        except Exception:  # FreeCAD's own errors share no base
+        except Exception:  # FreeCAD's errors have no common base class
             return Text(
                 "{} follows the expression {}, which no longer gives a value; give {} a value or "
                 "another expression",

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Several features as one toolpath: each planned by its family, then kept clear of the others'
-deposit at that time, which carries it too.
+"""Plan several features as one toolpath.
+
+Each feature is planned by its family. The earlier deposit of other features is then an obstacle
+for the nozzle and also supports the feature.
 """
 
 from __future__ import annotations
@@ -38,16 +40,18 @@ from .toolpaths import (
     over_edge,
 )
 
-OVERLAP = 0.01  # of the smaller part
-MM3 = 1000.0  # in a cm3
+OVERLAP = 0.01  # maximum overlap of two parts, fraction of the smaller part
+MM3 = 1000.0  # mm3 per cm3
 TOLERANCE_MM = 1e-9  # mm
 
 
 @dataclass(frozen=True)
 class Member:
-    """A feature of a sequence. inputs: independent of the document. on: objects of the substrate
-    that are parts of other features; neighbours: objects of the substrate that are not, if it has
-    both. is_complete: it deposits its whole sources, not faces of one.
+    """A feature of a sequence.
+
+    inputs: planning inputs, independent of the document. on: substrate objects that are parts of
+    other features. neighbours: other substrate objects, if the substrate has both kinds.
+    is_complete: whether the feature deposits whole sources, not only faces.
     """
 
     label: str
@@ -58,16 +62,14 @@ class Member:
     is_complete: bool = True
 
     def surroundings(self) -> tuple[Body, ...]:
-        """The bodies around it from the beginning, without parts of other features, which are
-        deposited later.
-        """
+        """Return the bodies around the feature, without parts of other features."""
         if not self.on:
             return tuple(self.inputs.wall.surroundings)
         return (*bodies(self.neighbours), *self.inputs.wall.surroundings[1:])
 
 
 def member(feature: Any, inputs: Given, all_features: Sequence[Any]) -> Member:
-    """A feature object as one of several."""
+    """Return a feature object as a member of a sequence."""
     own_sources = (feature.Source[0], *getattr(feature, "Further", ()))
     other_sources = [
         source
@@ -99,7 +101,7 @@ def member(feature: Any, inputs: Given, all_features: Sequence[Any]) -> Member:
 
 
 def _leaves(obj: Any) -> list[Any]:
-    """The objects that a compound is made of, or the object itself."""
+    """Return the objects in a compound, or the object itself."""
     links = getattr(obj, "Links", None) if obj.TypeId == "Part::Compound" else None
     return [obj] if links is None else [leaf for child in links for leaf in _leaves(child)]
 
@@ -107,11 +109,11 @@ def _leaves(obj: Any) -> list[Any]:
 def planned_in_sequence(
     members: Sequence[Member], order: str, names: Sequence[tuple[str, ...]]
 ) -> CoreToolpath:
-    """One toolpath of several features. order: `sequence` of the job; names: of the source objects
-    of each feature.
+    """Plan one toolpath for several features.
 
-    Raises InputError OVERLAP, FLOATS, and the errors of the families; an error about one feature
-    names it.
+    order: `sequence` of the job. names: names of the source objects of each feature. Raises
+    InputError OVERLAP, FLOATS, and the errors of the families. An error on one feature names the
+    feature.
     """
     _refuse_overlaps(members, names)
     cell = members[0].inputs.cell
@@ -158,9 +160,7 @@ def planned_in_sequence(
 def _judge_feature(
     toolpath: CoreToolpath, number: int, entry: Member, plates: Sequence[Body], stands: Any
 ) -> CoreToolpath:
-    """The toolpath with the support of one of its features, its distance from the part, and its
-    omissions.
-    """
+    """Check support, distance from the part and omissions of one feature of a toolpath."""
     feature_part, numbers = toolpath.parts[number]
     planes: tuple[Any, ...] = ()
     bases = bases_of(entry.inputs)
@@ -189,7 +189,7 @@ def _judge_feature(
 
 
 def _lowest(toolpath: CoreToolpath, feature_part: CoreToolpath) -> bool:
-    """Whether no other feature reaches lower along the feature's own vertical."""
+    """Whether no other feature reaches lower along the feature's vertical."""
     up = feature_part.frame[:3, 2]
     low, lowest = (
         min(float((bead.points @ up).min()) for _, _, bead in candidate)
@@ -199,7 +199,7 @@ def _lowest(toolpath: CoreToolpath, feature_part: CoreToolpath) -> bool:
 
 
 def _refuse_overlaps(members: Sequence[Member], names: Sequence[tuple[str, ...]]) -> None:
-    """InputError OVERLAP for parts that are within one another; what grows on another begins at its surface."""
+    """Raise InputError OVERLAP if parts overlap, except a part that may cut into its substrate."""
     for k, entry in enumerate(members):
         cut = family_of(entry.inputs.strategy).cuts_into_substrate
         for j, other_entry in enumerate(members[:k]):
@@ -228,7 +228,7 @@ def _refuse_overlaps(members: Sequence[Member], names: Sequence[tuple[str, ...]]
 
 
 def _distinct(all_bodies: Sequence[Body]) -> tuple[Body, ...]:
-    """Bodies without duplicates."""
+    """Return the bodies without duplicates."""
     distinct: list[Body] = []
     for body in all_bodies:
         if not any(

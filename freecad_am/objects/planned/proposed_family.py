@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The family and layers that suit a part, and why: used for `strategy.kind: auto` of a job and
-proposed by New Job.
+"""Propose family and layer kind for a part, with the reason.
+
+Used for `strategy.kind: auto` of a job and by New Job.
 """
 
 from __future__ import annotations
@@ -12,9 +13,10 @@ from ..families.registry import planner_of
 
 
 def propose_family(part: SelectedPart) -> Proposal:
-    """The proposal of the family with the lowest rank that recognises a part; solids recognise every
-    part. Remarks of the families that refuse it become part of the reason: if nothing serves the
-    whole part, they name the omissions. Raises InputError FAULTY, NO_FACES.
+    """Return the proposal of the family with the lowest rank that recognises a part.
+
+    The solid family recognises every part. Remarks of families that refuse the part become part of
+    the reason. Raises InputError FAULTY, NO_FACES.
     """
     remark = ""
     for planner in planners():
@@ -26,7 +28,7 @@ def propose_family(part: SelectedPart) -> Proposal:
 
 
 def planners() -> list[FeaturePlanner]:
-    """The planners of the families that can be proposed, in the order in which they are asked."""
+    """Return the planners of the families that can be proposed, by rank."""
     ranked = [
         (planner.recognition_rank, planner)
         for planner in map(planner_of, FAMILIES)

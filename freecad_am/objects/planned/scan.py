@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A scan of the surface below a toolpath, taken from an inspection, and the toolpath fitted to it."""
+"""Fit a toolpath to a scan of the surface below, taken from an inspection."""
 
 from __future__ import annotations
 
@@ -22,13 +22,15 @@ from ..stage import stage_of
 UNDERSTANDING = (
     "POINTS_READ",
     "FREE_MOTION",
-)  # codes of inspection findings about how the scan was interpreted
+)  # codes of inspection issues on the interpretation of the scan
 Fit = Callable[[Toolpath], Toolpath]
 
 
 def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
-    """A function that fits the toolpath of a toolpath object to its scan, without the document;
-    None without a scan. Raises InputError BAD_INPUT, and the errors of the inspection.
+    """Return a function that fits the toolpath of a toolpath object to its scan.
+
+    The function does not use the document. None without a scan. Raises InputError BAD_INPUT, and
+    the errors of the inspection.
     """
     scan = obj.Scan
     if scan is None:
@@ -71,8 +73,9 @@ def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
 def fitted(
     toolpath: Toolpath, inspected: Inspected, body: Any, parameters: ScanParameters
 ) -> Toolpath:
-    """The toolpath on the scanned surface, and kept clear of the scan in place of the body.
-    Raises InputError.
+    """Fit the toolpath to the scanned surface and keep the nozzle clear of the scan.
+
+    The scan replaces `body`. Raises InputError.
     """
     first_layer = toolpath.layers[min(parameters.first, len(toolpath.layers) - 1)]
     directions = np.concatenate([fit_layers.ways_of(toolpath)(bead) for bead in first_layer.beads])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The cell in which the job of a toolpath in a document can be done."""
+"""Adapt a cell so that the job of a toolpath is feasible."""
 
 from __future__ import annotations
 
@@ -27,18 +27,19 @@ from ..checks.placed import cylinders_of
 from ..shapes import cell_obstacles
 from ..work import progress
 
-STEP = 5.0  # mm; diameters are rounded up to multiples
+STEP = 5.0  # mm; diameters are rounded up to multiples of this step
 MAX_DIAMETER_MM = next(
     f.spec_of(field).high or math.inf
     for field in dataclasses.fields(CellParameters)
     if field.name == "platform_diameter"
-)  # mm; beads outside get a warning
-MIDDLE = 0.9  # of a diameter; a smaller diameter justifies another frame
+)  # mm; beads outside this diameter cause a warning
+MIDDLE = 0.9  # maximum ratio of diameters for which the feature frame replaces the part frame
 
 
 def fitted(toolpath: Toolpath, settings: CellParameters) -> CellParameters:
-    """The cell with a platform below all beads of the first layer, or the largest allowed one. The
-    feature's own frame sits on it if the layer then needs a smaller platform.
+    """Return the cell with a platform below all beads of the first layer, up to MAX_DIAMETER_MM.
+
+    Mount the feature frame on the platform if the layer then needs a clearly smaller platform.
     """
     frame = mounted(settings, toolpath.frame, toolpath.family)
     diameter, mount = needed(toolpath, frame), settings.mount
@@ -54,7 +55,10 @@ def fitted(toolpath: Toolpath, settings: CellParameters) -> CellParameters:
 
 
 def needed(toolpath: Toolpath, frame: Array) -> float:
-    """The diameter, mm, of a disc about the origin of a frame (4, 4) in part coordinates under all of the first layer."""
+    """Return the diameter, mm, of a disc below the whole first layer.
+
+    frame: (4, 4) frame in part coordinates, whose origin is the disc centre.
+    """
     radius = 0.0
     for bead in toolpath.layers[0].beads:
         local = (bead.points - frame[:3, 3]) @ frame[:3, :2]
@@ -66,10 +70,11 @@ def needed(toolpath: Toolpath, frame: Array) -> float:
 def suit_to_toolpath(
     toolpath: Any, failed_layers: Collection[int] = ()
 ) -> Callable[[CellParameters], CellParameters]:
-    """A function that finds, without the document, the parameters of a cell that suits the job of a
-    toolpath object: the given ones, or ones with another branch, position, or a positioner.
-    failed_layers: indices of layers that could not be planned in the cell found before. It raises
-    what resolving a cell raises.
+    """Return a function that adapts cell parameters to the job of a toolpath object.
+
+    The function does not use the document. It returns the given parameters, or parameters with
+    another branch or pose, or with a positioner. failed_layers: indices of layers that failed in
+    the previous cell. The function raises the errors of resolving a cell.
     """
     read_toolpath, folders = toolpath.Proxy.reader(toolpath), tuple(user_machines.folders())
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)

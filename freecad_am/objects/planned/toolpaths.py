@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a feature becomes a toolpath: layers and beads, the nozzle kept clear, what carries them,
-and remedies where no tilt clears it."""
+"""Plan the toolpath of a feature: layers and beads, nozzle clearance, support, and remedies."""
 
 from __future__ import annotations
 
@@ -34,8 +33,9 @@ if TYPE_CHECKING:
 
 
 def seen_of(cell: CellParameters) -> CellParameters:
-    """The part of a cell that affects a toolpath: nozzle, platform and the frame on it. Everything
-    else gets its default, so that no toolpath depends on it and a change keeps the layers.
+    """Return the part of a cell that affects a toolpath: nozzle, platform and mount.
+
+    All other parameters get their defaults, so that changing them does not invalidate the layers.
     """
     return CellParameters(
         nozzle=cell.nozzle, platform_diameter=cell.platform_diameter, mount=cell.mount
@@ -45,7 +45,10 @@ def seen_of(cell: CellParameters) -> CellParameters:
 def planned(
     inputs: Given, fit: Callable[[CoreToolpath], CoreToolpath] = lambda toolpath: toolpath
 ) -> CoreToolpath:
-    """The toolpath of a single feature, layers changed by `fit`; unsupported beads are reported."""
+    """Plan the toolpath of a single feature, and report unsupported beads.
+
+    fit: function applied to the layers before clearance.
+    """
     toolpath = fit(layers_of(inputs))
     if inputs.build.clearance != "none":
         progress.report(STRATEGY, CLEARING)
@@ -71,12 +74,12 @@ def planned(
 
 
 def over_edge(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
-    """The toolpath with a warning where it begins beyond the edge of the platform."""
+    """Return the toolpath with a warning if it begins beyond the edge of the platform."""
     if inputs.cell is None or inputs.cell.platform_diameter <= 0.0:
         return toolpath
     feature = (
         toolpath.frame if inputs.stands is None else None
-    )  # of several the first one's frame counts for all
+    )  # with several features, the frame of the first feature applies to all
     edge_issues = support.over_edge(
         toolpath,
         platform_frame(toolpath, inputs, inputs.cell),
@@ -88,7 +91,7 @@ def over_edge(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
 
 
 def above_platform(toolpath: CoreToolpath, inputs: Given) -> list[Issue]:
-    """A warning if a solid with a plane base begins above the platform: nothing carries that plane."""
+    """Return a warning if a solid with a plane base begins above the platform, unsupported."""
     if (
         inputs.cell is None
         or inputs.cell.platform_diameter <= 0.0
@@ -135,40 +138,42 @@ def layers_of(inputs: Given) -> CoreToolpath:
 def kept_clear(
     toolpath: CoreToolpath, inputs: Given, bodies: Sequence[Body], feature: int | None = None
 ) -> CoreToolpath:
-    """The toolpath with tools tilted clear of bodies (including the platform) and deposit. feature:
-    the number of the feature of `inputs` among several, which is kept clear.
+    """Tilt the tool axes of a toolpath clear of bodies (including the platform) and deposit.
+
+    feature: index of the feature of `inputs` among several; only this feature is tilted.
     """
     return planner_for(inputs.strategy).keep_clear(toolpath, inputs, bodies, feature)
 
 
 def add_wire_speed(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
-    """The toolpath with the speed of its wire, and issues about speeds outside the material's
-    range.
-    """
+    """Set the wire feed of a toolpath, and report speeds outside the material's range."""
     return check_speeds(set_wire_feed(toolpath, inputs.process, inputs.model), inputs.process)
 
 
 def measure_infill(toolpath: CoreToolpath, inputs: Given) -> CoreToolpath:
-    """The toolpath with void and double deposit of plane layers, and issues where beads leave too much void."""
+    """Measure void and double deposit of plane layers, and report layers with too much void."""
     max_void = getattr(inputs.strategy, "max_void", None)
     if max_void is None:
         return toolpath
-    from ...core.process.deposit import void_and_double  # other families do not need it
+    from ...core.process.deposit import void_and_double  # only needed for plane layers
 
     return void_and_double.measure(toolpath, max_void)
 
 
 def bases_of(inputs: Given) -> list[Any]:
-    """The bases of solids; empty for walls and faces."""
+    """Return the bases of solids; empty for walls and faces."""
     return [group.base for group in getattr(inputs.wall, "groups", ())]
 
 
-# ---- Remedies for a nozzle that no tilt clears: one build direction for a whole leaning wall,
-# plane layers for a solid in curved ones
+# ---- Remedies if no tilt clears the nozzle: one build direction for a leaning wall, plane layers
+# for a solid with curved layers
 
 
 def in_planes(inputs: Given, fit: Callable[[Toolpath], Toolpath] | None) -> Fixed | None:
-    """A solid in curved layers that start at its base, planned in plane ones; None for others."""
+    """Return the alternative with plane layers for a solid with curved layers, else None.
+
+    The curved layers must start at the base of the solid.
+    """
     if not inputs.strategy.has_curved_layers or any(
         group.start is not None for group in inputs.wall.groups
     ):
@@ -182,8 +187,10 @@ def in_planes(inputs: Given, fit: Callable[[Toolpath], Toolpath] | None) -> Fixe
 
 
 def try_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
-    """A toolpath on which the nozzle touches something, and nothing else is wrong, with a note on whether it does with fixed
-    build directions, or plane layers, planned so; others as they are."""
+    """Test whether an alternative clears the nozzle, and add a note on the outcome.
+
+    The toolpath is unchanged without an alternative, or unless nozzle contact is its only error.
+    """
     errors = {issue.code for issue in toolpath.issues if issue.level == ERROR}
     if fixed is None or errors != {CLEARANCE}:
         return toolpath
@@ -192,7 +199,7 @@ def try_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
     progress.report(1.0, Text("searching for a change that clears the nozzle: {}", fixed.remedy))
     try:
         clear = not has_errors(list(fixed.make().issues))
-    except AmError:  # what cannot be asked for is not a remedy
+    except AmError:  # an invalid alternative is not a remedy
         clear = False
     note = (
         Issue(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The motion of a joint path as it is run: complete, or the rows of a program."""
+"""Executed motion of a joint path: complete, or the rows of a program."""
 
 from __future__ import annotations
 
@@ -21,7 +21,11 @@ from ..joint_path import Planned
 
 @dataclass(frozen=True, eq=False)
 class AsRun:
-    """A motion of n rows. condition, threshold: (n,), NaN where not known. issues: by its points."""
+    """An executed motion of n rows.
+
+    condition, threshold: inverse condition number and its minimum, (n,), NaN if unknown. issues:
+    located at the points of this motion.
+    """
 
     motion: Motion
     condition: Array
@@ -36,8 +40,10 @@ def as_run(
     settings: ProgramParameters | None,
     issues: tuple[Issue, ...],
 ) -> AsRun:
-    """A complete joint path without `settings`. For a program: with the points added to linear
-    moves, without points too close for its controller, and only from its start.
+    """Return the executed motion of a joint path, complete without `settings`.
+
+    settings: program parameters. The motion of a program includes points added to linear moves,
+    excludes points too close for the controller, and starts at the program start.
     """
     motion = planned.motion
     condition, threshold = (
@@ -65,7 +71,7 @@ def as_run(
 
 
 def _renumbered(issue: Issue, old_motion: Motion, new_motion: Motion, origin: Integers) -> Issue:
-    """An issue renumbered to its point among added ones, or to the last remaining point before it."""
+    """Renumber an issue to its point in the new motion, or to the last remaining point before."""
     is_row = (
         old_motion.deposit
         & (old_motion.layer == issue.layer)

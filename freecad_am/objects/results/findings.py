@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a stage says of its result: status, message and findings, as its properties hold them."""
+"""Status, message and issues of a stage, stored in properties."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from ...core.issues import ERROR, WARNING, Issue, Text
 
 
 def issues_of(obj: Any) -> tuple[Issue, ...]:
-    """The findings stored with the object."""
+    """Return the issues stored with the object."""
     texts = _texts(obj)
     entries = json.loads(obj.Issues or "[]")
     return tuple(
@@ -21,12 +21,12 @@ def issues_of(obj: Any) -> tuple[Issue, ...]:
 
 
 def message_of(obj: Any) -> str:
-    """The object's message with its template and values, so that the window can translate it."""
+    """Return the object's message with its template and values, for translation in the window."""
     return _texts(obj).get(obj.Message, str(obj.Message))
 
 
 def reason_of(obj: Any) -> str:
-    """What the object says without its own name before it, for a sentence that has named it."""
+    """Return the object's message without the leading label, for sentences that name the object."""
     message = message_of(obj)
     if (
         isinstance(message, Text)
@@ -38,14 +38,14 @@ def reason_of(obj: Any) -> str:
 
 
 def store_issues(obj: Any, issues: Sequence[Issue]) -> None:
-    """Store findings with the object."""
+    """Store issues with the object."""
     obj.Issues = json.dumps([issue.as_dict() for issue in issues])
     messages = [issue.message for issue in issues]
     _remember(obj, messages, {obj.Message, *messages})
 
 
 def first_message(issues: Sequence[Issue]) -> str:
-    """The first error, else the first warning, with its place; '' when there is neither."""
+    """Return the first error, else the first warning, with its location; '' without either."""
     for level in (ERROR, WARNING):
         for issue in issues:
             if issue.level == level:
@@ -54,7 +54,7 @@ def first_message(issues: Sequence[Issue]) -> str:
 
 
 def say(obj: Any, status: str, message: str) -> None:
-    """Set status and message, each only where it is another: views and panels follow every change."""
+    """Set status and message, each only if changed, because views and panels react to changes."""
     if obj.Message != message:
         obj.Message = message
     _remember(
@@ -65,9 +65,9 @@ def say(obj: Any, status: str, message: str) -> None:
 
 
 def _remember(obj: Any, messages: Sequence[str], current: set[str]) -> None:
-    """Keep templates and values of the object's current messages next to their English texts. A
-    message from a document without this property is shown in English until its stage is computed
-    again.
+    """Store templates and values of the object's current messages, by English text.
+
+    Messages from documents without this property appear in English until the stage is recomputed.
     """
     texts = {
         **_texts(obj),
@@ -85,15 +85,16 @@ def _remember(obj: Any, messages: Sequence[str], current: set[str]) -> None:
 
 
 def _texts(obj: Any) -> dict[str, Text]:
-    """The object's translatable texts by their English wording. An object of an older document gets
-    the property on restore.
+    """Return the object's translatable texts by English text.
+
+    Objects of older documents get the property on restore.
     """
     texts = [text_of(text_parts) for text_parts in json.loads(getattr(obj, "Texts", "") or "[]")]
     return {str(text): text for text in texts}
 
 
 def parts_of(text: str) -> Any:
-    """A text for JSON: its template and values; one without is itself."""
+    """Convert a text to JSON data: template and values, or the string if it has no values."""
     return (
         [text.template, *map(parts_of, text.values)]
         if isinstance(text, Text) and text.values
@@ -102,7 +103,7 @@ def parts_of(text: str) -> Any:
 
 
 def text_of(text_parts: Any) -> Any:
-    """The inverse of `parts_of`."""
+    """Convert JSON data from `parts_of` back to a text."""
     return (
         Text(text_parts[0], *map(text_of, text_parts[1:]))
         if isinstance(text_parts, list)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes and meshes as texts that change with them, but not with the last digits that saving drops.
+"""Fingerprints of shapes and meshes, independent of the last digits that saving drops.
 
-A stage needs the fingerprints of its inputs at each recompute. So the last ones are cached: for
-shapes as long as the kernel's objects of the shape and of its faces are identical (a macro may put
-further shapes into a compound in place, but cannot change a face so); for meshes, which can change
-in place, by their bytes.
+Each recompute needs the fingerprints of a stage's inputs, so recent fingerprints are cached. A
+shape matches if the kernel objects of the shape and its faces are identical: a macro may add shapes
+to a compound in place, but cannot change a face in place. A mesh can change in place and matches by
+its bytes.
 """
 
 from __future__ import annotations
@@ -23,23 +23,27 @@ from ..fields import properties
 from ..shapes.bodies import body_of, global_shape, is_mesh, mesh_of, shape_of
 from ..shapes.places import outer_matrix
 
-MOST_KEPT = 64  # shapes, and meshes
+MOST_KEPT = 64  # maximum number of cached shapes, and of cached meshes
 
 _shapes: list[
     tuple[Any, tuple[Any, ...], str]
-] = []  # shape, further criteria, text; most recent first
+] = []  # shape, further criteria, fingerprint; most recent first
 _meshes: dict[str, str] = {}
 
 
 def fingerprint(source: Any) -> str:
-    """The text of an object's solid or mesh, at its position in the document. Raises InputError NO_SHAPE,
-    NO_FACES.
+    """Return the fingerprint of an object's shape or mesh at its position in the document.
+
+    Raises InputError NO_SHAPE, NO_FACES.
     """
     return _mesh_fingerprint(source) if is_mesh(source) else shape_fingerprint(source)
 
 
 def shape_fingerprint(source: Any) -> str:
-    """The text of an object's shape, at its position in the document. Raises InputError NO_SHAPE."""
+    """Return the fingerprint of an object's shape at its position in the document.
+
+    Raises InputError NO_SHAPE.
+    """
     shape = shape_of(source)
     element_codes = tuple(
         element.hashCode() for element in shape.Faces or shape.Edges or shape.Vertexes
@@ -88,7 +92,7 @@ def _mesh_fingerprint(source: Any) -> str:
 
 
 def _digest(mesh: Any) -> str:
-    """The digest of all bytes of a mesh and its own placement."""
+    """Return the digest of all bytes of a mesh and its placement."""
     handle, path = tempfile.mkstemp(suffix=".bms")
     os.close(handle)
     try:
@@ -102,20 +106,21 @@ def _digest(mesh: Any) -> str:
 
 
 def digits(*vectors: Any) -> str:
-    """Numbers of vectors to six decimals."""
+    """Format vector components with six decimals."""
     return " ".join(f"{round(number, 6) + 0.0:.6f}" for vector in vectors for number in vector)
 
 
-# ---- The key of a stage's inputs: the origin of a stored result, as a text that differs after any
-# change
+# ---- Key of a stage's inputs: identifies the inputs of a stored result and changes with any input
 
 SCHEMA_VERSION = 2  # version of the properties of stages
-_counted_version: ContextVar[int] = ContextVar("counted_version", default=0)  # an earlier one
+_counted_version: ContextVar[int] = ContextVar("counted_version", default=0)  # earlier version
 
 
 def key_of_inputs(stage: Any, obj: Any, input_key: Callable[[str, Any], str]) -> str:
-    """The key of an object's parameters, of its linked stages by `input_key(link, object)`, and of
-    further inputs of `stage`, its proxy. Raises InputError for a missing or failed one.
+    """Return the key of an object's parameters, linked stages and further inputs.
+
+    stage: proxy of the object. input_key: function of link and object that returns the key of a
+    linked stage. Raises InputError for a missing or failed input.
     """
     texts = [type(stage).__name__, str(_counted_version.get() or SCHEMA_VERSION)]
     for section in stage.sections:
@@ -131,12 +136,12 @@ def key_of_inputs(stage: Any, obj: Any, input_key: Callable[[str, Any], str]) ->
 
 
 def key_of_stage(link: str, linked: Any) -> str:
-    """The complete key of a linked stage."""
+    """Return the complete key of a linked stage."""
     return str(linked.Key)
 
 
 def is_of_earlier_version(obj: Any) -> bool:
-    """Whether an earlier version of the properties computed a stage from the inputs that it has now."""
+    """Whether an earlier property version computed a stage from its current inputs."""
     return any(_key_in(version, obj) == obj.Key for version in range(1, SCHEMA_VERSION))
 
 
@@ -147,7 +152,7 @@ def _key_in(version: int, obj: Any) -> str:
 
 @contextlib.contextmanager
 def _counted_as(version: int) -> Iterator[None]:
-    """Keys as an earlier version made them."""
+    """Within the context, compute keys as in an earlier version."""
     token = _counted_version.set(version)
     try:
         yield

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Names and versions by which documents know the dataclasses of results; classes and modules may be renamed freely.
+"""Schema names and versions of stored result dataclasses, so that classes and modules can move.
 
-A class that is renamed or moved changes its entry here and nothing else. A field that is renamed,
-added without a default or removed raises the version of the entry, and a function in UPGRADES turns
-the fields of the previous version into the current ones.
+If a class is renamed or moved, change its entry here only. If a field is renamed, removed, or added
+without a default, raise the version of the entry and add a function to UPGRADES that converts the
+fields of the previous version.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ Fields = dict[str, Any]
 
 
 class Schema(NamedTuple):
-    """Where a stored class is, below the package, as `module:class`, and the version of its fields."""
+    """Location of a stored class in the package, as `module:class`, and version of its fields."""
 
     location: str
     version: int = 1
@@ -101,12 +101,12 @@ _FIELDS_OF_RULES = ("overlap", "retreat", "max_from_vertical")
 
 
 def _gather(fields: Fields, names: Sequence[str], schema: str) -> Any:
-    """Take fields out and return the record of them, of version 1 of a schema."""
+    """Move fields to a record of version 1 of a schema, and return the record."""
     return record(schema, 1, {name: fields.pop(name) for name in names if name in fields})
 
 
 def _divide_bead(fields: Fields) -> Fields:
-    """Return the fields of version 2 of a bead."""
+    """Convert the fields of a bead to version 2."""
     fields = dict(fields)
     ends = fields.pop("ends", ())
     if ends:
@@ -116,7 +116,7 @@ def _divide_bead(fields: Fields) -> Fields:
 
 
 def _divide_toolpath(fields: Fields) -> Any:
-    """Return the fields of version 2 of a toolpath; one without layers is a feature of a sequence."""
+    """Convert the fields of a toolpath to version 2; without layers, it is a sequence feature."""
     fields = dict(fields)
     label = fields.pop("feature_label", "")
     fields["checks"] = _gather(fields, _FIELDS_OF_CHECKS, "toolpath_checks")
@@ -127,10 +127,10 @@ def _divide_toolpath(fields: Fields) -> Any:
     return record("sequenced_feature", 1, feature)
 
 
-# by name and version: turns the fields of that version into the next version's, or into a record
+# by name and version: function that converts fields to the next version, or to a record
 UPGRADES: dict[tuple[str, int], Callable[[Fields], Any]] = {
     ("bead", 1): _divide_bead,
-    ("cell_parameters", 1): lambda fields: fields,  # texts, which the class turns into records
+    ("cell_parameters", 1): lambda fields: fields,  # strings, which the class converts to records
     ("cell_parameters", 2): lambda fields: fields,
     ("nozzle_parameters", 1): lambda fields: fields,
     ("toolpath", 1): _divide_toolpath,
@@ -141,13 +141,13 @@ _PACKAGE = __name__.split(".", maxsplit=1)[0]
 
 @functools.cache
 def _names() -> Mapping[str, str]:
-    """Return the schema names by the places of their classes."""
+    """Return the schema names by class location."""
     return {schema.location: name for name, schema in SCHEMAS.items()}
 
 
 @functools.cache
 def schema_of_class(kind: type[Any]) -> tuple[str, Schema]:
-    """Return the name and schema of a dataclass. Raises TypeError if it has none."""
+    """Return name and schema of a dataclass. Raises TypeError for a class without a schema."""
     location = f"{kind.__module__.removeprefix(f'{_PACKAGE}.')}:{kind.__qualname__}"
     name = _names().get(location)
     if name is None:
@@ -159,7 +159,7 @@ def schema_of_class(kind: type[Any]) -> tuple[str, Schema]:
 def class_of(name: str) -> type[Any]:
     """Return the class of a schema. Raises ValueError for an unknown name.
 
-    A document names schemas, never modules: opening one cannot call anything else.
+    Documents name schemas, not modules, so opening a document cannot load other classes.
     """
     if name not in SCHEMAS:
         raise ValueError(f"{name!r} is not a result that this version knows")
@@ -169,12 +169,12 @@ def class_of(name: str) -> type[Any]:
 
 
 def record(name: str, version: int, fields: Fields) -> Any:
-    """Return the dataclass of stored fields, brought up to the version of now.
+    """Build the dataclass from stored fields, upgraded to the current version.
 
     Raises
     ------
     ValueError
-        If the name is unknown or the version is later than this one.
+        If the name is unknown or the version is later than the current version.
     """
     kind = class_of(name)
     if version > SCHEMAS[name].version:

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Store results of the core in a document: one list of floats and one text.
 
-Dataclasses, tuples, dicts, arrays, bytes and plain values go in; the same come out. The text is
-JSON: the value as a tree, in which a dataclass is named by its schema (`schemas`) and an array by
-rows of a table. Tables and bytes are the members of an npz archive, compressed by zlib. The archive
-goes into a FloatList, seven bytes a float, because FreeCAD keeps such a property as a binary file,
-and it follows undo and copies of the object by value; an included file does neither.
+Results consist of dataclasses, tuples, dicts, arrays, bytes and plain values. The text is a JSON
+tree, which names a dataclass by its schema (`schemas`) and refers to an array by rows of a table.
+Tables and bytes are members of an npz archive, compressed by zlib. The archive is stored in a
+FloatList, seven bytes per float. FreeCAD saves such a property as a binary file, and the property
+follows undo and object copies by value. An included file does neither.
 
-Arrays at the same path of similar values, such as the points of beads, share a table, so that an
-archive of thousands of beads has few members.
+Arrays at the same path of similar values, such as bead points, share a table, so that an archive of
+thousands of beads has few members.
 """
 
 from __future__ import annotations
@@ -29,29 +29,29 @@ from ...core.issues import InputError
 from ...core.types import Array, NDArray
 from . import schemas
 
-FORMAT = 5  # of the text and the archive
-COMPRESSION_LEVEL = 1  # of zlib; higher ones take three times as long for a tenth of the size
-BYTES_PREFIX = "bytes-"  # of the member of each bytes value
+FORMAT = 5  # version of text and archive
+COMPRESSION_LEVEL = 1  # zlib level; higher levels triple the time and save a tenth of the size
+BYTES_PREFIX = "bytes-"  # name prefix of archive members for bytes values
 BYTES_PER_FLOAT = 7
-HIGHEST_BYTE = 0x40  # with it any seven bytes are an ordinary number
+HIGHEST_BYTE = 0x40  # most significant byte, which makes any seven bytes a normal float
 DTYPES = (np.dtype("float64"), np.dtype("int64"), np.dtype("bool"))
 Place = tuple[str | int, ...]
 
 
 def pack(value: Any, key: str) -> tuple[list[float], str]:
-    """Return the floats and the text of a value.
+    """Convert a value to floats and text.
 
     Parameters
     ----------
     value
-        Data: dataclasses with a schema, tuples, lists, dicts, arrays, bytes and plain values.
+        Dataclasses with a schema, tuples, lists, dicts, arrays, bytes and plain values.
     key
-        The fingerprint of the inputs of the value; floats and text are both marked with it.
+        Fingerprint of the value's inputs, with which floats and text are marked.
 
     Raises
     ------
     TypeError
-        If something in the value is not data.
+        If the value contains an unsupported type.
     """
     packer = _Packer()
     tree = packer.tree(value, ())
@@ -77,8 +77,8 @@ def unpack(floats: Sequence[float] | Array, text: str, key: str, where: str) -> 
     Raises
     ------
     InputError
-        'BAD_RESULT' at `where` if it is damaged, of another key, or of a later version. While a step is undone, floats, text
-        and key come back one after the other and do not belong together for a moment.
+        BAD_RESULT at `where` if the data is damaged, has another key, or is of a later version.
+        During undo, floats, text and key are restored one by one and temporarily do not match.
     """
     return unpack_parts(floats, text, key, where, ())[0]
 
@@ -86,17 +86,17 @@ def unpack(floats: Sequence[float] | Array, text: str, key: str, where: str) -> 
 def unpack_parts(
     floats: Sequence[float] | Array, text: str, key: str, where: str, *paths: Place
 ) -> tuple[Any, ...]:
-    """Return parts of the value that was given to `pack`, and read no other arrays.
+    """Return parts of the value that was given to `pack`, reading only their arrays.
 
     Parameters
     ----------
     places
-        For each part the field names and indices that lead to it; () is the complete value.
+        Field names and indices that lead to each part; () for the complete value.
 
     Raises
     ------
     InputError
-        As `unpack`.
+        As in `unpack`.
     """
     try:
         if not text.startswith(f"{key} ") or not len(floats) or floats[0] != _mark(key):
@@ -141,7 +141,7 @@ def _mark(key: str) -> float:
 
 
 def _floats_of(data: bytes) -> Array:
-    """Put bytes into floats (n,), seven each."""
+    """Convert bytes to floats (n,), seven bytes per float."""
     padded = np.zeros(-(-len(data) // BYTES_PER_FLOAT) * BYTES_PER_FLOAT, dtype=np.uint8)
     padded[: len(data)] = np.frombuffer(data, dtype=np.uint8)
     words = np.full((len(padded) // BYTES_PER_FLOAT, 8), HIGHEST_BYTE, dtype=np.uint8)
@@ -150,7 +150,7 @@ def _floats_of(data: bytes) -> Array:
 
 
 def _bytes_of(floats: Array, length: int) -> bytes:
-    """Take the bytes out of floats again."""
+    """Convert floats from `_floats_of` back to bytes."""
     words = np.ascontiguousarray(floats, dtype="<f8").view(np.uint8).reshape(-1, 8)
     data = np.ascontiguousarray(words[:, :BYTES_PER_FLOAT]).ravel()[:length].tobytes()
     if len(data) != length:
@@ -159,17 +159,17 @@ def _bytes_of(floats: Array, length: int) -> bytes:
 
 
 class _Packer:
-    """Turn a value into a tree, and collect its arrays in tables, and its bytes."""
+    """Convert a value to a tree, and collect its arrays in tables and its bytes."""
 
     def __init__(self) -> None:
-        self.numbers: dict[Any, int] = {}  # of the table for each kind of array
+        self.numbers: dict[Any, int] = {}  # table index for each kind of array
         self.tables: list[list[NDArray[Any]]] = []
-        self.rows: list[int] = []  # of each table
+        self.rows: list[int] = []  # number of rows of each table
         self.data: list[bytes | bytearray] = []
-        self.versions: dict[str, int] = {}  # of the schemas that occur
+        self.versions: dict[str, int] = {}  # versions of the schemas in use
 
     def tree(self, value: Any, path: Place) -> Any:
-        """Return the node of a value in the text; arrays with equal `path` share a table."""
+        """Return the tree node of a value; arrays with equal `path` share a table."""
         if value is None or isinstance(value, (bool, int, float, str)):
             return value
         if isinstance(value, np.generic):
@@ -189,7 +189,7 @@ class _Packer:
         raise TypeError(f"{type(value).__name__} cannot be stored")
 
     def record(self, value: Any, path: Place) -> dict[str, Any]:
-        """Return the node of a dataclass."""
+        """Return the tree node of a dataclass."""
         name, schema = schemas.schema_of_class(type(value))
         self.versions[name] = schema.version
         names = [field.name for field in dataclasses.fields(value) if field.init]
@@ -197,7 +197,7 @@ class _Packer:
         return {"schema": name, "fields": fields}
 
     def put(self, value: NDArray[Any], path: Place) -> list[int]:
-        """Add an array to a table; return the table's number, the first row and the count of rows."""
+        """Add an array to a table; return table index, first row and row count."""
         if not value.ndim or value.dtype not in DTYPES:
             message = f"an array of {value.dtype} with {value.ndim} dimensions cannot be stored"
             raise TypeError(message)
@@ -218,7 +218,7 @@ class _Packer:
             buffer, "w", zipfile.ZIP_DEFLATED, compresslevel=COMPRESSION_LEVEL
         ) as archive:
             for number, arrays in enumerate(self.tables):
-                # column by column, which compresses better
+                # column-major order compresses better
                 _add(archive, str(number), np.asfortranarray(np.concatenate(arrays)))
             for number, data in enumerate(self.data):
                 _add(archive, f"{BYTES_PREFIX}{number}", np.frombuffer(data, dtype=np.uint8))
@@ -226,20 +226,20 @@ class _Packer:
 
 
 def _add(archive: zipfile.ZipFile, name: str, values: NDArray[Any]) -> None:
-    """Add an array to an archive as numpy's own files have it, always with the same bytes."""
+    """Add an array to an archive in npy format, with reproducible bytes."""
     with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
         np.lib.format.write_array(member, values, allow_pickle=False)
 
 
 class _Reader:
-    """Turn a tree back into the value; tables are read when they are first needed."""
+    """Convert a tree back to the value; tables are read on first use."""
 
     def __init__(self, archive: zipfile.ZipFile, versions: Mapping[str, int]) -> None:
         self.archive, self.versions = archive, versions
         self.tables: dict[str, NDArray[Any]] = {}
 
     def value(self, tree: Any) -> Any:
-        """Return the value of a node of the tree."""
+        """Return the value of a tree node."""
         if not isinstance(tree, dict):
             return tree
         if "array" in tree:
@@ -256,14 +256,14 @@ class _Reader:
         return schemas.record(name, self.versions[name], fields)
 
     def rows(self, name: str, first_row: int, count: int) -> NDArray[Any]:
-        """Return rows of a table, which share its memory."""
+        """Return rows of a table, as a view."""
         table = self.table(name)
         if first_row < 0 or count < 0 or first_row + count > len(table):
             raise ValueError("it is cut short")
         return table[first_row : first_row + count]
 
     def table(self, name: str) -> NDArray[Any]:
-        """Return a member of the archive, read once."""
+        """Return a table of the archive, which is read once."""
         if name not in self.tables:
             with self.archive.open(f"{name}.npy") as member:
                 values = np.lib.format.read_array(member, allow_pickle=False)
@@ -274,26 +274,29 @@ class _Reader:
 
 
 class Stored:
-    """Base of stages with a result in their object. A complete result is cached with the key of its
-    inputs.
+    """Base of stages that store a result in their object.
+
+    A complete result is cached with its input key.
     """
 
     _kept: tuple[str, Any] | None = None
 
     def value(self, obj: Any) -> Any:
-        """The stored result, read on first use. Raises InputError 'NO_RESULT' without one."""
+        """Return the stored result, read on first use. Raises InputError NO_RESULT."""
         return self.reader(obj)()
 
     def parts(self, obj: Any, *paths: Place) -> tuple[Any, ...]:
-        """Parts of the stored result, by the field names and indices that lead to them. Errors as
-        `value`.
+        """Return parts of the stored result by paths of field names and indices.
+
+        Errors as in `value`.
         """
         return tuple(self.reader(obj)(*paths))
 
     def reader(self, obj: Any) -> Callable[..., Any]:
-        """A function that gives the current stored result, or only the given paths, as `value` and
-        `parts` do, without the document: for other threads, and for later use. Errors as `value`;
-        errors about damage when it reads.
+        """Return a function that gives the current stored result, or only the given paths.
+
+        The function does not use the document, so other threads can call it, also later. Errors as
+        in `value`; the function raises errors for damaged data.
         """
         _check_made(obj)
         cached, key = self._kept, obj.Key
@@ -303,7 +306,7 @@ class Stored:
         stored = numbers_of(obj.ResultData), obj.ResultLayout, key, obj.Label
 
         def read(*paths: Place) -> Any:
-            cached = self._kept  # another thread may have set it
+            cached = self._kept  # another thread may have set the cache
             if cached is None or cached[0] != key:
                 if paths:
                     return unpack_parts(*stored, *paths)
@@ -319,7 +322,7 @@ def _check_made(obj: Any) -> None:
 
 
 def _values_at(paths: Sequence[Place], value: Any) -> Any:
-    """The values at paths of a result; the complete result without paths."""
+    """Return the values at paths of a result, or the complete result without paths."""
     return tuple(functools.reduce(_step, path, value) for path in paths) if paths else value
 
 

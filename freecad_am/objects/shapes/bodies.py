@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes and meshes of a document: in its coordinates, and as bodies that the nozzle is kept clear of."""
+"""Shapes and meshes of a document in document coordinates, also as bodies for collision checks."""
 
 from __future__ import annotations
 
@@ -51,21 +51,20 @@ FIXTURES = Link(
 
 
 def global_shape(source: Any, path: str = "") -> Any:
-    """The shape of an object in the coordinates of its document, wherever the object is nested.
+    """Return the shape of an object in document coordinates, for any nesting of the object.
 
     Parameters
     ----------
     source : App.DocumentObject
-        An object with a shape: a part, body, link, link array, container.
+        An object with a shape: a part, body, link, link array or container.
     path : str
-        The element: `""` for the complete object, `"Face3"`, `"Box.Edge1"` of an object that a
-        container or link shows, `"1."` for the second element of a link array.
+        Element of the object: `""` for the complete object, `"Face3"`, `"Box.Edge1"` for an object
+        in a container or link, `"1."` for the second element of a link array.
 
     Raises
     ------
     InputError
-        NO_SHAPE for an object without a shape, SEVERAL_PLACES for an object that several link
-        groups show.
+        NO_SHAPE for an object without a shape, SEVERAL_PLACES for an object in several link groups.
     """
     shape, outer = shape_of(source, path), outer_matrix(source)
     if is_rigid(outer):
@@ -86,7 +85,10 @@ def global_shape(source: Any, path: str = "") -> Any:
 
 
 def shape_of(source: Any, path: str = "") -> Any:
-    """The shape of an object where it places itself. path: as of `global_shape`. Raises InputError 'NO_SHAPE'."""
+    """Return the shape of an object in the coordinates of its container.
+
+    path: as in `global_shape`. Raises InputError NO_SHAPE.
+    """
     if path:
         shape = Part.getShape(source, path, needSubElement=_is_element(path))
         if shape is None or shape.isNull():
@@ -105,11 +107,11 @@ def shape_of(source: Any, path: str = "") -> Any:
 
 
 def _apply_scales(source: Any, shape: Any) -> Any:
-    """The shape of an object; for a container or link array with scaled links in it, assembled from
-    its visible children.
+    """Return the shape, rebuilt from visible children if a container has scaled links.
 
-    FreeCAD 0.20 scales such elements of a compound by the cube root of the volume's factor in all directions, and no
-    version applies the scale that an element object of a link array has. The shape of a single path is right in all.
+    FreeCAD 0.20 scales such elements uniformly by the cube root of the volume ratio. No version
+    applies the scale of an element object of a link array. Shapes of single paths are correct in
+    all versions.
     """
     if shape.ShapeType != "Compound" or "Shape" in source.PropertiesList:
         return shape
@@ -124,20 +126,22 @@ def _no_shape(source: Any) -> InputError:
 
 
 def _is_element(path: str) -> bool:
-    """Whether a path ends with the name of a face or an edge, and not with a dot."""
+    """Whether a path ends with a face or edge name, not with a dot."""
     return bool(path) and not path.endswith(".")
 
 
 def renumbers(source: Any) -> bool:
-    """Whether faces and edges of a part or group have other numbers in its `shape_of` than FreeCAD gives them: something is
-    there twice, and others follow."""
+    """Whether faces and edges of a part or group have other numbers in `shape_of` than in FreeCAD.
+
+    Numbers differ if a shape appears twice in FreeCAD's compound, before other shapes.
+    """
     shape = getattr(source, "Shape", None) if _shows_group(source) else None
     distinct = [] if shape is None or shape.isNull() else _distinct_numbers(_leaves(shape))
     return distinct != list(range(len(distinct)))
 
 
 def _shows_group(source: Any) -> bool:
-    """Whether an object is a part or group, or a link, link array or link group that shows one."""
+    """Whether an object is a part or group, or a link, link array or link group to one."""
     linked_object = source.getLinkedObject(True) or source
     if any(linked_object.isDerivedFrom(kind) for kind in GROUPS):
         return True
@@ -148,8 +152,9 @@ def _shows_group(source: Any) -> bool:
 
 
 def _once(shape: Any) -> Any:
-    """The shape of a part or group, with each body once: FreeCAD lists the members of a group in a
-    part a second time.
+    """Return the shape of a part or group with each body once.
+
+    FreeCAD lists the members of a group in a part twice.
     """
     leaves = _leaves(shape)
     distinct = _distinct_numbers(leaves)
@@ -159,14 +164,14 @@ def _once(shape: Any) -> Any:
 
 
 def _leaves(shape: Any) -> list[Any]:
-    """What a compound is made of, in the order in which FreeCAD numbers its faces and edges."""
+    """Return the shapes in a compound, in the order in which FreeCAD numbers faces and edges."""
     if shape.ShapeType != "Compound":
         return [shape]
     return [leaf for child in shape.childShapes() for leaf in _leaves(child)]
 
 
 def _distinct_numbers(leaves: list[Any]) -> list[int]:
-    """The numbers of shapes that no earlier one is the same as."""
+    """Return the indices of shapes without an earlier duplicate."""
     return [
         k
         for k, leaf in enumerate(leaves)
@@ -175,8 +180,8 @@ def _distinct_numbers(leaves: list[Any]) -> list[int]:
 
 
 def _is_same(shape: Any, other_shape: Any) -> bool:
-    """Whether two shapes are the same shape in the same place."""
-    # most pairs end here; comparing their placements would take twenty times as long
+    """Whether two shapes are the same shape with the same placement."""
+    # most pairs differ here; comparing placements would take twenty times as long
     if not shape.isPartner(other_shape):
         return False
     return np.allclose(
@@ -185,15 +190,20 @@ def _is_same(shape: Any, other_shape: Any) -> bool:
 
 
 def body_of(source: Any) -> Body:
-    """The triangles of an object, solid or mesh, in the coordinates of the document.
-    Raises InputError NO_SHAPE, NO_FACES."""
+    """Return the triangles of an object, solid or mesh, in document coordinates.
+
+    Raises InputError NO_SHAPE, NO_FACES.
+    """
     return snapshot_of(source).body()
 
 
 @dataclass(frozen=True)
 class Taken:
-    """The shape of an object in the coordinates of the document, or its mesh and the frame (4, 4) that puts it there, as
-    they are now: for work that does not touch the document."""
+    """Snapshot of an object, for work that does not touch the document.
+
+    shape: shape in document coordinates, None for a mesh. mesh, frame: mesh, and frame (4, 4) from
+    mesh to document coordinates.
+    """
 
     label: str
     shape: Any
@@ -201,9 +211,9 @@ class Taken:
     frame: Any = None
 
     def body(self) -> Body:
-        """Its triangles in the coordinates of the document. Raises InputError NO_FACES."""
+        """Return the triangles in document coordinates. Raises InputError NO_FACES."""
         if self.mesh is None:
-            # of a copy: the window draws the triangles of the original, maybe at this very moment
+            # tessellate a copy, because the window may be drawing the original's triangles
             return tessellate.body(self.shape.copy(False), self.label)
         triangles = tessellate.body(self.mesh, self.label)
         return dataclasses.replace(
@@ -212,7 +222,7 @@ class Taken:
 
 
 def snapshot_of(source: Any) -> Taken:
-    """The current state of an object; cheap, as shapes are shared. Raises InputError 'NO_SHAPE'."""
+    """Return a snapshot of an object. Shapes are shared, not copied. Raises InputError NO_SHAPE."""
     if is_mesh(source):
         return Taken(source.Label, None, *mesh_of(source))
     shape = global_shape(source)
@@ -221,12 +231,12 @@ def snapshot_of(source: Any) -> Taken:
 
 
 def fixtures_of(obj: Any) -> tuple[Taken, ...]:
-    """The fixtures of a feature."""
+    """Return snapshots of the fixtures of a feature."""
     return tuple(snapshot_of(fixture) for fixture in obj.Fixtures)
 
 
 def bodies(fixtures: Sequence[Taken]) -> tuple[Body, ...]:
-    """The triangles of each. Raises InputError NO_FACES."""
+    """Return the triangles of each snapshot. Raises InputError NO_FACES."""
     return tuple(fixture.body() for fixture in fixtures)
 
 
@@ -235,7 +245,7 @@ KEY, PROPERTY = "chord_error", "ChordError"
 
 
 def fill_in(obj: Any, parameters: Sequence[Any], values: Mapping[str, Any]) -> None:
-    """Set the chord error of a new feature by its size, unless `parameters` or `values` give one."""
+    """Set the chord error of a new feature by its size, unless `parameters` or `values` set it."""
     if PROPERTY in obj.PropertiesList and not _is_given(parameters, values):
         chord_error = suited(obj)
         if chord_error > MIN_CHORD_ERROR:
@@ -243,16 +253,16 @@ def fill_in(obj: Any, parameters: Sequence[Any], values: Mapping[str, Any]) -> N
 
 
 def suited(obj: Any) -> float:
-    """The chord error, mm, that suits the size and the beads of a feature."""
+    """Return the chord error, mm, that suits the size and the beads of a feature."""
     bead = getattr(obj, "BeadSpacing", None)
     width = BEAD_TO_LAYER * float(obj.LayerHeight) if bead is None else float(bead)
     return scaled(extent(obj), width)
 
 
 def extent(obj: Any) -> float:
-    """The largest extent, mm, of a feature's deposit along a coordinate axis; 0 if unknown."""
+    """Return the maximum extent, mm, of a feature's deposit along coordinate axes; 0 if unknown."""
     sizes = [0.0]
-    # the feature reports names that its source lacks, for which FreeCAD raises ValueError
+    # FreeCAD raises ValueError for missing names, which the feature reports
     with contextlib.suppress(AmError, ValueError, *kernel.FAULTS):
         for box in _boxes(obj):
             sizes += [box.XLength, box.YLength, box.ZLength] if box.isValid() else []
@@ -260,9 +270,7 @@ def extent(obj: Any) -> float:
 
 
 def notes(obj: Any) -> tuple[Issue, ...]:
-    """A note if the chord error of a feature follows from its size and is not the one of small
-    parts.
-    """
+    """Return a note if the chord error is derived from the feature's size and not the minimum."""
     chord_error = float(getattr(obj, PROPERTY, MIN_CHORD_ERROR))
     if chord_error <= MIN_CHORD_ERROR or chord_error != suited(obj):
         return ()
@@ -281,7 +289,7 @@ def _is_given(parameters: Sequence[Any], values: Mapping[str, Any]) -> bool:
 
 
 def _boxes(obj: Any) -> Iterator[Any]:
-    """The boxes around the objects, or the faces, that a feature deposits."""
+    """Yield the bounding boxes of the objects or faces that a feature deposits."""
     source, names = (obj.Source[0], obj.Source[1]) if obj.Source else (None, ())
     for deposit_source in (source, *getattr(obj, "Further", ())):
         if deposit_source is None:
@@ -297,7 +305,7 @@ def _boxes(obj: Any) -> Iterator[Any]:
         elements = []
         with contextlib.suppress(
             IndexError, ValueError, Part.OCCError
-        ):  # reported when it is planned
+        ):  # planning reports missing elements
             elements = (
                 [shape.getElement(name) for name in names if name]
                 if deposit_source is source
@@ -308,7 +316,7 @@ def _boxes(obj: Any) -> Iterator[Any]:
 
 
 def _bounded_parts(shape: Any) -> list[Any]:
-    """The shape, or its solids if it reaches to infinity, as a container with a datum plane does."""
+    """Return the shape, or its solids if the shape is infinite, as with a datum plane."""
     if _extent(shape.BoundBox) <= MAX_COORDINATE_MM:
         return [shape]
     return [solid for solid in shape.Solids if _extent(solid.BoundBox) <= MAX_COORDINATE_MM]
@@ -319,8 +327,10 @@ def _extent(box: Any) -> float:
 
 
 def _box(shape: Any) -> Any:
-    """The box around a shape. A quick box is never too small but depends on triangles that the
-    shape may have, so it only decides about small shapes.
+    """Return the bounding box of a shape.
+
+    The quick box is never too small but depends on existing triangles, so it is only used for small
+    shapes.
     """
     box = shape.BoundBox
     if _extent(box) > SMALL_PART_SIZE:
@@ -328,15 +338,14 @@ def _box(shape: Any) -> Any:
     return box
 
 
-# ---- Meshes of a document: objects that are meshes, and links, link arrays and containers that
-# show them
+# ---- Meshes of a document: mesh objects, and links, link arrays and containers with meshes
 #
-# A link passes on `Mesh` of its object at the object's position, not the link's. So positions are
+# A link returns `Mesh` of its object at the object's position, not the link's. So positions are
 # computed here.
 
 
 def is_mesh(source: Any) -> bool:
-    """Whether an object is a mesh, or a link, link array or container that shows meshes and no shape."""
+    """Whether an object is a mesh, or a link, link array or container with meshes but no shape."""
     if "Mesh" in source.PropertiesList:
         return True
     if "Shape" in source.PropertiesList:
@@ -346,13 +355,13 @@ def is_mesh(source: Any) -> bool:
 
 
 def mesh_of(source: Any) -> tuple[Any, np.ndarray]:
-    """The mesh of an object, and the matrix (4, 4) from its coordinates to the document's.
+    """Return the mesh of an object and the matrix (4, 4) from mesh to document coordinates.
 
-    The meshes that a link, link array or container shows are one mesh, in document coordinates.
-    Raises InputError NO_SHAPE.
+    The meshes in a link, link array or container are joined in document coordinates. Raises
+    InputError NO_SHAPE.
     """
     if "Mesh" in source.PropertiesList:
-        return source.Mesh.copy(), outer_matrix(source)  # its own placement is already applied
+        return source.Mesh.copy(), outer_matrix(source)  # the mesh includes its placement
     combined = None
     for mesh, matrix in _shown_meshes(source):
         placed = _transformed(mesh, matrix)
@@ -366,9 +375,7 @@ def mesh_of(source: Any) -> tuple[Any, np.ndarray]:
 
 
 def refuse_mixed(source: Any) -> None:
-    """Reject a container that shows shapes and meshes: one kind would be left out. InputError
-    MIXED.
-    """
+    """Raise InputError MIXED for a container with shapes and meshes; one kind would be ignored."""
     if "Shape" in source.PropertiesList or "Mesh" in source.PropertiesList:
         return
     if next(_shown_meshes(source), None) is not None:
@@ -381,18 +388,18 @@ def refuse_mixed(source: Any) -> None:
 
 
 def _shown_meshes(source: Any) -> Iterator[tuple[Any, np.ndarray]]:
-    """Each mesh that an object shows, and the matrix from the mesh, without its own placement, to the document."""
+    """Yield each mesh in an object, with the matrix from the unplaced mesh to the document."""
     return _meshes_of(source, outer_matrix(source))
 
 
 def _meshes_of(obj: Any, outer: np.ndarray) -> Iterator[tuple[Any, np.ndarray]]:
-    """outer: from where `obj` places itself to the document."""
+    """Yield meshes as `_shown_meshes`. outer: matrix from `obj`'s container to the document."""
     target, matrix = obj.getLinkedObject(True, App.Matrix(), True)
     yield from _inside(target, outer @ _array(matrix))
 
 
 def _inside(container: Any, inside: np.ndarray) -> Iterator[tuple[Any, np.ndarray]]:
-    """inside: from within `container`, its placement applied, to the document."""
+    """Yield meshes as `_shown_meshes`. inside: matrix from inside `container` to the document."""
     if "Mesh" in container.PropertiesList:
         if container.Mesh.CountFacets:
             yield container.Mesh, inside
@@ -402,8 +409,8 @@ def _inside(container: Any, inside: np.ndarray) -> Iterator[tuple[Any, np.ndarra
     for path, child in children_of(container):
         if child.Name == path.rstrip(".") or child.TypeId == "App::LinkElement":
             yield from _meshes_of(child, inside)
-        else:  # an element of a link array that is no object of its own
-            # this matrix begins outside of the array, and without `transform` it would still have the array's scale
+        else:  # an element of a link array without an element object
+            # this matrix starts outside the array; without `transform` it would include the scale
             step = np.linalg.inv(own_matrix(container)) @ _array(
                 container.getSubObject(path, retType=4)
             )
@@ -412,7 +419,7 @@ def _inside(container: Any, inside: np.ndarray) -> Iterator[tuple[Any, np.ndarra
 
 
 def _transformed(mesh: Any, matrix: np.ndarray) -> Any:
-    """A copy of a mesh, without its placement, moved by a matrix; its triangles face outwards also where it mirrors."""
+    """Return a copy of the unplaced mesh, moved by a matrix, with normals outwards if mirrored."""
     placed = mesh.copy()
     placed.Placement = App.Placement()
     placed.transform(App.Matrix(*matrix.ravel().tolist()))

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether faces and edges that a feature names are still the chosen ones: FreeCAD renumbers them
-when a part changes.
+"""Detect whether the faces and edges named by a feature are still the selected faces and edges.
+
+FreeCAD renumbers faces and edges when a part changes.
 """
 
 from __future__ import annotations
@@ -24,8 +25,8 @@ from .nested import EDGE, FACE, LINE, PLANE, TOLERANCE, WHOLE_PART, Mark, marks_
 from .part_file import file_issues
 
 CODES = {FACE: "FACES_CHANGED", EDGE: "EDGES_CHANGED"}
-LOST_PREFIX = "?"  # prefix of names that FreeCAD has lost
-SOURCE, OF = "Source", "/"  # the link whose marks are stored without its name and this separator
+LOST_PREFIX = "?"  # FreeCAD's prefix of lost names
+SOURCE, OF = "Source", "/"  # link whose marks have no name prefix, and separator of the prefix
 FORMS = {
     PLANE: Text("a plane"),
     "Part::GeomCylinder": Text("a cylinder"),
@@ -40,16 +41,12 @@ FREE_FORM = {FACE: Text("a free-form surface"), EDGE: Text("a free-form curve")}
 
 
 class FeatureStage(Stage):
-    """Base of the features: sources of the deposit, with faces and edges that determine its
-    position and kind, as links to parts.
-    """
+    """Base of feature stages, which link to parts and to faces and edges of parts."""
 
-    _owners: dict[str, Any] | None = (
-        None  # the names of the objects that links have, by link, once that is known
-    )
+    _owners: dict[str, Any] | None = None  # names of the linked objects by link, None until known
 
     def complete(self, obj: Any) -> None:
-        """With the marks of the faces and edges as they were when they were chosen."""
+        """Add missing properties, including the marks of the selected faces and edges."""
         super().complete(obj)
         self._owners = {link: _owner(obj, link) for link in self.chosen}
         if "ChosenFaces" not in obj.PropertiesList:
@@ -57,11 +54,12 @@ class FeatureStage(Stage):
             obj.addProperty(
                 "App::PropertyStringList", "ChosenFaces", "Result", help, HIDDEN | OUTPUT
             )
-        self._learn(obj)  # in a document from before these were kept
+        self._learn(obj)  # for documents from versions without marks
 
     def linked(self, obj: Any) -> dict[str, Any]:
-        """As for any stage. Raises InputError BAD_FACES, BAD_EDGES for elements that FreeCAD, 1.0 or
-        later, knows to be lost.
+        """Return the linked stages, as in the base class.
+
+        Raises InputError BAD_FACES, BAD_EDGES for elements that FreeCAD 1.0 or later marks as lost.
         """
         for link in self.chosen:
             lost_names = [
@@ -87,8 +85,10 @@ class FeatureStage(Stage):
         return super().linked(obj)
 
     def key(self, obj: Any) -> str:
-        """As for any stage. Raises InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path to a face or edge
-        of another object than the linked one, which has other elements of the same names.
+        """Return the input key, as in the base class.
+
+        Raises InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path to a face or edge of an object
+        other than the linked object, in which the same names mean other elements.
         """
         for link in self.chosen:
             if linked := getattr(obj, link):
@@ -97,12 +97,13 @@ class FeatureStage(Stage):
 
     @property
     def chosen(self) -> tuple[str, ...]:
-        """The links to some faces or edges of a part."""
+        """Return the names of links to faces or edges of a part."""
         return tuple(link.name for link in self.links if link.type_name == "App::PropertyLinkSub")
 
     def onChanged(self, obj: Any, name: str) -> None:
-        """New faces and edges, or elements of another part, are recorded when they are chosen.
-        FreeCAD 1.0 and later report a change also if only the part changed and the names stay.
+        """Record newly selected faces and edges.
+
+        FreeCAD 1.0 and later also report a change if only the part changed and the names stay.
         """
         document = obj.Document
         by_hand = not (
@@ -120,12 +121,13 @@ class FeatureStage(Stage):
         super().onChanged(obj, name)
 
     def confirm(self, obj: Any, link: str) -> None:
-        """What a link names is meant, as it is now."""
+        """Accept the elements that a link currently names as the selected elements."""
         self._keep(obj, {link: []})
 
     def renew(self, obj: Any, force: bool = False) -> Any:
-        """As any stage; computed again after a warning was confirmed. An error also names faces or
-        edges that are not the chosen ones: they may be the cause.
+        """Compute the stage, as in the base class, also after a warning was confirmed.
+
+        An error also names faces or edges that are no longer the selected ones, a possible cause.
         """
         try:
             result = super().renew(obj, force or (is_warned(obj) and bool(self._unknown(obj))))
@@ -143,7 +145,7 @@ class FeatureStage(Stage):
             )
             self.say_failed(obj, combined_error)
             raise combined_error from None
-        self._learn(obj)  # for inputs that fit the result again, after others were refused
+        self._learn(obj)  # inputs may match the result again after other inputs were rejected
         return result
 
     def _store(self, obj: Any, outcome: Outcome, *packed: Any) -> None:
@@ -162,9 +164,7 @@ class FeatureStage(Stage):
         )
 
     def _others(self, obj: Any) -> list[Issue]:
-        """The elements of a failed feature that are not the chosen ones; empty if the part cannot
-        be read.
-        """
+        """Return issues on changed elements of a failed feature; empty for an unreadable part."""
         differences: list[Issue] = []
         with contextlib.suppress(AmError), faults.kernel(obj):
             for link in self.chosen:
@@ -172,16 +172,16 @@ class FeatureStage(Stage):
         return differences
 
     def _unknown(self, obj: Any) -> list[str]:
-        """The links without marks of the elements that were chosen."""
+        """Return the links whose selected elements have no marks."""
         return [link for link in self.chosen if _named(obj, link) and not _stored(obj, link)]
 
     def _learn(self, obj: Any) -> None:
-        """Record the elements of links without marks as the chosen ones if the result fits them."""
+        """Record the elements of links without marks as selected, if the result is up to date."""
         if obj.Status == UP_TO_DATE and not is_warned(obj):
             self._keep(obj, {link: _marks(obj, link) for link in self._unknown(obj)})
 
     def _keep(self, obj: Any, marks: dict[str, list[Mark]]) -> None:
-        """Store the marks of links and of their whole parts; nothing for a link without marks."""
+        """Store the marks of links and of their whole parts; remove links without marks."""
         texts = [text for text in obj.ChosenFaces if _link_of(text) not in marks]
         for link, link_marks in marks.items():
             whole_marks = (
@@ -202,20 +202,21 @@ class FeatureStage(Stage):
 
 
 def is_warned(obj: Any) -> bool:
-    """Whether an object is a feature whose faces or edges are no longer the chosen ones."""
+    """Whether an object is a feature with a warning about changed faces or edges."""
     if not isinstance(getattr(obj, "Proxy", None), FeatureStage):
         return False
     return any(f'"{code}"' in obj.Issues for code in CODES.values())
 
 
 def _kind(name: str) -> str:
-    """The kind of a name, '' for neither a face nor an edge."""
+    """Return the element kind of a name, '' for neither a face nor an edge."""
     return next((kind for kind in CODES if name.startswith(kind)), "")
 
 
 def _named(obj: Any, link: str) -> set[str] | None:
-    """The names of the faces and edges of a link, existing or not; None if FreeCAD knows that one
-    is lost, or nothing is linked.
+    """Return the face and edge names of a link, whether or not the elements exist.
+
+    None for an empty link, or if FreeCAD marks a name as lost.
     """
     names = names_of(getattr(obj, link, None))
     is_lost = any(name.startswith(LOST_PREFIX) for name in names)
@@ -225,18 +226,18 @@ def _named(obj: Any, link: str) -> set[str] | None:
 
 
 def _owner(obj: Any, link: str) -> str:
-    """The name of the object that a link has, '' for none."""
+    """Return the name of the linked object, '' for an empty link."""
     return str(getattr(obj, link)[0].Name) if getattr(obj, link, None) else ""
 
 
 def _link_of(text: str) -> str:
-    """The link that a stored mark is of."""
+    """Return the link of a stored mark."""
     name = text.partition(" ")[0]
     return name.partition(OF)[0] if OF in name else SOURCE
 
 
 def _stored(obj: Any, link: str) -> dict[str, Mark]:
-    """The stored marks of the faces and edges of a link, and of the whole, by name."""
+    """Return the stored marks of a link's elements and of the whole part, by name."""
     link_texts = [
         text.partition(OF)[2] if OF in text else text
         for text in obj.ChosenFaces
@@ -246,8 +247,9 @@ def _stored(obj: Any, link: str) -> dict[str, Mark]:
 
 
 def _marks(obj: Any, link: str) -> list[Mark]:
-    """The current marks of the faces and edges that a link names; empty without names, or if the
-    part has no shape.
+    """Return the current marks of the faces and edges that a link names.
+
+    Empty without names, or if the part has no shape.
     """
     names = _named(obj, link)
     try:
@@ -263,12 +265,13 @@ def _marks(obj: Any, link: str) -> list[Mark]:
 
 
 def _compared(obj: Any, link: str, marks: Sequence[Mark]) -> tuple[Issue, ...]:
-    """The issues with the current elements of a link, compared with the chosen ones.
+    """Compare the current elements of a link with the selected elements; return issues.
 
-    Parts grow and move: a face or an edge of the same kind and direction is the same one, unless
-    the chosen one exists unchanged under another number, and others came or went, or nothing but
-    numbers changed; or a straight or plane one exists, larger or smaller, where others came or
-    went. Lines of sketches are turned by an end.
+    Parts grow and move, so a face or edge of the same kind and direction counts as the same
+    element. The exceptions are: the selected element exists unchanged under another number, and
+    elements were added or removed or only numbers changed; or a plane or straight element exists in
+    the same position with another size, and elements were added or removed. A sketch line may be
+    dragged by one end.
     """
     stored, now = _stored(obj, link), {mark.name: mark for mark in marks}
     was = stored.pop(WHOLE_PART, None)
@@ -303,7 +306,7 @@ def _compared(obj: Any, link: str, marks: Sequence[Mark]) -> tuple[Issue, ...]:
             ):
                 same = [candidate.name for candidate in all_marks if mark.is_along(candidate, size)]
             if any(name in now for name in same):
-                continue  # in another order
+                continue  # only the order of the selected elements changed
             if same and (renumbered or not mark.is_alike(now[mark.name])):
                 return (_elsewhere(mark.name, source.Label, same[0]),)
             turned = current_whole.form == was.form and _is_turned(mark, now[mark.name], shape)
@@ -313,9 +316,9 @@ def _compared(obj: Any, link: str, marks: Sequence[Mark]) -> tuple[Issue, ...]:
 
 
 def _is_turned(mark: Mark, now: Mark, shape: Any) -> bool:
-    """Whether an element with a new direction, in a shape with an unchanged number of faces or
-    edges, is surely the same: it is the only one, or a line that was dragged by an end, as in
-    sketches.
+    """Whether an element with a new direction is certainly the selected element.
+
+    Either it is the only element of its kind, or it is a line dragged by one end, as in sketches.
     """
     alone = len(shape.Faces if _kind(mark.name) == FACE else shape.Edges) == 1
     by_end = not shape.Faces and now.is_turned_about(mark, shape.BoundBox.DiagonalLength)
@@ -396,14 +399,15 @@ def _issue(name: str, message: str) -> Issue:
 
 
 def names_of(link: Any) -> tuple[str, ...]:
-    """The names of a link on an object, without '' for the complete object and without the
-    containers in paths.
-    """
+    """Return the element names of a link, without '' and without containers in paths."""
     return tuple(name.rsplit(".", maxsplit=1)[-1] for name in link[1] if name) if link else ()
 
 
 def source_of(obj: Any) -> tuple[Any, tuple[str, ...]]:
-    """The object of a feature's Source and the names of the faces chosen. Raises InputError 'NO_INPUT', 'BAD_FACES'."""
+    """Return the Source object of a feature and the names of its selected faces.
+
+    Raises InputError NO_INPUT, BAD_FACES.
+    """
     if not obj.Source:
         raise InputError(
             "NO_INPUT",

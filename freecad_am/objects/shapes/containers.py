@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What objects are nested in: parts, assemblies, bodies, groups of links."""
+"""Containers of objects: parts, assemblies, bodies and link groups."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 
 
 def members_of(container: Any) -> tuple[Any, ...]:
-    """The objects that a container places; () for other objects."""
+    """Return the objects that a container places; () for other objects."""
     members: list[Any] = []
     for name in ("Group", "ElementList"):
         value = getattr(container, name, None)
@@ -18,7 +18,7 @@ def members_of(container: Any) -> tuple[Any, ...]:
 
 
 def containers_of(obj: Any) -> list[Any]:
-    """All that an object is nested in, the innermost first."""
+    """Return all containers of an object, the innermost first."""
     nested: list[Any] = []
     waiting = [obj]
     while waiting:
@@ -31,9 +31,11 @@ def containers_of(obj: Any) -> list[Any]:
 
 
 def dependents_of(obj: Any) -> tuple[list[Any], list[Any]]:
-    """The objects affected by a change of an object: first the ones made from it, or placed by a
-    container whose expression refers to it, once that is recomputed; then the ones that it contains
-    and may have moved. Neighbours in a container of the object are not included.
+    """Return two lists of objects that a change of an object affects.
+
+    The first list contains objects made from the object, or placed by a container whose expression
+    refers to the object. The second list contains objects inside the object, which may have moved.
+    Neighbours in a container of the object are not included.
     """
     made_of: dict[Any, None] = {}
     waiting = [(obj, False)]
@@ -51,7 +53,7 @@ def dependents_of(obj: Any) -> tuple[list[Any], list[Any]]:
 
 
 def _followers_within(container: Any) -> dict[Any, None]:
-    """The members of a container, and everything made from them."""
+    """Return the members of a container, and all objects made from them."""
     members = list(_walk_members(members_of(container)))
     return dict.fromkeys(
         follower for member in members for follower in (member, *member.InListRecursive)
@@ -59,7 +61,7 @@ def _followers_within(container: Any) -> dict[Any, None]:
 
 
 def _walk_members(members: tuple[Any, ...]) -> Iterator[Any]:
-    """Members and their contents."""
+    """Yield members and their contents."""
     visited: set[str] = set()
     waiting = list(members)
     while waiting:
@@ -70,13 +72,13 @@ def _walk_members(members: tuple[Any, ...]) -> Iterator[Any]:
             waiting += members_of(member)
 
 
-# ---- What links of a document point to, while it may be gone
+# ---- Links of a document with possibly deleted targets
 
 LINKS = ("App::Link", "App::LinkElement")
 
 
 def broken_link(value: Any) -> str:
-    """Label of the first FreeCAD link whose object is gone; '' if there is none."""
+    """Return the label of the first FreeCAD link with a missing target, '' without such a link."""
     for entry in value if isinstance(value, list) else [value]:
         linked = entry[0] if isinstance(entry, tuple) else entry
         if linked is not None and links_to_nothing(linked):
@@ -85,7 +87,10 @@ def broken_link(value: Any) -> str:
 
 
 def links_to_nothing(obj: Any) -> bool:
-    """Whether an object is a FreeCAD link whose object is gone or was not loaded. A link array is its own linked object."""
+    """Whether an object is a FreeCAD link whose target is deleted or not loaded.
+
+    A link array is its own linked object.
+    """
     if getattr(obj, "TypeId", "") not in LINKS:
         return False
     target = obj.LinkedObject[0] if isinstance(obj.LinkedObject, tuple) else obj.LinkedObject
@@ -93,7 +98,7 @@ def links_to_nothing(obj: Any) -> bool:
 
 
 def is_there(obj: Any) -> bool:
-    """Whether an object is still part of an open document."""
+    """Whether an object still exists in an open document."""
     try:
         return obj.Document is not None and obj.Document.getObject(obj.Name) is not None
     except (ReferenceError, RuntimeError, AttributeError, TypeError):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Failures of the computer while a stage is computed, as errors with a remedy."""
+"""Convert memory and kernel failures during a computation to errors with a remedy."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ...core.issues import InputError
 
 @contextmanager
 def memory(label: str) -> Iterator[None]:
-    """A lack of memory within, as an InputError NO_MEMORY that names `label`."""
+    """Within the context, convert MemoryError to InputError NO_MEMORY, naming `label`."""
     try:
         yield
     except MemoryError:
@@ -27,7 +27,7 @@ def memory(label: str) -> Iterator[None]:
 
 @contextmanager
 def kernel(obj: Any) -> Iterator[None]:
-    """Faults of the geometry kernel within, as an InputError BAD_SHAPE that names what the stage `obj` is made from."""
+    """Within the context, convert kernel faults to InputError BAD_SHAPE, naming the source."""
     source = getattr(obj, "Source", None)
     origin = source[0] if source else obj
     with reported(str(origin.Label), getattr(origin, "Shape", None)):

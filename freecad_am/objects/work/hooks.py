@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Hooks for the GUI: objects never import the GUI, they only announce themselves and long work.
+"""Hooks for the GUI: objects never import the GUI, but announce themselves and long work.
 
-InitGui names the GUI module, which is imported when our first object appears.
+InitGui registers the GUI module, which is imported with the first object of the workbench.
 """
 
 from __future__ import annotations
@@ -17,8 +17,10 @@ T = TypeVar("T")
 
 
 class _Window:
-    """The window, once it has registered. module: name of its module with `attach` and `carry_out`;
-    '' without a window. is_waiting: whether it waits for long work.
+    """State of the window.
+
+    module: name of the module with `attach` and `carry_out`, '' without a window. is_waiting:
+    whether the window waits for long work.
     """
 
     def __init__(self) -> None:
@@ -30,26 +32,25 @@ _window = _Window()
 
 
 def register(module: str) -> None:
-    """Name the module with the functions `attach(obj)`, which gives an object its view provider and
-    draws the stored result, and `carry_out(work, title, doing)`, which does long work while the
-    window stays alive.
+    """Register the GUI module, which has two functions.
+
+    `attach(obj)` gives an object its view provider and draws the stored result. `carry_out(work,
+    title, doing)` runs long work while the window stays responsive.
     """
     _window.module = module
 
 
 def attach(obj: Any) -> None:
-    """Show the object in a window: when it is made, and when a document (also a headless one)
-    opens.
-    """
+    """Show an object in the window, when the object is made or its document opens."""
     if App.GuiUp and _window.module and getattr(obj, "ViewObject", None) is not None:
         importlib.import_module(_window.module).attach(obj)
 
 
 def carry_out(work: Callable[[], T], title: str, doing: str = "") -> T:
-    """What `work` returns or raises. It must touch no document: in the window it runs in another
-    thread. doing: the text shown there until `work` reports progress.
+    """Run `work` and return its result. In the window, `work` runs in another thread.
 
-    Raises Cancelled when the user cancels it.
+    `work` must not touch documents. doing: text to show until `work` reports progress. Raises
+    Cancelled if the user cancels, and the errors of `work`.
     """
     if (
         not (App.GuiUp and _window.module)
@@ -65,5 +66,5 @@ def carry_out(work: Callable[[], T], title: str, doing: str = "") -> T:
 
 
 def carrying() -> bool:
-    """Whether the window is waiting for work: what events bring about meanwhile must not start another one."""
+    """Whether the window waits for work. Event handlers must not start more work then."""
     return _window.is_waiting

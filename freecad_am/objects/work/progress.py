@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Progress and findings of a long computation, for a terminal, a progress bar or no listener; and
-its cancellation.
-"""
+"""Progress, issues and cancellation of a long computation, for a terminal, a bar or no listener."""
 
 from __future__ import annotations
 
@@ -16,11 +14,11 @@ Findings = Callable[[Issue], None]
 
 
 class Cancelled(BaseException):
-    """The computation was cancelled. No Exception, so that nothing on the way takes it for a failure of its own."""
+    """The computation was cancelled. Not an Exception, so that error handlers do not catch it."""
 
 
 class _Listeners(threading.local):
-    """Each thread has its own: work in one thread does not reach another thread's listeners."""
+    """Listeners per thread: work in one thread does not report to another thread's listeners."""
 
     def __init__(self) -> None:
         self.stack: list[tuple[Listener, Findings | None]] = []
@@ -30,13 +28,13 @@ _listeners = _Listeners()
 
 
 def report(fraction: float, text: str) -> None:
-    """Report to the innermost listener of the current thread; it may raise to cancel."""
+    """Report to the innermost listener of the current thread, which may raise to cancel."""
     if _listeners.stack:
         _listeners.stack[-1][0](fraction, text)
 
 
 def report_issue(issue: Issue) -> None:
-    """Report an issue to the innermost listener of the current thread before the work is done."""
+    """Report an issue to the innermost listener of the current thread, before the work ends."""
     findings = _listeners.stack[-1][1] if _listeners.stack else None
     if findings is not None:
         findings(issue)
@@ -44,19 +42,19 @@ def report_issue(issue: Issue) -> None:
 
 @contextlib.contextmanager
 def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[None]:
-    """Report progress and findings of the current thread to functions, within a context.
+    """Within the context, report progress and issues of the current thread to functions.
 
     Parameters
     ----------
     listener : Listener
-        Receives fraction and text; may raise to cancel.
+        Function of fraction and text; may raise an exception to cancel.
     findings : Findings or None, optional
-        Receives each issue; None for no function.
+        Function of an issue; None to ignore issues.
 
     Raises
     ------
     InputError
-        BAD_INPUT for an object that cannot be called.
+        BAD_INPUT for an object that is not callable.
     """
     for called, where in ((listener, "listener"), (findings, "findings")):
         if not callable(called) and (called is not None or where == "listener"):
@@ -72,8 +70,9 @@ def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[No
 
 @contextlib.contextmanager
 def one_of(number: int, count: int, begin: float, end: float) -> Iterator[None]:
-    """Within the context `count` equal tasks, each reporting from `begin` to `end`, report as one;
-    `number` counts from 0.
+    """Within the context, scale the progress of one of `count` equal tasks.
+
+    Each task reports fractions from `begin` to `end`. number: task index, from 0.
     """
     if not _listeners.stack:
         yield
