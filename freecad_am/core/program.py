@@ -231,7 +231,7 @@ class Program:
 
     station, carried: X Y Z mm, RX RY RZ rad. With the part on the robot: the deposition point in
     the manufacturer's base frame, and the program's origin on the flange. With the tool on the
-    robot: the program's origin in the manufacturer's base frame, and the nozzle tip on the flange.
+    robot, they are the program's origin in the manufacturer's base frame, and the nozzle tip on the flange.
     On a five-axis machine: the torch tip with all axes at zero, and the program's origin on the
     face that carries the part (the work offset with the rotary axes at zero).
 

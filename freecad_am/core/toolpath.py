@@ -92,8 +92,8 @@ class Bead:
 
     points: (n, 3) mm. build, tool: (n, 3) unit vectors, the build direction and the tool axis (from
     the deposit towards the tool). parameter: (n,) strictly monotonic variable of the layer's
-    polynomial: the unwrapped angle about the axis on parts of revolution, else the arc length
-    normalised to 2 pi. speed: (n,) mm/s on the segment that ends at the point. width, height: (n,)
+    polynomial, which is the unwrapped angle about the axis on parts of revolution, else the arc
+    length normalised to 2 pi. speed: (n,) mm/s on the segment that ends at the point. width, height: (n,)
     mm, predicted; None without a bead model. wire_share: mm of wire per mm of bead if the wire feed
     follows the travel speed, else None. tangents: (n, 2, 3) unit tangents on arrival at and
     departure from each point, equal except at corners; None if the strategy does not provide them.
@@ -397,8 +397,8 @@ class Checks:
 
     unsupported: length of bead without support, mm. on_part: number of checked points on the part,
     their maximum distance from the part and the allowed distance, mm. volumes: volume of a filled
-    part, volume missed by the beads and volume of stray beads, mm3. uneven: (k, 3) layers of uneven
-    height: index, minimum and maximum height, mm. twice: over-deposition, mm3, of beads as wide as
+    part, volume missed by the beads and volume of stray beads, mm3. uneven: (k, 3) index, minimum
+    and maximum height, mm, of layers of uneven height. twice: over-deposition, mm3, of beads as wide as
     their spacing on other beads of the layer. fitted: fit to a scan. predicted: comparison of the
     predicted deposit with the part.
     """

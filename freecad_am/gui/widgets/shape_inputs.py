@@ -109,8 +109,8 @@ def _rank(stage: Any) -> int:
 class ShapeChoice(Input):
     """A selected shape with some of its faces, or an axis; a button updates it.
 
-    An empty selection clears an optional input. present: the value of the link. note: message of
-    the panel when it opens.
+    An empty selection clears an optional input. present: the value of the link. The panel
+    shows `note` when it opens.
     """
 
     note = ""

@@ -447,8 +447,8 @@ def _base(grid: Grid, pieces: Strands, below: tuple[Strands, Array] | None) -> A
 class _Layer:
     """One layer during its deposit.
 
-    Heights are in mm above the path of the pieces. base: (n,) top of the deposit below. level: (n,)
-    surface of the pieces. rise: (n,) height of the surface's crest above its mean.
+    Heights (n,) are in mm above the path of the pieces: `base`, the top of the deposit below;
+    `level`, the surface of the pieces; `rise`, from the mean of the surface to its crest.
     """
 
     def __init__(self, grid: Grid, pieces: Strands, base: Array) -> None:

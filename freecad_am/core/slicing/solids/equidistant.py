@@ -53,8 +53,8 @@ class Loop:
 class Facets:
     """Closed mesh prepared for cuts by the equidistant surfaces of a base surface.
 
-    vertices: (n, 3) in the frame of the hub, mm. distances: (n,) from the base surface, mm.
-    triangles: (m, 3) with outward normals; each edge has two triangles. Raises InputError
+    vertices: (n, 3) in the frame of the hub, mm; `distances` has their distances (n,) from the base
+    surface, mm. triangles: (m, 3) with outward normals; each edge has two triangles. Raises InputError
     'OPEN_MESH' with the position of an edge that does not have two triangles.
     """
 

@@ -43,7 +43,7 @@ class PlaneCuts:
     """Mesh prepared for sections z = constant.
 
     vertices: (n, 3), mm. faces: (m, 3); each edge has equal numbers of faces of either sense.
-    triangles: faces that are not horizontal.
+    `triangles` has the faces that are not horizontal.
     """
 
     def __init__(self, vertices: Array, faces: Index) -> None:
