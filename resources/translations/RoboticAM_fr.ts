@@ -7803,8 +7803,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>as high as their layer is there, {0} to {1} mm</source>
-        <translation>la hauteur que leur couche a là, {0} à {1} mm</translation>
+        <source>as high as their layer is there, {0} mm</source>
+        <translation>la hauteur que leur couche a là, {0} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
@@ -7813,8 +7813,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>as wide as the available space, {0} to {1} mm</source>
-        <translation>de la largeur de l&apos;espace disponible, {0} à {1} mm</translation>
+        <source>as wide as the available space, {0} mm</source>
+        <translation>la largeur de l&apos;espace disponible, {0} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/new_job.py"/>
@@ -16303,13 +16303,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0} of {1} beads are deposited at {2} to {3} mm/s instead of {4} mm/s, so that a constant wire feed makes them {5}; the speed varies along them</source>
-        <translation>{0} des {1} cordons sont déposés à {2} à {3} mm/s au lieu de {4} mm/s, pour qu’une avance de fil constante leur donne {5} ; la vitesse la suit le long d’eux</translation>
+        <source>{0} of {1} beads are deposited at {2} mm/s instead of {3} mm/s, so that a constant wire feed makes them {4}</source>
+        <translation>{0} des {1} cordons sont déposés à {2} mm/s au lieu de {3} mm/s, pour qu’une avance de fil constante leur donne {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0} of {1} beads are deposited at {2} to {3} mm/s, so that a constant wire feed makes them {4}; the speed varies along them</source>
-        <translation>{0} des {1} cordons sont déposés à {2} à {3} mm/s, pour qu’une avance de fil constante leur donne {4} ; la vitesse la suit le long d’eux</translation>
+        <source>{0} of {1} beads are deposited at {2} mm/s, so that a constant wire feed makes them {3}</source>
+        <translation>{0} des {1} cordons sont déposés à {2} mm/s, pour qu’une avance de fil constante leur donne {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>

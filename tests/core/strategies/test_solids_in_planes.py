@@ -288,12 +288,17 @@ def test_beads_deposit_the_volume_of_the_part_where_they_crowd(part, fill):
     (told,) = [issue for issue in made.issues if issue.code == "SPEED_VARIES"]
     beads = [bead for _, _, bead in made]
     others = [bead for bead in beads if np.abs(bead.speed[1:] / 20.0 - 1.0).max() > 0.01]
-    count, every, slow, fast, usual, thin, wide = (
-        float(number)
-        for number in re.findall(
-            r"(?<![a-z])\d+\.?\d*", told.message.split("; for a constant speed")[0]
-        )
+    number, numbers = r"(\d+\.?\d*)", r"(\d+\.?\d*(?: to \d+\.?\d*)?)"
+    words = re.match(
+        f"{number} of {number} beads are deposited at {numbers} mm/s instead of {number} mm/s, so that "
+        f"a constant wire feed makes them as wide as the available space, {numbers} mm",
+        told.message,
     )
+    count, every, speeds, usual, widths = (
+        [float(value) for value in group.split(" to ")] for group in words.groups()
+    )
+    (count,), (every,), (usual,), slow, fast = count, every, usual, speeds[0], speeds[-1]
+    thin, wide = widths[0], widths[-1]
     assert (count, every, usual) == (len(others), len(beads), 20.0)
     for said, exact in (
         (slow, min(bead.speed[1:].min() for bead in others)),
@@ -346,6 +351,15 @@ def test_what_is_told_to_give_one_speed_does(asked, remedy):
     assert not [issue for issue in made.issues if issue.code == "SPEED_VARIES"]
     speeds = np.concatenate([bead.speed[1:] for _, _, bead in made])
     assert speeds == pytest.approx(ProcessParameters().travel_speed, abs=1e-12)
+
+
+def test_a_note_on_equal_speeds_gives_one_number():
+    """Beads 5.5 mm across 20 mm: six of 3.57 mm at one speed."""
+    process = ProcessParameters(bead_width=4.0)
+    made = planned(box((0, 0, 0), (30, 20, 4)), bead_spacing=3.5, process=process)
+    (told,) = [issue for issue in made.issues if issue.code == "SPEED_VARIES"]
+    assert re.search(r"deposited at \d+\.?\d* mm/s instead", told.message)
+    assert "as wide as the available space, 3.57 mm" in told.message
 
 
 def test_where_beads_do_not_crowd_all_are_as_wide_as_ever():

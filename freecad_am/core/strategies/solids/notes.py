@@ -26,8 +26,8 @@ from .flattened_bead import LEAST_DEPARTURE
 from .torch_tilt import Turned
 
 SLIGHTLY = 0.01  # fraction of the travel speed; minimum difference that is reported
-WIDTH_TEXT = "as wide as the available space, {:.3g} to {:.3g} mm"
-HIGH = "as high as their layer is there, {:.3g} to {:.3g} mm"
+WIDTH_TEXT = "as wide as the available space, {} mm"
+HIGH = "as high as their layer is there, {} mm"
 
 
 def notes(
@@ -129,17 +129,16 @@ def _speeds(
     wide = [bead.width for bead in beads if bead.width is not None]
     high = [bead.height for bead in beads if bead.height is not None]
     sizes = [
-        Text(text, *_ends(columns))
+        Text(text, _range(*_ends(columns), "{:.3g}"))
         for text, columns in ((WIDTH_TEXT, wide), (HIGH, high))
         if columns
     ]
     _, layer, number = max(varied, key=lambda deviation: deviation[0])
     text = Text(
-        "{} of {} beads are deposited at {:.4g} to {:.4g} mm/s{}, so that a constant wire feed makes them {}; the speed varies along them",
+        "{} of {} beads are deposited at {} mm/s{}, so that a constant wire feed makes them {}",
         len(varied),
         len(deviations),
-        speed.min(),
-        speed.max(),
+        _range(speed.min(), speed.max(), "{:.4g}"),
         Word(instead),
         Text.joined(" and ", sizes),
     )
@@ -164,6 +163,12 @@ def _for_one_speed(strategy: FilledParameters, high: bool) -> str:
         *(["strategy.narrowest: 100 %"] if strategy.narrowest < 1.0 else []),
     ]
     return Text.joined(" and ", settings)
+
+
+def _range(low: float, high: float, form: str) -> Text | str:
+    """Return two numbers as a range; as one number if they read the same."""
+    start, end = form.format(low), form.format(high)
+    return start if start == end else Text("{} to {}", start, end)
 
 
 def _ends(columns: Sequence[Array]) -> tuple[float, float]:
