@@ -157,6 +157,17 @@ def test_blocks_of_any_width_have_neither_void_nor_double_deposit(long, wide, sp
     assert coverage(solids.planned(block, widths="fixed", **values)).void >= one.void
 
 
+def test_a_bead_without_length_covers_nothing():
+    section = Section(np.eye(4), SECTION, WIDTH)
+    line_ = Stroke(np.array([(-50.0, 6.0), (150.0, 6.0)]), np.array([WIDTH]))
+    point = Stroke(np.array([(5.0, 2.0), (5.0, 2.0)]), np.array([WIDTH])).drop_repeats()
+    alone, both = (
+        void_and_double.draw(section, strokes, WIDTH).coverage
+        for strokes in ([line_], [point, line_])
+    )
+    assert alone.void == both.void == pytest.approx(2.0 / 3.0, abs=5e-3)
+
+
 @pytest.mark.parametrize(("narrowest", "missing"), [(1.0, 0.0), (0.3, 20 * 2 / (1200 + 20 * 2))])
 def test_a_rib_without_a_bead_is_void_where_a_narrow_bead_would_fit(narrowest, missing):
     """A rib half a bead wide on the long side of a rectangle: beads of adaptive widths could fill it."""

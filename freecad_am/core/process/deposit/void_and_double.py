@@ -148,7 +148,7 @@ def draw(
     section : Section
         The section. Overlap of adjacent beads planned by its spacing does not count.
     wide : sequence of Stroke
-        Beads on the section's plane with effective widths, mm.
+        Beads on the section's plane with effective widths, mm; those without length do not count.
     width : float
         Nominal width of a bead, mm.
     across : float
@@ -159,6 +159,7 @@ def draw(
     Picture or None
         The raster; None if the section has no area.
     """
+    wide = [stroke for stroke in wide if len(stroke.widths)]
     share = min(section.spacing / width, 1.0)
     narrow = [stroke._replace(widths=share * stroke.widths) for stroke in wide]
     points = np.vstack([*section.loops, *(stroke.points for stroke in wide), np.zeros((0, 2))])

@@ -394,8 +394,7 @@ def _fault(region: Region, curves: Sequence[PlaneCurve], beads: Beads) -> float:
     """Return the fraction of a region with missed, over-deposited or stray area, as in reports."""
     section = Section(np.eye(4), tuple(region.borders()), beads.spacing, narrowest=beads.narrowest)
     width = 2.0 * beads.inset
-    strokes = [_stroke(curve, width) for curve in curves]
-    picture = draw(section, [stroke for stroke in strokes if len(stroke.widths)], width)
+    picture = draw(section, [_stroke(curve, width) for curve in curves], width)
     if picture is None:
         return 0.0
     return picture.coverage.void + picture.coverage.over + picture.coverage.outside
