@@ -92,10 +92,10 @@ class Child(_CONTEXT.Process):  # type: ignore[misc]
                 self.kill()
 
     def _clean_up(self) -> None:
-        """Finish or remove the unfinished outputs of a crashed child."""
+        """Finish or remove unfinished outputs: a crash or a signal may come before the child does."""
         from . import staging
 
-        for folder, made_folders in [] if self.is_done else self._outputs:
+        for folder, made_folders in self._outputs:
             with contextlib.suppress(OSError):
                 staging.clear(folder)
                 for path in reversed(made_folders):

@@ -41,29 +41,30 @@ class Outputs:
         self.folder = os.path.abspath(folder)
         self._session = session
         self._made: list[str] = []
+        self._staging: Any = None
         try:
-            self._make_folder()
-            staging.refuse(self.folder, [f"{inside}/any" for inside in (PROGRAMS, WIRES)])
-            self._staging = staging.Staging(self.folder)
+            with staging.uninterrupted():
+                self._make_folder()
+                staging.refuse(self.folder, [f"{inside}/any" for inside in (PROGRAMS, WIRES)])
+                self._staging = staging.Staging(self.folder)
+                child.report_outputs(self.folder, self._made)
+            if self._staging.others and session is not None:
+                session.say(
+                    f"note[BUSY] {self.folder}: another run writes into this folder too; what ends last stays; give one "
+                    "of them another folder with -o"
+                )
         except (OSError, ValueError) as error:
-            self._remove_made()
+            self._remove()
             raise self._unwritable(getattr(error, "filename", None) or self.folder, error) from None
         except BaseException:  # Ctrl-C
-            self._remove_made()
+            self._remove()
             raise
-        child.report_outputs(self.folder, self._made)
-        if self._staging.others and session is not None:
-            session.say(
-                f"note[BUSY] {self.folder}: another run writes into this folder too; what ends last stays; give one "
-                "of them another folder with -o"
-            )
 
     def __enter__(self) -> Outputs:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self._staging.remove()
-        self._remove_made()
+        self._remove()
 
     def path(self, name: str) -> str:
         """Return the path for writing the file `name` of the run; `name` uses slashes."""
@@ -122,12 +123,16 @@ class Outputs:
                 if not os.path.isdir(path):  # another row of the batch may have made the folder
                     raise
 
-    def _remove_made(self) -> None:
-        for path in reversed(self._made):
-            try:
-                os.rmdir(path)  # fails for a folder with published files, which must stay
-            except OSError:
-                return
+    def _remove(self) -> None:
+        """Remove all collected files, and new folders that contain no published file."""
+        with staging.uninterrupted():
+            if self._staging is not None:
+                self._staging.remove()
+            for path in reversed(self._made):
+                try:
+                    os.rmdir(path)
+                except OSError:  # the folder contains published files
+                    return
 
 
 def earlier_programs(folder: str) -> set[str]:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """A command that crashes is told, leaves nothing, and takes signals as one process does."""
 
+import functools
+import itertools
 import os
 import re
 import signal
@@ -124,3 +126,33 @@ def test_a_crash_leaves_the_outputs_as_they_were(tmp_path, before):
     assert (tmp_path / "new").exists() == bool(before) and not list(
         out.glob(".*") if before else []
     )
+
+
+def test_interrupted_at_any_line_nothing_is_left(tmp_path):
+    """Ctrl-C in every line of the code that makes and removes output folders."""
+    traced_files = {module.__file__ for module in (outputs, outputs.staging)}
+    out = tmp_path / "new" / "out"
+
+    def work(step):
+        lines = itertools.count(1)
+
+        def trace(frame, event, _):
+            if frame.f_code.co_filename not in traced_files:
+                return None
+            if event == "line" and next(lines) == step:
+                os.kill(os.getpid(), signal.SIGINT)
+            return trace
+
+        sys.settrace(trace)
+        with outputs.Outputs(str(out)):
+            pass
+        sys.settrace(None)
+        return 0
+
+    for step in range(1, 400):
+        status = child.run_in_child(functools.partial(work, step), "cup.yaml", lambda line: None)
+        assert not (tmp_path / "new").exists(), step
+        if status == 0:
+            break
+        assert status == child.INTERRUPTED
+    assert status == 0 and step > 50
