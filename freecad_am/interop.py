@@ -19,19 +19,26 @@ import numpy as np
 import Part
 
 from .core.geometry.frames import pose, smallest_rotation
-from .core.issues import InputError
+from .core.issues import InfeasibleError, InputError
+from .core.kinematics import cell as cells
 from .core.kinematics.arrangement import arrangement_of
-from .core.kinematics.machines import calibration, machine
+from .core.kinematics.machines import calibration
+from .core.kinematics.machines.machine import Machine
 from .core.kinematics.urdf import reference as urdf_reference
 from .core.motion import Motion
 from .core.parameters import field as f
 from .core.parameters.cell import CellParameters
+from .core.parameters.process import ProcessParameters
 from .core.simulation import timeline, waypoints
+from .core.simulation.joint_trajectory import JointTrajectory, joint_trajectory, trajectory_text
 from .core.toolpath import Toolpath
 from .core.types import Array, Index
 from .objects import user_machines
 from .objects.current import check_current, check_recomputed
+from .objects.joint_path import Planned, planned_of
+from .objects.results.findings import issues_of, reason_of
 from .objects.stage import stage_of
+from .objects.staleness import INFEASIBLE
 from .objects.work import hooks
 
 # ---- A cell as a file of its own, which jobs name: `cell: my-cell.yaml`
@@ -257,11 +264,43 @@ def motion_of(obj: Any) -> tuple[Motion, tuple[str, ...], tuple[str, ...]]:
     Raises InputError as `lines_of`, and where the machine's file is gone.
     """
     obj = _path_of(obj)
-    value = obj.Proxy.value(obj)
     if obj.Proxy.kind == "toolpath":
-        return timeline.deposit_motion(value), (), ()
-    arm = machine.load(obj.Cell.Machine, user_machines.folders())
-    return value.motion, arm.columns, arm.units
+        return timeline.deposit_motion(obj.Proxy.value(obj)), (), ()
+    planned, machine = _planned_and_machine(obj)
+    return planned.motion, machine.columns, machine.units
+
+
+def _planned_and_machine(path: Any) -> tuple[Planned, Machine]:
+    """Return the result of a joint path, and its machine with the external axes."""
+    planned, toolpath, settings = planned_of(path, path.Label)
+    cell = cells.resolve(settings, toolpath.frame, toolpath.family, user_machines.folders())
+    return planned, cell.machine
+
+
+def joint_trajectory_of(obj: Any) -> JointTrajectory:
+    """Return the joint path of a joint path or program as a trajectory, with all waits.
+
+    Raises InputError as `lines_of`, and BAD_INPUT for a toolpath; InfeasibleError INPUT_INFEASIBLE.
+    """
+    path = _path_of(obj)
+    if path.Proxy.kind == "toolpath":
+        raise InputError(
+            "BAD_INPUT", obj.Label, "a toolpath has no joint values; choose a joint path or program"
+        )
+    if path.Status == INFEASIBLE:
+        raise InfeasibleError(
+            "INPUT_INFEASIBLE",
+            obj.Label,
+            "{} is infeasible: {}",
+            path.Label,
+            reason_of(path),
+            issues=issues_of(path),
+        )
+    planned, machine = _planned_and_machine(path)
+    process = path.Toolpath.Proxy.parameters(path.Toolpath, ProcessParameters)
+    waits = [layer.wait for layer in path.Toolpath.Proxy.value(path.Toolpath).layers]
+    times = timeline.timeline(planned.motion, process, waits)
+    return joint_trajectory(times, machine.axes, machine.chain.sliding)
 
 
 def _path_of(obj: Any) -> Any:
@@ -280,7 +319,8 @@ def _path_of(obj: Any) -> Any:
     return path
 
 
-STEP, DXF, CELL, PAGE = (".step", ".stp"), (".dxf",), (".yaml", ".yml"), ".html"
+STEP, DXF, CELL = (".step", ".stp"), (".dxf",), (".yaml", ".yml")
+PAGE, TRAJECTORY = ".html", ".json"
 
 
 def write_wires(obj: Any, path: str, rapids: bool) -> str:
@@ -314,6 +354,27 @@ def write_waypoints(obj: Any, path: str) -> str:
     def write(unfinished: str) -> None:
         with open(unfinished, "w", encoding="ascii", newline="") as stream:
             stream.writelines(waypoints.text(motion, columns, units))
+
+    return _write_whole(path, write)
+
+
+def write_joint_trajectory(obj: Any, path: str) -> str:
+    """Write a joint path, or a program's joint path, as JointTrajectory of ROS in JSON; return the path.
+
+    The file appears whole or not at all. Raises InputError UNSUPPORTED_FILE, NO_FOLDER, NOT_WRITABLE,
+    and what `joint_trajectory_of` raises.
+    """
+    if os.path.splitext(path)[1].lower() != TRAJECTORY:
+        raise InputError(
+            "UNSUPPORTED_FILE",
+            path,
+            "joint trajectories are written as .json; use the extension .json",
+        )
+    trajectory = joint_trajectory_of(obj)
+
+    def write(unfinished: str) -> None:
+        with open(unfinished, "w", encoding="utf-8", newline="\n") as stream:
+            stream.writelines(trajectory_text(trajectory))
 
     return _write_whole(path, write)
 

@@ -135,7 +135,7 @@ def _export(options: Any, session: Any) -> int:
     from . import measured
 
     paths = measured.export(
-        options.document, options.output, tuple(options.object), session, options.wires
+        options.document, options.output, tuple(options.object), session, options.paths
     )
     _tell_paths(paths, session)
     return SUCCESS
@@ -303,8 +303,20 @@ def _add_export(parser: Parser) -> None:
     parser.add_argument(
         "--object", metavar="NAME", nargs="+", action="extend", default=[], help="Name or Label"
     )
-    parser.add_argument(
-        "--wires", choices=("step", "dxf"), default="", help="write paths as wires, not programs"
+    kinds = parser.add_mutually_exclusive_group()
+    kinds.add_argument(
+        "--wires",
+        choices=("step", "dxf"),
+        default="",
+        dest="paths",
+        help="write paths as wires, not programs",
+    )
+    kinds.add_argument(
+        "--trajectory",
+        action="store_const",
+        const="json",
+        dest="paths",
+        help="write joint paths as JointTrajectory of ROS, not programs",
     )
 
 

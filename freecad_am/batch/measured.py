@@ -15,15 +15,18 @@ from .host import require_freecad
 _PROGRAMS, _PATHS = ("program",), ("joint path", "toolpath", "program")
 
 
+WIRE_KINDS, TRAJECTORY = ("step", "dxf"), "json"
+
+
 def export(
-    path: str, folder: str | None, names: tuple[str, ...], session: Any, wires: str = ""
+    path: str, folder: str | None, names: tuple[str, ...], session: Any, kind: str = ""
 ) -> list[str]:
     """Export the programs of a document and return the paths of the written files.
 
     names: Names or Labels of the objects to export; empty for all programs. Files are written to
     program/ in `folder`, by default out/<document> next to the document. The document does not
-    change. wires: 'step' or 'dxf' writes to wires/ instead, one file for each joint path, or for
-    each named toolpath, joint path or program. Raises InputError and InfeasibleError and then
+    change. kind: one of WIRE_KINDS writes to wires/ instead, TRAJECTORY to trajectories/, one file
+    for each joint path, or for each named toolpath, joint path or program. Raises InputError and InfeasibleError and then
     writes nothing.
     """
     label = os.path.basename(path)
@@ -47,9 +50,9 @@ def export(
         document = linked_files.opened(path, label)
         try:
             linked_files.renew_changed(document)
-            if wires:
-                _write_wires(
-                    _chosen(document, label, names, _PATHS, "NO_PATH"), wires, files, session
+            if kind:
+                _write_paths(
+                    _chosen(document, label, names, _PATHS, "NO_PATH"), kind, files, session
                 )
             else:
                 for name, content in _files(
@@ -60,7 +63,7 @@ def export(
             # close linked documents, which FreeCAD opened with the document
             for name in set(FreeCAD.listDocuments()) - open_before:
                 FreeCAD.closeDocument(name)
-        earlier = set() if names or wires else outputs.earlier_programs(files.folder)
+        earlier = set() if names or kind else outputs.earlier_programs(files.folder)
         return [os.path.join(files.folder, name) for name in files.publish(earlier)]
 
 
@@ -99,22 +102,26 @@ def _chosen(
     return selected
 
 
-def _write_wires(paths: list[Any], kind: str, files: outputs.Outputs, session: Any) -> None:
-    """Write the wires of paths. Raises InputError if two paths have the same file name."""
+def _write_paths(paths: list[Any], kind: str, files: outputs.Outputs, session: Any) -> None:
+    """Write paths as wires or trajectories. Raises InputError if two have the same file name."""
     from freecad_am import api
 
+    folder = outputs.WIRES if kind in WIRE_KINDS else outputs.TRAJECTORIES
     written: set[str] = set()
     for obj in dict.fromkeys(paths):
         session.progress(f"computing {obj.Label} ...")
         api.recompute(obj)
         session.check()
-        name = Text("{}/{}.{}", outputs.WIRES, obj.Label.replace(os.sep, "-"), kind)
+        name = Text("{}/{}.{}", folder, obj.Label.replace(os.sep, "-"), kind)
         if name in written:
             raise InputError(
                 "SAME_NAME", obj.Label, "two paths write {}; change one label", Word(name)
             )
         written.add(name)
-        api.export_wires(obj, files.path(name), rapids=True)
+        if kind in WIRE_KINDS:
+            api.export_wires(obj, files.path(name), rapids=True)
+        else:
+            api.export_joint_trajectory(obj, files.path(name))
 
 
 def _files(programs: list[Any], session: Any) -> dict[str, bytes]:

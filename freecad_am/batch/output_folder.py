@@ -17,12 +17,13 @@ from ..posts import own_programs as earlier_posts
 from . import child, staging
 from .job.job import Job
 
-WAYPOINTS, REPORT, PAGE, PROGRAMS, WIRES = (
+WAYPOINTS, REPORT, PAGE, PROGRAMS, WIRES, TRAJECTORIES = (
     "waypoints.csv",
     "report.json",
     "report.html",
     "program",
     "wires",
+    "trajectories",
 )
 DOCUMENT_ENDING = ".FCStd"
 LARGEST_REPORT = 1 << 28  # bytes; maximum size of an earlier report to read for its outputs
@@ -45,7 +46,9 @@ class Outputs:
         try:
             with staging.uninterrupted():
                 self._make_folder()
-                staging.refuse(self.folder, [f"{inside}/any" for inside in (PROGRAMS, WIRES)])
+                staging.refuse(
+                    self.folder, [f"{inside}/any" for inside in (PROGRAMS, WIRES, TRAJECTORIES)]
+                )
                 self._staging = staging.Staging(self.folder)
                 child.report_outputs(self.folder, self._made)
             if self._staging.others and session is not None:

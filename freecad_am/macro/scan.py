@@ -165,6 +165,43 @@ def export_waypoints(obj: Any, path: str) -> str:
     return interop.write_waypoints(obj, path)
 
 
+def export_joint_trajectory(obj: Any, path: str) -> str:
+    """Write a joint path as trajectory_msgs/JointTrajectory of ROS 2, in JSON.
+
+    The file has the names of the axes, and for each point positions, velocities and the time from
+    the start: rad, prismatic axes m. Waits are two equal points. Velocities are zero where the
+    machine stops.
+
+    Parameters
+    ----------
+    obj : App.DocumentObject
+        A joint path or program.
+    path : str
+        Path of the file.
+
+    Returns
+    -------
+    str
+        Path of the file.
+
+    Raises
+    ------
+    InputError
+        BAD_INPUT for any other object.
+    InfeasibleError
+        INPUT_INFEASIBLE if the joint path is infeasible.
+
+    Examples
+    --------
+    >>> am.export_joint_trajectory(doc.JointPath, "path.json")
+    """
+    from .. import interop
+
+    path = checked_target(path, "path")
+    checked_stage(obj)
+    return interop.write_joint_trajectory(obj, path)
+
+
 @one_thread()
 def export_report(obj: Any, path: str) -> str:
     """Write the report as an HTML page, in the format of report.html.

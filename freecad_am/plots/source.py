@@ -18,7 +18,7 @@ from ..core.process.bead_model import BeadModel
 from ..core.process.deposit import spacing
 from ..core.process.wire import Measured
 from ..core.simulation.achievable_feed import AchievableFeed, achievable_feed
-from ..core.simulation.table_links import Rates, rates
+from ..core.simulation.joint_trajectory import Rates, rates
 from ..core.simulation.timeline import Timeline, timeline, volumes
 from ..core.toolpath import Toolpath
 from ..core.types import Array, Integers

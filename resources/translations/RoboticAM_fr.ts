@@ -3457,6 +3457,11 @@
         <translation>J3 tel que montré</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/tools/export_path.py"/>
+        <source>JSON file of a ROS joint trajectory</source>
+        <translation>Fichier JSON de trajectoire articulaire ROS</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Jerk</source>
         <translation>Jerk</translation>
@@ -7452,6 +7457,11 @@
         <translation>un temps comme 0.1 s</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/interop.py"/>
+        <source>a toolpath has no joint values; choose a joint path or program</source>
+        <translation>une trajectoire d’outil n’a pas de valeurs articulaires ; choisissez une trajectoire articulaire ou un programme</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>a toolpath has no joints yet; choose a joint path</source>
         <translation>une trajectoire d&apos;outil n&apos;a pas encore d&apos;articulations ; choisissez une trajectoire articulaire</translation>
@@ -10265,6 +10275,11 @@
         <location filename="../../freecad_am/gui/path/colouring.py"/>
         <source>joint speed</source>
         <translation>vitesse articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop.py"/>
+        <source>joint trajectories are written as .json; use the extension .json</source>
+        <translation>les trajectoires articulaires s’écrivent en .json ; utilisez l’extension .json</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/certificate/bound.py"/>
@@ -15397,7 +15412,7 @@
         <translation>{0} dans une boucle qui attend une entrée analogique, ou près d&apos;elle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
+        <location filename="../../freecad_am/interop.py"/>
         <source>{0} is infeasible: {1}</source>
         <translation>{0} ne peut pas être exécuté : {1}</translation>
     </message>

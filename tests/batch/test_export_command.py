@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """`export`: programs out of a saved document, computed again."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -8,6 +9,7 @@ import sys
 from pathlib import Path
 
 import FreeCAD
+import numpy as np
 import pytest
 
 from freecad_am import api
@@ -196,6 +198,31 @@ def test_what_cannot_be_carried_out_is_status_3(workshop, saved):
         line.startswith("note[REMEDY]") for line in done.err.splitlines()
     )  # what would help is told first
     assert not (workshop.folder / "out").exists()
+
+
+def test_writes_joint_paths_as_trajectories(workshop, saved):
+    done = workshop.run("export", saved, "-o", "ros", "--trajectory")
+    assert done.status == 0, done.err
+    ((name, content),) = workshop.files("ros").items()
+    assert name == "trajectories/Joint path.json"
+    trajectory = json.loads(content)
+    document = FreeCAD.openDocument(str(saved))
+    try:
+        (path,) = api.stages_of(document, "joint path")
+        motion = api.result(path).motion
+        assert trajectory["joint_names"] == ["q1", "q2", "q3", "q4", "q5", "q6"]
+        ends = [trajectory["points"][number]["positions"] for number in (0, -1)]
+        np.testing.assert_allclose(ends, motion.joints[[0, -1]], rtol=0, atol=1e-8)
+        last = trajectory["points"][-1]["time_from_start"]
+        assert last["sec"] + 1e-9 * last["nanosec"] == pytest.approx(path.TotalTime, abs=1e-3)
+    finally:
+        FreeCAD.closeDocument(document.Name)
+    done = workshop.run("export", saved, "-o", "none", "--trajectory", "--object", "Toolpath")
+    assert done.status == 2
+    assert "error[BAD_INPUT] Toolpath: a toolpath has no joint values" in done.err
+    done = workshop.run("export", saved, "-o", "none", "--trajectory", "--wires", "dxf")
+    assert done.status == 2 and "error[USAGE]" in done.err
+    assert not (workshop.folder / "none").exists()
 
 
 @pytest.mark.parametrize("kind", ["step", "dxf"])

@@ -6,11 +6,14 @@ import json
 import math
 import re
 import shutil
+from pathlib import Path
 
+import FreeCAD
 import numpy as np
 import pytest
 import yaml
 
+from freecad_am import api
 from freecad_am.batch.job.job import read_job
 from freecad_am.core.issues import InputError
 from freecad_am.core.kinematics import external
@@ -74,6 +77,25 @@ def test_rows_and_report_say_where_the_positioner_is(workshop, written):
     )
     assert axes["turned_deg"]["e2"] == pytest.approx(turned, abs=1.0)
     assert len(told["joints"]["min_deg"]) == 8 and told["machine"]["axes"][-2:] == ["e1", "e2"]
+
+
+def test_exports_of_the_saved_document_have_the_positioner(workshop, written):
+    written()
+    done = workshop.run("plan", "dome.yaml", "-o", "out", "--no-page")
+    assert done.status == 0, done.err
+    document = FreeCAD.openDocument(str(next((workshop.folder / "out").glob("*.FCStd"))))
+    try:
+        (path,) = api.stages_of(document, "joint path")
+        table = Path(api.export_waypoints(path, str(workshop.folder / "points.csv")))
+        file = Path(api.export_joint_trajectory(path, str(workshop.folder / "path.json")))
+    finally:
+        FreeCAD.closeDocument(document.Name)
+    assert table.read_bytes() == (workshop.folder / "out" / "waypoints.csv").read_bytes()
+    trajectory = json.loads(file.read_text(encoding="utf-8"))
+    assert trajectory["joint_names"][-3:] == ["A6", "e1", "e2"]
+    last_row = table.read_text(encoding="ascii").splitlines()[-1].split(",")
+    angles = np.radians([float(word) for word in last_row[-9:-1]])
+    np.testing.assert_allclose(trajectory["points"][-1]["positions"], angles, rtol=0, atol=1e-8)
 
 
 def test_the_program_takes_the_positioner_along(workshop, written):

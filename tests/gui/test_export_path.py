@@ -2,6 +2,7 @@
 """Export Path by clicks: files and objects appear, errors stay in the panel, one step of undo."""
 
 import csv
+import json
 import os
 import threading
 import time
@@ -101,6 +102,19 @@ def test_waypoints_are_a_table_of_all_points_and_axes(person, job, tmp_path):
     places = [[float(row[f"{axis}_mm"]) for axis in "xyz"] for row in rows]
     np.testing.assert_allclose(places, motion.position, rtol=0, atol=1e-6)
     assert {row["kind"] for row in rows} == {"deposit", "rapid"}
+
+
+def test_a_joint_path_is_a_trajectory_of_ros(person, job, tmp_path):
+    path = api.make_joint_path(job.Document, job, api.make_cell(job.Document, limits="paper"))
+    person.select(path)
+    panel = opened(person)
+    person.choose(panel, "Kind", "JSON file of a ROS joint trajectory")
+    person.type(panel, "File", str(tmp_path / "path.json"))
+    taken(person)
+    trajectory = json.loads((tmp_path / "path.json").read_text(encoding="utf-8"))
+    motion = api.result(path).motion
+    positions = [trajectory["points"][number]["positions"] for number in (0, -1)]
+    np.testing.assert_allclose(positions, motion.joints[[0, -1]], rtol=0, atol=1e-8)
 
 
 def of_menu(job, person):

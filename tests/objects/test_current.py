@@ -13,6 +13,9 @@ WRITERS = {
     "export": lambda job, folder: api.export(job.program, str(folder / "program")),
     "step": lambda job, folder: api.export_wires(job.joint_path, str(folder / "w.step")),
     "dxf": lambda job, folder: api.export_wires(job.toolpath, str(folder / "w.dxf")),
+    "trajectory of ROS": lambda job, folder: api.export_joint_trajectory(
+        job.joint_path, str(folder / "j.json")
+    ),
     "waypoints": lambda job, folder: api.export_waypoints(job.joint_path, str(folder / "w.csv")),
     "waypoints of the program": lambda job, folder: api.export_waypoints(
         job.program, str(folder / "p.csv")

@@ -72,6 +72,7 @@ RIGHT = {  # of each function arguments that serve, by name
     },
     "export": lambda w: {"program": w.program, "folder": str(w.folder / "out")},
     "export_cell": lambda w: {"cell": w.cell, "path": str(w.folder / "made.yaml")},
+    "export_joint_trajectory": lambda w: {"obj": w.path, "path": str(w.folder / "made.json")},
     "export_report": lambda w: {"obj": w.program, "path": str(w.folder / "made.html")},
     "export_waypoints": lambda w: {"obj": w.path, "path": str(w.folder / "made.csv")},
     "export_wires": lambda w: {"obj": w.path, "path": str(w.folder / "made.dxf"), "rapids": True},

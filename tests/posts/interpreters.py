@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Interpreters of five-axis programs that are not ours, and what they make of a text.
 
-LinuxCNC's own `rs274`, and nc-gcode-interpreter for SINUMERIK. `./freecad-am test` puts them into a folder of their own
+LinuxCNC's own `rs274`, and nc-gcode-interpreter for SINUMERIK; rosbags reads messages of ROS. `./freecad-am test` puts them into a folder of their own
 (.test-env): the package linuxcnc-uspace unpacked, not installed, and a Python environment. Tests skip where they are not.
 """
 
@@ -22,7 +22,7 @@ ENVIRONMENT = Path(__file__).resolve().parents[2] / ".test-env"
 UNPACKED = ENVIRONMENT / "linuxcnc"
 NC_PYTHON = ENVIRONMENT / "nc" / "bin" / "python"
 PACKAGES = ("linuxcnc-uspace", "libboost-python1.74.0", "libtirpc3", "libedit2")
-WHEELS = ("nc-gcode-interpreter", "polars", "polars-runtime-32")
+WHEELS = ("nc-gcode-interpreter", "polars", "polars-runtime-32", "rosbags")
 LIMIT = 120
 
 
@@ -44,6 +44,12 @@ def nc_python() -> list[str] | None:
     return [str(NC_PYTHON)] if NC_PYTHON.exists() else None
 
 
+def ros_packages() -> Path | None:
+    """Return the folder from which a Python imports rosbags, None where it is not there."""
+    folders = NC_PYTHON.parents[1].glob("lib/*/site-packages")
+    return next((folder for folder in folders if (folder / "rosbags").exists()), None)
+
+
 def provide() -> None:
     """Fetch what is missing; say so where that fails."""
     if rs274() is None and not _unpack():
@@ -51,9 +57,10 @@ def provide() -> None:
             "freecad-am: no rs274 of LinuxCNC: its programs are NOT interpreted by the tests",
             flush=True,
         )
-    if nc_python() is None and not _wheels():
+    if (nc_python() is None or ros_packages() is None) and not _wheels():
         print(
-            "freecad-am: no nc-gcode-interpreter: SINUMERIK programs are NOT interpreted by the tests",
+            "freecad-am: no nc-gcode-interpreter or rosbags: SINUMERIK programs and trajectories of ROS "
+            "are NOT read by the tests",
             flush=True,
         )
 

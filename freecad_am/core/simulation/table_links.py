@@ -17,7 +17,6 @@ from ..kinematics.cell import Cell
 from ..kinematics.chain import Chain
 from ..kinematics.inverse.five_axis import TURNING, FiveAxis
 from ..kinematics.links.solids import BRIGHT, DARK, Solid, box, capsule, cylinder
-from ..motion import Motion
 from ..types import Array, ArrayLike, Index
 
 MIN_HEIGHT_MM = 1e-3  # mm; minimum height of the drawn surface above the path
@@ -53,32 +52,6 @@ def heights(deposited: Array, position: Array, layer: Index) -> Array:
                 deposited[piece_rows[nearest], 4], MIN_HEIGHT_MM
             )
     return surface_heights
-
-
-@dataclass(frozen=True, eq=False)
-class Rates:
-    """Axis rates (n, axes) at the n rows of a motion, rad or mm per s, s^2 and s^3.
-
-    NaN in rapids and where unreachable. speed: mean on the segment that ends at the row. acceleration: change of speed
-    between the segments before and after the row, NaN at both ends of a bead. jerk: from the previous row to the row.
-    """
-
-    speed: Array
-    acceleration: Array
-    jerk: Array
-
-
-def rates(motion: Motion) -> Rates:
-    """Return the axis rates of a motion at the requested speed."""
-    within = motion.deposit & (motion.point > 0) & (motion.duration > 0.0)
-    time = np.where(within, motion.duration, np.nan)[:, None]
-    speed = np.diff(motion.joints, axis=0, prepend=motion.joints[:1]) / time
-    # rows of a bead are consecutive and the first is NaN, so differences across bead ends are NaN
-    between = 0.5 * (time[:-1] + time[1:])
-    acceleration, jerk = np.full_like(speed, np.nan), np.full_like(speed, np.nan)
-    acceleration[:-1] = np.diff(speed, axis=0) / between
-    jerk[1:-1] = np.diff(acceleration[:-1], axis=0) / (0.5 * (between[:-1] + between[1:]))
-    return Rates(speed, acceleration, jerk)
 
 
 # mm; radius of the table without a part, and of the head's joints

@@ -23,8 +23,16 @@ from ..widgets.quantity import QuantityField
 from ..widgets.shape_inputs import job_selection
 from ..widgets.upright import scrolls, upright
 
-STEP, DXF, CSV, REPORT, CAM, TRAJECTORY = "step", "dxf", "csv", "report", "cam", "trajectory"
-_FILES = {STEP: ".step", DXF: ".dxf", CSV: ".csv", REPORT: ".html"}
+STEP, DXF, CSV, JOINTS, REPORT, CAM, TRAJECTORY = (
+    "step",
+    "dxf",
+    "csv",
+    "joints",
+    "report",
+    "cam",
+    "trajectory",
+)
+_FILES = {STEP: ".step", DXF: ".dxf", CSV: ".csv", JOINTS: ".json", REPORT: ".html"}
 _KINDS = ("toolpath", "joint path", "program")
 _PREFERENCES, _FOLDER = "User parameter:BaseApp/Preferences/Mod/RoboticAM", "WiresFolder"
 
@@ -55,6 +63,7 @@ class ExportPanel:
             (STEP, tr("STEP file of wires")),
             (DXF, tr("DXF file of polylines")),
             (CSV, tr("CSV table of waypoints")),
+            (JOINTS, tr("JSON file of a ROS joint trajectory")),
             (REPORT, tr("HTML page of the report")),
             (CAM, tr("CAM path in this document")),
             (TRAJECTORY, tr("Robot trajectory in this document")),
@@ -228,7 +237,11 @@ class ExportPanel:
         return False
 
     def _call(self, kind: str) -> tuple[str, dict[str, str]]:
-        functions = {CSV: "export_waypoints", REPORT: "export_report"}
+        functions = {
+            CSV: "export_waypoints",
+            JOINTS: "export_joint_trajectory",
+            REPORT: "export_report",
+        }
         if kind in functions:
             return functions[kind], {"path": repr(self.file.text().strip())}
         if kind in _FILES:

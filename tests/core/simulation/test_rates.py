@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from freecad_am.core.parameters.process import ProcessParameters
-from freecad_am.core.simulation.table_links import rates
+from freecad_am.core.simulation.joint_trajectory import rates
 from freecad_am.core.simulation.timeline import timeline, totals, volumes
 from freecad_am.core.toolpath import Checks
 
