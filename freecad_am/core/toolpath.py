@@ -218,9 +218,6 @@ class Bead:
     def halved(self, segments: Index) -> Bead:
         """Return the bead with a point added at the midpoint of segments.
 
-        The point is on the bead's smooth curve, not on the chord. Its directions are the mean of
-        the adjacent points' directions.
-
         Parameters
         ----------
         segments : (k,) array of int
@@ -231,28 +228,52 @@ class Bead:
         Bead
             The bead with k more points.
         """
+        return self.divided(segments, np.full(len(segments), 0.5))
+
+    def divided(self, segments: Index, shares: Array) -> Bead:
+        """Return the bead with points added on segments.
+
+        Points are on the bead's smooth curve, not on the chord. Their directions are interpolated
+        between the adjacent points' directions.
+
+        Parameters
+        ----------
+        segments : (k,) array of int
+            Indices of the segments, ascending.
+        shares : (k,) array
+            Fractions of the segments, ascending on each segment.
+
+        Returns
+        -------
+        Bead
+            The bead with k more points.
+        """
         at = segments + 1
 
-        def middle(column: Array) -> Array:
-            return np.insert(column, at, 0.5 * (column[segments] + column[at]), axis=0)
+        def between(column: Array) -> Array:
+            share = shares if column.ndim == 1 else shares[:, None]
+            return np.asarray((1.0 - share) * column[segments] + share * column[at])
 
-        def middle_direction(column: Array) -> Array:
-            mean = column[segments] + column[at]
+        def inserted(column: Array) -> Array:
+            return np.insert(column, at, between(column), axis=0)
+
+        def inserted_directions(column: Array) -> Array:
+            mean = between(column)
             return np.insert(column, at, mean / lengths(mean)[:, None], axis=0)
 
-        points, tangents = self.outline.at(segments, 0.5)
+        points, tangents = self.outline.at(segments, shares)
         return dataclasses.replace(
             self,
             points=np.insert(self.points, at, points, axis=0),
-            build=middle_direction(self.build),
-            tool=middle_direction(self.tool),
-            parameter=middle(self.parameter),
+            build=inserted_directions(self.build),
+            tool=inserted_directions(self.tool),
+            parameter=inserted(self.parameter),
             speed=np.insert(self.speed, at, self.speed[at]),
-            **self._predicted(middle),
+            **self._predicted(inserted),
             tangents=None
             if self.tangents is None
             else np.insert(self.tangents, at, tangents[:, None], axis=0),
-            external=None if self.external is None else middle(self.external),
+            external=None if self.external is None else inserted(self.external),
         )
 
     def run_on(self, overlap: float) -> Bead:

@@ -249,6 +249,16 @@
         <translation>Machines à cinq axes seulement : l&apos;axe rotatif à bloquer, compté depuis la torche (quatre axes).</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>For position hidden: direction x y z from the part to the viewer, in part coordinates; closed beads start on the far side.</source>
+        <translation>Pour la position hidden : direction x y z de la pièce vers l&apos;observateur, en coordonnées de la pièce ; les cordons fermés commencent du côté opposé.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>For position point: x y z in part coordinates, mm; every closed bead starts at its place nearest to this point.</source>
+        <translation>Pour la position point : x y z en coordonnées de la pièce, en mm ; chaque cordon fermé commence à son endroit le plus proche de ce point.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Four axes only: largest deviation of the tool from the requested direction.</source>
         <translation>Quatre axes seulement : de combien l&apos;outil peut manquer la direction demandée.</translation>
@@ -1060,6 +1070,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Start of closed beads: at the angle, nearest to the point, at the sharpest corner, or hidden from a viewer.</source>
+        <translation>Début des cordons fermés : à l&apos;angle, au plus près du point, au coin le plus vif, ou caché à un observateur.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Temperature in degrees Celsius below which a solid or a wall must cool before its next layer; the torch waits above the start of that layer.</source>
         <translation>Température en degrés Celsius sous laquelle un solide, ou une paroi, doit être avant sa couche suivante ; la torche attend au-dessus de son départ.</translation>
     </message>
@@ -1847,6 +1862,11 @@
         <translation>Au plus {:.0f} % des points sont desservis : {}.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Away from</source>
+        <translation>À l&apos;opposé de</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Axes</source>
         <translation>Axes</translation>
@@ -2210,6 +2230,11 @@
         <location filename="../../freecad_am/gui/program_window.py"/>
         <source>Click a line to show its point on the path; click the path to mark its line</source>
         <translation>Un clic montre le point d&apos;une ligne dans la trajectoire ; un clic sur la trajectoire marque sa ligne</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
+        <source>Click a place of the part in the 3D view first.</source>
+        <translation>Cliquez d&apos;abord un endroit de la pièce dans la vue 3D.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/wall.py"/>
@@ -3062,6 +3087,16 @@
         <translation>Pour les trajectoires, de la plus petite à la plus grande valeur</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>For position hidden: direction x y z from the part to the viewer, in part coordinates; closed beads start on the far side.</source>
+        <translation>Pour la position hidden : direction x y z de la pièce vers l&apos;observateur, en coordonnées de la pièce ; les cordons fermés commencent du côté opposé.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>For position point: x y z in part coordinates, mm; every closed bead starts at its place nearest to this point.</source>
+        <translation>Pour la position point : x y z en coordonnées de la pièce, en mm ; chaque cordon fermé commence à son endroit le plus proche de ce point.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>For serial angles: each axis relative to the previous link. Revolute axes in deg, deg/s, deg/s² and deg/s³, prismatic ones in mm, mm/s, mm/s² and mm/s³. Leave both ends of a range empty for a continuous axis; leave unknown speeds, accelerations and jerks empty.</source>
         <translation>Pour les angles en série : chaque axe par rapport au corps précédent. Axes rotatifs en deg, deg/s, deg/s² et deg/s³, axes linéaires en mm, mm/s, mm/s² et mm/s³. Laissez vides les deux bouts d&apos;une plage pour un axe continu ; laissez vides les vitesses, accélérations et jerks inconnus.</translation>
@@ -3325,6 +3360,11 @@
         <location filename="../../freecad_am/gui/views/cell.py"/>
         <source>Hide machine</source>
         <translation>Cacher la machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
+        <source>Hides seams from the present view of the part</source>
+        <translation>Cache les coutures à la vue actuelle de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -4537,6 +4577,11 @@
         <translation>Ouvrir une pièce…</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
+        <source>Open a 3D view first.</source>
+        <translation>Ouvrez d&apos;abord une vue 3D.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Open part</source>
         <translation>Ouvrir une pièce</translation>
@@ -4855,6 +4900,11 @@
         <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>Poses to try</source>
         <translation>Poses à essayer</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Position</source>
+        <translation>Position</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -5842,6 +5892,11 @@
         <translation>Là où commencent les cordons fermés.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Start of closed beads: at the angle, nearest to the point, at the sharpest corner, or hidden from a viewer.</source>
+        <translation>Début des cordons fermés : à l&apos;angle, au plus près du point, au coin le plus vif, ou caché à un observateur.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Starts</source>
         <translation>Départs</translation>
@@ -5920,6 +5975,21 @@
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
         <source>Tables</source>
         <translation>Tableaux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
+        <source>Take the clicked place</source>
+        <translation>Prendre l&apos;endroit cliqué</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
+        <source>Take the view direction</source>
+        <translation>Prendre la direction de la vue</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
+        <source>Takes the place of the part that you clicked last in the 3D view</source>
+        <translation>Prend l&apos;endroit de la pièce cliqué en dernier dans la vue 3D</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -8992,6 +9062,11 @@
         <translation>hauteur de chaque point au-dessus du point le plus proche de la couche inférieure, selon la direction de dépôt à cet endroit</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>hidden</source>
+        <translation>caché</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>highest</source>
         <translation>la plus haute</translation>
@@ -11427,6 +11502,11 @@
         <translation>plateau</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>point</source>
+        <translation>point</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
         <source>point by point</source>
         <translation>point par point</translation>
@@ -11472,6 +11552,11 @@
         <translation>pose {0} sur {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>position: {0} needs it; give three numbers such as {1}, or choose another position</source>
+        <translation>position : {0} en a besoin ; donnez trois nombres comme {1}, ou choisissez une autre position</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/place.py"/>
         <source>positioner</source>
         <translation>positionneur</translation>
@@ -11505,6 +11590,21 @@
         <location filename="../../freecad_am/core/simulation/payload.py"/>
         <source>process.density sets its weight; the payload is in the machine file</source>
         <translation>process.density donne son poids ; la charge est dans le fichier machine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>process.seam.position: sharpest has no effect: no closed bead turns by {0} deg or more at a point; the beads start by process.seam.angle</source>
+        <translation>process.seam.position : sharpest est sans effet : aucun cordon fermé ne tourne de {0} deg ou plus en un point ; les cordons commencent selon process.seam.angle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>process.seam.position: {0} has no effect: no bead is closed; remove it</source>
+        <translation>process.seam.position : {0} est sans effet : aucun cordon n&apos;est fermé ; supprimez-le</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>process.seam.{0} has no effect with process.seam.position: {1}; remove it, or use position: {2}</source>
+        <translation>process.seam.{0} est sans effet avec process.seam.position : {1} ; supprimez-le, ou choisissez position : {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -11767,6 +11867,11 @@
         <translation>second</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>seen along the build direction, process.seam.point is inside the closed beads, {0} mm from the nearest one, so a small change of a layer may move its seam to the other side; choose a point on the surface or outside</source>
+        <translation>vu dans la direction de dépôt, process.seam.point est à l&apos;intérieur des cordons fermés, à {0} mm du plus proche : un petit changement d&apos;une couche peut déplacer sa couture de l&apos;autre côté ; choisissez un point sur la surface ou à l&apos;extérieur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
         <source>select</source>
         <translation>sélectionner</translation>
@@ -11880,6 +11985,16 @@
         <location filename="../../freecad_am/plots/pictures.py"/>
         <source>share of the section</source>
         <translation>part de la section</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>sharpest</source>
+        <translation>le plus vif</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/widgets/choices.py"/>
+        <source>sharpest corner</source>
+        <translation>coin le plus vif</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -14882,6 +14997,11 @@
         <translation>{0} est aussi le nom de données ou d&apos;un signal dont le programme se sert ; donnez un autre nom</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>{0} closed bead(s) are in a plane across process.seam.away_from, so no side of them is hidden, and they start by process.seam.angle; choose a direction along the layers</source>
+        <translation>{0} cordon(s) fermé(s) sont dans un plan perpendiculaire à process.seam.away_from : aucun de leurs côtés n&apos;est caché, et ils commencent selon process.seam.angle ; choisissez une direction le long des couches</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/planned/in_sequence.py"/>
         <source>{0} cm3 overlap {1} and would be deposited twice; cut one from the other</source>
         <translation>{0} cm3 recouvrent {1} et seraient déposés deux fois ; coupez l&apos;un de l&apos;autre</translation>
@@ -15650,6 +15770,11 @@
         <location filename="../../freecad_am/sections/cell.py"/>
         <source>{0} is not a point; give [x, y, z]</source>
         <translation>{0} n&apos;est pas un point ; donnez [x, y, z]</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/vectors.py"/>
+        <source>{0} is not a point; give three numbers such as [40, 0, 12.5], or {1}</source>
+        <translation>{0} n&apos;est pas un point ; donnez trois nombres comme [40, 0, 12.5], ou {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>

@@ -69,6 +69,8 @@ TEXTS = {
     "unit": "STN1",
     "external": "motoman-motopos-d500 at 1500 0.25 -3 0 45 0 carries part",
     "world_up": "0 0.1 1",
+    "point": "40 -0.5 12.25",
+    "away_from": "0.5 -1 0",
     "classes": "first_layer: travel_speed 4.5, schedule 2; fill: lead -5, lead_on 0.25, weave 2",
     "obstacles": "post = box 60 60 400 at 900 -0.25 0 0 30 0",
     "touched": "0 0 0 = 900.5 2 -99; 9 0 0.25 = 909 2 -99",

@@ -11,13 +11,17 @@ from typing import Any
 from . import bead_classes
 from . import field as f
 from .bead_classes import BeadClass, BeadEnd, BeadStart
-from .records import convert_texts
+from .records import Point, convert_texts
+from .vectors import direction_text, point_text
 
 # what each of several features may have of its own, with _ for nested keys; the rest holds for the whole program
 OF_FEATURE = (
     "travel_speed",
     "seam_angle",
     "seam_step",
+    "seam_position",
+    "seam_point",
+    "seam_away_from",
     "direction",
     "bead_width",
     "fill_width",
@@ -34,14 +38,40 @@ IN_PROCESS = (
 )  # class attributes that replace a key of the process
 
 
+BY_ANGLE, BY_POINT, SHARPEST, HIDDEN = "angle", "point", "sharpest", "hidden"
+
+
 @dataclass(frozen=True)
 class SeamParameters:
-    """Where closed beads start. rad about the axis, from the X of the feature frame."""
+    """Where closed beads start. rad about the axis, from the X of the feature frame; mm."""
 
     angle: float = f.parameter(0.0, f.ANGLE, "Start of closed beads.")
     step: float = f.parameter(0.0, f.ANGLE, "Shift of the start from layer to layer.")
+    position: str = f.parameter(
+        BY_ANGLE,
+        f.CHOICE,
+        "Start of closed beads: at the angle, nearest to the point, at the sharpest corner, or "
+        "hidden from a viewer.",
+        choices=(BY_ANGLE, BY_POINT, SHARPEST, HIDDEN),
+    )
+    point: Point | None = f.parameter(
+        None,
+        f.VECTOR,
+        "For position point: x y z in part coordinates, mm; every closed bead starts at its "
+        "place nearest to this point.",
+        records=point_text("process.seam.point", "none"),
+        unit="mm",
+    )
+    away_from: Point | None = f.parameter(
+        None,
+        f.VECTOR,
+        "For position hidden: direction x y z from the part to the viewer, in part coordinates; "
+        "closed beads start on the far side.",
+        records=direction_text("process.seam.away_from", "none"),
+    )
 
     def __post_init__(self) -> None:
+        convert_texts(self)
         f.check(self, "process.seam")
 
 

@@ -51,6 +51,11 @@ def direction_text(where: str, word: str = "") -> VectorText:
     return VectorText(partial(_direction, where=where, word=word), word)
 
 
+def point_text(where: str, word: str) -> VectorText:
+    """Return the notation of three numbers that are a point, mm; `word` is the text of None."""
+    return VectorText(partial(_point, where=where, word=word), word)
+
+
 def axis_text(where: str) -> VectorText:
     """Return the notation of an `Axis`: x y z i j k."""
     return VectorText(partial(_axis, where=where))
@@ -66,6 +71,20 @@ def _direction(text: str, where: str, word: str) -> Point:
             "{!r} is not a direction; give three numbers such as [0, 0, 1]{}",
             text,
             also,
+        )
+    x, y, z = numbers
+    return x, y, z
+
+
+def _point(text: str, where: str, word: str) -> Point:
+    numbers = _numbers(text)
+    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
+        raise InputError(
+            "BAD_VALUE",
+            where,
+            "{!r} is not a point; give three numbers such as [40, 0, 12.5], or {}",
+            text,
+            word,
         )
     x, y, z = numbers
     return x, y, z

@@ -29,10 +29,11 @@ from ..parameters.process import ProcessParameters
 from ..process.bead_model import BeadModel
 from ..process.bead_order import IslandOrder, RankedBead, order_beads
 from ..process.cooling_waits import add_waits
-from ..toolpath import Bead, Checks, MotionRules, Toolpath
+from ..process.seams import SeamPlacer
+from ..toolpath import Checks, MotionRules, Toolpath
 from ..types import Array
 from .progress import Progress, silent
-from .solids.beads import MadeBead, bead_of, layer_volumes, twice_volume
+from .solids.beads import MadeBead, bead_of, layer_volumes, start_beads, twice_volume
 from .solids.filling import Pictures, bead_width, over_fed, spaced
 from .solids.notes import notes
 
@@ -262,6 +263,7 @@ def plan(
     stretch = 0.0
     for number, (sheet, piece) in enumerate(sheet_pieces):
         order = IslandOrder()
+        placer = SeamPlacer(process.seam, strategy.chord_error, width)
         for layer in slices(sheet, piece, strategy):
             progress(
                 (number + layer.number / strategy.layers) / len(sheet_pieces),
@@ -272,14 +274,22 @@ def plan(
             assert isinstance(layer.surface, FaceLayer)
             stretch = max(stretch, layer.surface.stretch)
             covers.append(picture.cover)
-            beads: list[Bead] = []
-            for curve in picture.curves:
-                made_beads.append(bead_of(curve, layer, strategy, build, process, model))
-                beads.append(made_beads[-1].bead)
-            beads = order.order_islands(beads, picture.islands)
+            made_in_layer = start_beads(
+                [
+                    bead_of(curve, layer, strategy, build, process, model)
+                    for curve in picture.curves
+                ],
+                placer,
+                layer.number,
+            )
+            made_beads += made_in_layer
+            beads = order.order_islands(
+                [made_bead.bead for made_bead in made_in_layer], picture.islands
+            )
             ranked += [
                 RankedBead(0, number, layer.number, -rank, bead) for rank, bead in enumerate(beads)
             ]
+        issues += placer.issues()
     if not ranked:
         raise InputError(
             "NOTHING_TO_DEPOSIT",

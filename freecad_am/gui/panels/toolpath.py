@@ -11,6 +11,7 @@ import numpy as np
 from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
+from ...core.parameters.process import BY_ANGLE, BY_POINT, HIDDEN, SHARPEST
 from ...core.process import bead_model, wire
 from ...core.process.bead_model import MINUTE, BeadModel
 from ...core.process.wire import Measured
@@ -266,8 +267,19 @@ class FeatureOrder(Input):
 
 
 MODEL, WIDTH = "process_bead_model", "process_bead_width"
+SEAM = "process_seam_"
+POINT, AWAY_FROM = f"{SEAM}point", f"{SEAM}away_from"
+SEAM_KEYS = {  # keys of the seam that a position uses
+    BY_ANGLE: {"angle", "step"},
+    BY_POINT: {"point"},
+    SHARPEST: {"angle", "step"},
+    HIDDEN: {"away_from"},
+}
+NO_POINT = marked("Click a place of the part in the 3D view first.")
+NO_VIEW = marked("Open a 3D view first.")
 NONE = "none"
 SCAN = "substrate_"  # prefix of scan parameters
+DIGITS = 4  # decimals of a vector from the 3D view
 
 
 class ToolpathPanel(StagePanel):
@@ -307,14 +319,75 @@ class ToolpathPanel(StagePanel):
         connect(width, "textChanged(QString)", lambda *_: self._soon(False))
         self._show_fit()
         scan = next(choice for choice in other_choices if choice.widget.objectName() == "InputScan")
-        scan.widget.currentIndexChanged.connect(lambda *_: self._fit_to(scan))
-        self._fit_to(scan)
+        self.scan = scan
+        position = self.places[f"{SEAM}position"][0].widget
+        self._add_seam_buttons()
+        for widget in (scan.widget, position):
+            widget.currentIndexChanged.connect(lambda *_: self._show_used())
+        self._show_used()
 
-    def _fit_to(self, scan: Any) -> None:
-        """Hide the scan parameters without a scan."""
-        self.leave_out(
-            () if scan.value() is not None else {key for key in self.places if key.startswith(SCAN)}
-        )
+    def _add_seam_buttons(self) -> None:
+        """Add the buttons that take the seam point and direction from the 3D view."""
+        self.seam_buttons = {}
+        for key, text, name, tip, act in (
+            (
+                POINT,
+                tr("Take the clicked place"),
+                "TakeSeamPoint",
+                tr("Takes the place of the part that you clicked last in the 3D view"),
+                self._take_point,
+            ),
+            (
+                AWAY_FROM,
+                tr("Take the view direction"),
+                "TakeSeamDirection",
+                tr("Hides seams from the present view of the part"),
+                self._take_direction,
+            ),
+        ):
+            button = QtGui.QPushButton(text)
+            button.setObjectName(name)
+            button.setToolTip(tip)
+            button.setAutoDefault(False)
+            button.clicked.connect(lambda *_, act=act: act())
+            field, _, fold = self.places[key]
+            fold.add_below(field.widget, button)
+            self.seam_buttons[key] = button
+
+    def _show_used(self) -> None:
+        """Hide the parameters of the scan without a scan, and those that the seam position ignores."""
+        unused = set()
+        if self.scan.value() is None:
+            unused = {key for key in self.places if key.startswith(SCAN)}
+        used = SEAM_KEYS[self.places[f"{SEAM}position"][0].value]
+        for keys in SEAM_KEYS.values():
+            unused |= {f"{SEAM}{key}" for key in keys - used}
+        self.leave_out(unused)
+        for key, button in self.seam_buttons.items():
+            button.setVisible(key not in unused)
+
+    def _take_point(self) -> None:
+        """Enter the place that the user clicked last."""
+        points = [
+            point
+            for entry in Gui.Selection.getSelectionEx(self.document.Name, 0)
+            for point in entry.PickedPoints
+        ]
+        self._enter_vector(POINT, points[-1] if points else None, tr(NO_POINT))
+
+    def _take_direction(self) -> None:
+        """Enter the direction from the part to the eye."""
+        view = Gui.ActiveDocument.ActiveView if Gui.ActiveDocument else None
+        has_camera = hasattr(view, "getViewDirection")
+        direction = view.getViewDirection().negative() if has_camera else None
+        self._enter_vector(AWAY_FROM, direction, tr(NO_VIEW))
+
+    def _enter_vector(self, key: str, vector: Any, missing: str) -> None:
+        """Enter a vector, or say under the field what is missing."""
+        self.show_note(key, "" if vector is not None else missing)
+        if vector is not None:
+            numbers = (round(float(number), DIGITS) + 0.0 for number in vector)
+            self.places[key][0].show(" ".join(f"{number:g}" for number in numbers))
 
     def _choose(self, *_: Any) -> None:
         """Ask for the file of a calibration table."""

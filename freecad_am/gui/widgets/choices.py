@@ -37,6 +37,7 @@ WORDS = {  # labels of keys; `tr` translates them to the window's language
     "limits-fournier": marked("joint limits (Fournier)"),
     "limits-klein": marked("joint limits (Klein)"),
     "um": marked("µm"),
+    "sharpest": marked("sharpest corner"),
 }
 SIDES = {
     "front": marked("front"),

@@ -13,7 +13,7 @@ from ...core.issues import ERROR, NOTE, AmError, InputError, Issue, Text, has_er
 from ...core.kinematics.cell import mounted
 from ...core.parameters.cell import CellParameters
 from ...core.parameters.filled import PLANES
-from ...core.process import classes, model_notes
+from ...core.process import classes, model_notes, seams
 from ...core.process.bead_model import check_speeds
 from ...core.process.cooling_waits import enforce_layer_time
 from ...core.process.deposit.pieces import deposited_twice
@@ -119,8 +119,14 @@ def layers_of(inputs: Given) -> CoreToolpath:
             "process.end.ramp",
         )
     classes.refuse_speeds(process)
+    seams.check_parameters(process.seam)
     family = family_of(inputs.strategy)
     layers, model = planner_of(family).plan_layers(inputs), inputs.model
+    if not family.is_filled:
+        layers = seams.place_seams(layers, process)
+    layers = dataclasses.replace(
+        layers, issues=(*layers.issues, *seams.unused_issues(layers, process.seam))
+    )
     if model is not None and not family.is_filled:
         layers = model_notes.hold_widths(layers, process, model)
     toolpath = classes.set_bead_ends(layers, process)

@@ -32,6 +32,7 @@ from ...parameters.process import ProcessParameters
 from ...process import classes
 from ...process.bead_model import BeadModel
 from ...process.model_notes import at_speed, limit_acceleration, radii, segment_speeds
+from ...process.seams import START, SeamLocation, SeamPlacer, start_bead
 from ...toolpath import Bead, BeadRole
 from ...types import Array, Mask
 from .filling import bead_width
@@ -184,6 +185,52 @@ def bead_of(
     return _thinned(
         _set_speed(bead, flat, closed, share, heights, strategy, process, model)
     )._replace(turned=turned)
+
+
+def restart(made_bead: MadeBead, location: SeamLocation) -> MadeBead:
+    """Return a closed bead that starts at a place, with its report."""
+    if location == START:
+        return made_bead
+    index, added = location.segment, location.share > 0.0
+
+    def roll(mask: Mask | None) -> Mask | None:
+        if mask is None:
+            return None
+        longer = np.insert(mask, index + 1, mask[index + 1]) if added else mask
+        start = index + added
+        rolled: Mask = np.r_[longer[start:-1], longer[: start + 1]]
+        return rolled
+
+    return made_bead._replace(
+        bead=start_bead(made_bead.bead, location),
+        clamped=roll(made_bead.clamped),
+        tight=roll(made_bead.tight),
+    )
+
+
+def start_beads(
+    made_beads: Sequence[MadeBead], placer: SeamPlacer, layer: int
+) -> Sequence[MadeBead]:
+    """Return the beads of a layer with their seams placed.
+
+    Parameters
+    ----------
+    made_beads : sequence of MadeBead
+        Beads of the layer, in the order in which they were made.
+    placer : SeamPlacer
+        The rule, with the layer below.
+    layer : int
+        Index of the layer in its stack.
+
+    Returns
+    -------
+    sequence of MadeBead
+        The beads.
+    """
+    if not placer.is_active:
+        return made_beads
+    locations = placer.choose_locations([made_bead.bead for made_bead in made_beads], layer)
+    return list(map(restart, made_beads, locations))
 
 
 class BeadMaker:

@@ -36,11 +36,12 @@ from ...parameters.process import ProcessParameters
 from ...process.bead_model import BeadModel
 from ...process.bead_order import Course, IslandOrder, RankedBead, order_beads
 from ...process.cooling_waits import add_waits
+from ...process.seams import SeamPlacer
 from ...toolpath import Bead, Checks, Layer, MotionRules, Toolpath
 from ...types import Array, Mask
 from .. import estimated_size
 from ..progress import Progress, silent
-from .beads import BeadMaker, MadeBead, slab_volumes, twice_volume, volumes
+from .beads import BeadMaker, MadeBead, slab_volumes, start_beads, twice_volume, volumes
 from .filling import Bare, Pictures, bead_width, over_fed, spaced
 from .notes import notes
 
@@ -297,6 +298,7 @@ def plan(
     stacks = list(field.stacks(solids, strategy))
     for stack_number, stack in enumerate(stacks):
         order.below = None  # this stack has no layer yet
+        placer = SeamPlacer(process.seam, strategy.chord_error, width)
         for layer in stack.layers:
             progress(
                 (stack_number + layer.share_before) / len(stacks),
@@ -317,10 +319,11 @@ def plan(
                     1.0 if layer.heights is None else layer.heights[1] / strategy.layer_height
                 )
             )
-            beads: list[Bead] = []
-            for curve in picture.curves:
-                made_beads.append(maker.bead_of(curve, layer))
-                beads.append(made_beads[-1].bead)
+            made_in_layer = start_beads(
+                [maker.bead_of(curve, layer) for curve in picture.curves], placer, layer.number
+            )
+            made_beads += made_in_layer
+            beads = [made_bead.bead for made_bead in made_in_layer]
             if solids.has_plane_layers():
                 ranked += [
                     RankedBead(stack.group, stack.solid, layer.number, -len(ranked) - rank, bead)
@@ -331,6 +334,7 @@ def plan(
                     RankedBead(stack.group, stack.solid, layer.number, bead.role.ring, bead)
                     for bead in beads
                 ]
+        issues += [(stack, issue) for issue in placer.issues()]
     if not ranked:
         raise InputError(
             "NOTHING_TO_DEPOSIT",

@@ -1,0 +1,440 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Starts of closed beads: near a point, at the sharpest corner, or hidden from a viewer.
+
+Places depend only on the beads and on parameters in part coordinates. A moved part has the same places.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from ..geometry.columns import crosses, dots, lengths, unit_rows
+from ..geometry.curves.outline import CORNER
+from ..issues import WARNING, InputError, Issue, Text
+from ..parameters.process import (
+    BY_ANGLE,
+    BY_POINT,
+    HIDDEN,
+    SHARPEST,
+    ProcessParameters,
+    SeamParameters,
+)
+from ..toolpath import Bead, Toolpath
+from ..types import Array, Mask
+
+NO_EFFECT = "NO_EFFECT"
+SNAP_MM = 0.01  # mm; maximum distance at which a seam moves to an existing point of the bead
+EQUAL_MM = 1e-6  # mm; places at distances that differ less are equally near
+EQUAL_RAD = math.radians(1.0)  # corners whose turns differ less are equally sharp
+BEFORE_START_MM = 1e-3  # mm; a place this far before the start of the bead counts as at the start
+
+
+class SeamLocation(NamedTuple):
+    """A place on a bead: index of a segment, and fraction of the segment."""
+
+    segment: int
+    share: float
+
+
+START = SeamLocation(0, 0.0)
+
+
+class _Loop:
+    """A closed bead as a polyline.
+
+    chords: (n, 3) mm. length: (n,) mm, of the chords. arc: (n + 1,) mm, from the start of the bead.
+    """
+
+    def __init__(self, bead: Bead) -> None:
+        self.bead = bead
+        self.chords = np.diff(bead.points, axis=0)
+        self.length = lengths(self.chords)
+        self.arc = np.r_[0.0, np.cumsum(self.length)]
+
+    @property
+    def total(self) -> float:
+        """Length of the bead, mm."""
+        return float(self.arc[-1])
+
+    @property
+    def area(self) -> Array:
+        """Area vector (3,), mm2; the bead runs counter-clockwise about it."""
+        points = self.bead.points - self.bead.points[0]
+        return np.asarray(0.5 * np.cross(points[:-1], points[1:]).sum(axis=0))
+
+    def location_at(self, arc: float) -> SeamLocation:
+        """Return the place at an arc length, mm, from the start of the bead."""
+        arc = arc % self.total
+        segment = int(np.clip(np.searchsorted(self.arc, arc, "right") - 1, 0, len(self.length) - 1))
+        return self.snapped(segment, (arc - float(self.arc[segment])) / float(self.length[segment]))
+
+    def snapped(self, segment: int, share: float) -> SeamLocation:
+        """Return a place, moved to a point of the bead that is nearer than SNAP_MM."""
+        length = float(self.length[segment])
+        if share * length <= SNAP_MM and share <= 0.5:
+            return SeamLocation(segment, 0.0)
+        if (1.0 - share) * length <= SNAP_MM:
+            return SeamLocation((segment + 1) % len(self.length), 0.0)
+        return SeamLocation(segment, share)
+
+    def point(self, location: SeamLocation) -> Array:
+        """Return the point (3,) of a place on the polyline, mm."""
+        point: Array = (
+            self.bead.points[location.segment] + location.share * self.chords[location.segment]
+        )
+        return point
+
+    def nearest(self, target: Array) -> tuple[SeamLocation, float]:
+        """Return the place nearest to a target (3,), and its distance, mm."""
+        offset = target - self.bead.points[:-1]
+        share = np.clip(dots(offset, self.chords) / self.length**2, 0.0, 1.0)
+        distance = lengths(offset - share[:, None] * self.chords)
+        segment = int(np.argmax(distance <= distance.min() + EQUAL_MM))
+        return self.snapped(segment, float(share[segment])), float(distance[segment])
+
+
+# ---- Rules: the candidate places of a bead
+
+
+def find_corners(bead: Bead) -> tuple[Array, Mask]:
+    """Return the corners of a closed bead.
+
+    Parameters
+    ----------
+    bead : Bead
+        The bead, n + 1 points.
+
+    Returns
+    -------
+    turns : (n,) array
+        Turn of the bead at each point, rad.
+    outwards : (n,) bool array
+        Whether the bead turns there in its own sense, so that a corner points out of the loop.
+    """
+    arriving = np.roll(unit_rows(bead.outline.arriving), 1, axis=0)
+    leaving = unit_rows(bead.outline.leaving)
+    turn_axis = crosses(np.ascontiguousarray(arriving), leaving)
+    turns = np.arctan2(lengths(turn_axis), dots(arriving, leaving))
+    build = bead.build[:-1]
+    area = _Loop(bead).area
+    sense = 1.0 if area @ build.mean(axis=0) >= 0.0 else -1.0
+    return np.asarray(turns), sense * dots(turn_axis, build) > 0.0
+
+
+def _sharpest(loop: _Loop) -> list[SeamLocation]:
+    """Return the sharpest corners: those that point out of the loop, else those that point into it."""
+    turns, outwards = find_corners(loop.bead)
+    sharp = turns >= CORNER
+    candidates = sharp & outwards if (sharp & outwards).any() else sharp
+    if not candidates.any():
+        return []
+    candidates &= turns >= turns[candidates].max() - EQUAL_RAD
+    return [SeamLocation(int(index), 0.0) for index in np.flatnonzero(candidates)]
+
+
+def _hidden(loop: _Loop, direction: Array, tolerance: float) -> list[SeamLocation]:
+    """Return the middles of the longest stretches farthest from a viewer in a direction (3,).
+
+    A stretch is within `tolerance`, mm, of the farthest point. If the whole bead is, no side is hidden.
+    """
+    level = loop.bead.points @ direction
+    level[-1] = level[0]  # a closed bead ends within rounding of its start
+    limit = float(level.min()) + tolerance
+    stretches = _stretches_below(loop, level, limit)
+    if not stretches or max(end - start for start, end in stretches) >= loop.total - EQUAL_MM:
+        return []
+    longest = max(end - start for start, end in stretches)
+    return [
+        loop.location_at(0.5 * (start + end))
+        for start, end in stretches
+        if end - start >= longest - tolerance
+    ]
+
+
+def _stretches_below(loop: _Loop, level: Array, limit: float) -> list[tuple[float, float]]:
+    """Return the stretches of a bead on which the level (n + 1,) is at most a limit.
+
+    A stretch is a start and an end, mm along the bead; the end is past the bead's length if the
+    stretch crosses its start.
+    """
+    inside = level <= limit
+    start, end = level[:-1], level[1:]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        crossing = loop.arc[:-1] + loop.length * (limit - start) / (end - start)
+    enters = crossing[~inside[:-1] & inside[1:]]
+    leaves = crossing[inside[:-1] & ~inside[1:]]
+    if not len(enters):
+        return [(0.0, loop.total)] if inside.all() else []
+    if inside[0]:
+        leaves = np.r_[leaves[1:], leaves[0] + loop.total]
+    return list(zip(enters.tolist(), leaves.tolist(), strict=True))
+
+
+# ---- Layers in print order
+
+
+class SeamPlacer:
+    """Choose the starts of closed beads, layer by layer.
+
+    Of equal places, the place nearest to a start in the layer below is chosen, else the first place
+    from the start that `process.seam.angle` gives.
+    """
+
+    def __init__(self, seam: SeamParameters, chord_error: float, bead_width: float) -> None:
+        """Create the placer; chord error and bead width in mm."""
+        self._seam = seam
+        self._tolerance = chord_error
+        self._bead_width = bead_width
+        self._below: Array = np.zeros((0, 3))
+        self._applies = False  # whether any bead has a place by the rule
+        self._without = 0  # number of closed beads without a place
+        self._nearest = (math.inf, 0)  # distance of the seam point, mm, and layer of that bead
+        self._is_inside = False
+
+    @property
+    def is_active(self) -> bool:
+        """Whether the start of any bead may differ from the start by angle."""
+        return self._seam.position != BY_ANGLE
+
+    def begin_stack(self) -> None:
+        """Forget the layer below."""
+        self._below = np.zeros((0, 3))
+
+    def choose_locations(self, beads: Sequence[Bead], layer: int) -> list[SeamLocation]:
+        """Return the start of each bead of a layer; START for open beads.
+
+        Parameters
+        ----------
+        beads : sequence of Bead
+            Beads of the layer, the layer above those of the previous call.
+        layer : int
+            Index of the layer, for messages.
+
+        Returns
+        -------
+        list of SeamLocation
+            The starts.
+        """
+        locations = []
+        starts = []
+        for bead in beads:
+            location = self._locate(_Loop(bead)) if bead.closed else START
+            locations.append(location)
+            if bead.closed:
+                starts.append(_Loop(bead).point(location))
+        if self._seam.position == BY_POINT:
+            self._measure_point(beads, layer)
+        self._below = np.array(starts).reshape(-1, 3)
+        return locations
+
+    def _locate(self, loop: _Loop) -> SeamLocation:
+        seam = self._seam
+        if seam.position == BY_POINT:
+            self._applies = True
+            return loop.nearest(np.array(seam.point))[0]
+        locations = (
+            _sharpest(loop)
+            if seam.position == SHARPEST
+            else _hidden(loop, _unit(seam.away_from), self._tolerance)
+        )
+        self._applies |= bool(locations)
+        self._without += not locations
+        return self._preferred(loop, locations) if locations else START
+
+    def _preferred(self, loop: _Loop, locations: Sequence[SeamLocation]) -> SeamLocation:
+        """Return the place nearest to a start below, else the first place along the bead."""
+        arc = np.array([loop.arc[location.segment] for location in locations]) + np.array(
+            [location.share * loop.length[location.segment] for location in locations]
+        )
+        order = (arc + BEFORE_START_MM) % loop.total
+        if len(self._below):
+            points = np.array([loop.point(location) for location in locations])
+            distance = np.linalg.norm(points[:, None] - self._below, axis=2).min(axis=1)
+            order = np.where(distance <= distance.min() + SNAP_MM, order, np.inf)
+        return locations[int(np.argmin(order))]
+
+    def _measure_point(self, beads: Sequence[Bead], layer: int) -> None:
+        """Note whether the nearest layer surrounds the seam point."""
+        point = np.array(self._seam.point)
+        outer = [_Loop(bead) for bead in beads if bead.closed and not bead.role.ring]
+        if not outer:
+            return
+        distance = min(loop.nearest(point)[1] for loop in outer)
+        if distance < self._nearest[0]:
+            self._nearest = distance, layer
+            self._is_inside = sum(_surrounds(loop, point) for loop in outer) % 2 == 1
+
+    def issues(self) -> list[Issue]:
+        """Return what the user should know about the seams of all layers so far."""
+        seam = self._seam
+        distance, layer = self._nearest
+        if self._is_inside and distance > self._bead_width:
+            return [
+                Issue(
+                    WARNING,
+                    "SEAM_POINT",
+                    Text(
+                        "seen along the build direction, process.seam.point is inside the closed "
+                        "beads, {:.3g} mm from the nearest one, so a small change of a layer may "
+                        "move its seam to the other side; choose a point on the surface or outside",
+                        distance,
+                    ),
+                    layer,
+                )
+            ]
+        if not self._without:
+            return []
+        if seam.position == SHARPEST and not self._applies:
+            return [
+                Issue(
+                    WARNING,
+                    NO_EFFECT,
+                    Text(
+                        "process.seam.position: sharpest has no effect: no closed bead turns by "
+                        "{:.3g} deg or more at a point; the beads start by process.seam.angle",
+                        math.degrees(CORNER),
+                    ),
+                )
+            ]
+        if seam.position == HIDDEN:
+            return [
+                Issue(
+                    WARNING,
+                    "SEAM_SIDE",
+                    Text(
+                        "{} closed bead(s) are in a plane across process.seam.away_from, so no "
+                        "side of them is hidden, and they start by process.seam.angle; choose a "
+                        "direction along the layers",
+                        self._without,
+                    ),
+                )
+            ]
+        return []
+
+
+def _surrounds(loop: _Loop, point: Array) -> bool:
+    """Whether a bead runs around a point (3,), seen along the normal of the bead's area."""
+    normal = unit_rows(loop.area[None])[0]
+    local = loop.bead.points - point
+    ahead, behind = local[1:], local[:-1]
+    across = np.cross(behind, ahead) @ normal
+    along = dots(behind, ahead) - (behind @ normal) * (ahead @ normal)
+    return bool(abs(np.arctan2(across, along).sum()) > math.pi)
+
+
+def _unit(vector: Sequence[float] | None) -> Array:
+    assert vector is not None
+    return np.asarray(np.array(vector) / math.hypot(*vector))
+
+
+def start_bead(bead: Bead, location: SeamLocation) -> Bead:
+    """Return the closed bead with its seam at a place; a point is added there if the bead has none."""
+    if location.share == 0.0:
+        return bead.started_at(location.segment)
+    divided = bead.divided(np.array([location.segment]), np.array([location.share]))
+    return divided.started_at(location.segment + 1)
+
+
+def place_seams(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
+    """Return the toolpath with closed beads that start where `process.seam` says.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath, whose closed beads start at the seam angle.
+    process : ProcessParameters
+        Seam and bead width.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath, with issues about the seams.
+    """
+    placer = SeamPlacer(process.seam, toolpath.chord_error, process.bead_width)
+    if not placer.is_active:
+        return toolpath
+    layers = []
+    for number, layer in enumerate(toolpath.layers):
+        if layer.first:
+            placer.begin_stack()
+        locations = placer.choose_locations(layer.beads, number)
+        beads = tuple(map(start_bead, layer.beads, locations))
+        layers.append(dataclasses.replace(layer, beads=beads))
+    return dataclasses.replace(
+        toolpath, layers=tuple(layers), issues=(*toolpath.issues, *placer.issues())
+    )
+
+
+# ---- Parameters that do not fit the rule or the beads
+
+
+def check_parameters(seam: SeamParameters) -> None:
+    """Raise InputError BAD_VALUE if the parameter that a position needs is missing."""
+    for position, value, key, example in (
+        (BY_POINT, seam.point, "point", "[40, 0, 0]"),
+        (HIDDEN, seam.away_from, "away_from", "[0, -1, 0]"),
+    ):
+        if seam.position == position and value is None:
+            raise InputError(
+                "BAD_VALUE",
+                f"process.seam.{key}",
+                "position: {} needs it; give three numbers such as {}, or choose another position",
+                position,
+                example,
+            )
+
+
+def unused_issues(toolpath: Toolpath, seam: SeamParameters) -> list[Issue]:
+    """Return warnings about parameters that change nothing.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    seam : SeamParameters
+        The parameters of the seam.
+
+    Returns
+    -------
+    list of Issue
+        Issues NO_EFFECT.
+    """
+    usual = SeamParameters()
+    used = {
+        "angle": (BY_ANGLE, SHARPEST),
+        "step": (BY_ANGLE, SHARPEST),
+        "point": (BY_POINT,),
+        "away_from": (HIDDEN,),
+    }
+    issues = [
+        Issue(
+            WARNING,
+            NO_EFFECT,
+            Text(
+                "process.seam.{} has no effect with process.seam.position: {}; remove it, or use "
+                "position: {}",
+                key,
+                seam.position,
+                positions[0],
+            ),
+        )
+        for key, positions in used.items()
+        if getattr(seam, key) != getattr(usual, key) and seam.position not in positions
+    ]
+    if seam.position != BY_ANGLE and not any(bead.closed for _, _, bead in toolpath):
+        issues.append(
+            Issue(
+                WARNING,
+                NO_EFFECT,
+                Text(
+                    "process.seam.position: {} has no effect: no bead is closed; remove it",
+                    seam.position,
+                ),
+            )
+        )
+    return issues
