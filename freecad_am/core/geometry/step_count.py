@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Number of parts into which a length is divided.
+"""Number of parts into which a length is divided; points that divide a box evenly.
 
 Two versions of a geometry kernel compute lengths that differ in the last bits. A tolerance makes
 the number of parts equal; without the tolerance, a side of five steps could have five or six.
@@ -114,3 +114,39 @@ def largest_step(acceleration: float, chord_error: float) -> float:
     acceleration: upper bound of the curve's second derivative, mm per parameter^2.
     """
     return float(np.sqrt(8.0 * chord_error / acceleration))
+
+
+# ---- Deterministic, evenly spread points in a box of many dimensions
+
+HALVINGS = 64  # iterations; each at least halves the error
+
+
+def spread_points(count: int, dimensions: int) -> Array:
+    """Return points spread evenly over the unit cube.
+
+    Parameters
+    ----------
+    count : int
+        Number of points.
+    dimensions : int
+        Number of dimensions.
+
+    Returns
+    -------
+    (count, dimensions) array
+        Coordinates from 0 to 1; every leading subset is evenly spread too.
+
+    Notes
+    -----
+    The steps are negative powers of the root of x^(dimensions + 1) = x + 1.
+
+    References
+    ----------
+    Roberts 2018.
+    """
+    root = 1.0
+    for _ in range(HALVINGS):
+        root = (1.0 + root) ** (1.0 / (dimensions + 1))
+    steps = root ** -np.arange(1.0, dimensions + 1.0)
+    points: Array = np.mod(0.5 + np.arange(count)[:, None] * steps, 1.0)
+    return points

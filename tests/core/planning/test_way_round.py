@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry import frames
-from freecad_am.core.geometry.even_samples import spread_points
 from freecad_am.core.geometry.obstacles import box
+from freecad_am.core.geometry.step_count import spread_points
 from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics.cell import CellShapes
 from freecad_am.core.motion import TRAVEL

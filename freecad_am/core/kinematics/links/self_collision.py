@@ -27,7 +27,7 @@ from ...collision.tolerances import ABOUT_FACES
 from ...geometry import frames
 from ...geometry.columns import lengths
 from ...geometry.cylinders import Cylinder
-from ...geometry.even_samples import spread_points
+from ...geometry.step_count import spread_points
 from ...types import Array, Index, Mask
 from ..chain import Chain
 from ..limits import Limits

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...geometry.even_samples import spread_points
 from ...geometry.obstacles import Body
+from ...geometry.step_count import spread_points
 from ...kinematics.cell import Cell
 from ...kinematics.limits import RESERVE
 from ...program import SHORTEST_RAPID
