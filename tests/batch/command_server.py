@@ -19,6 +19,8 @@ import sys
 import traceback
 from pathlib import Path
 
+import numpy
+
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 import freecad_am
@@ -40,6 +42,18 @@ def load_all():
     for module in pkgutil.walk_packages(freecad_am.__path__, "freecad_am."):
         if not module.name.startswith(NOT_OF_COMMANDS):
             importlib.import_module(module.name)
+    draw_first_chart()
+
+
+def draw_first_chart():
+    """Let matplotlib find its fonts once for all commands, which takes half a second."""
+    with contextlib.suppress(ImportError):
+        from freecad_am.plots import chart, draw, files
+
+        quantity = chart.Quantity("x", "mm")
+        curve = chart.Curve("z", numpy.arange(3.0), numpy.arange(3.0))
+        first = chart.Chart("First", quantity, quantity, (curve,))
+        files.inline(draw.figure([first], chart.PAGE, 460, 230)[0], first.title)
 
 
 def be_command(folder, environment, out, err, words, seconds, memory):
