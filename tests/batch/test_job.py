@@ -555,3 +555,22 @@ def test_a_wall_on_itself_is_refused_at_the_substrate(read, part, substrate, sam
         "substrate",
     ) and "part.step" in error.message
     assert error.message.endswith("(line 2)")
+
+
+@pytest.mark.parametrize(
+    ("strategy", "process", "spacing"),
+    [
+        ("{kind: solid}", "{bead_width: 3 mm}", 3.0),
+        ("{kind: solid}", "{}", 5.0),
+        ("{kind: solid}", "{bead_width: 9 mm}", 5.0),
+        ("{kind: solid, bead_spacing: 4 mm}", "{bead_width: 3 mm}", 4.0),
+        ("{kind: solid}", "{bead_width: 3 mm, fill_width: spacing}", 5.0),
+    ],
+)
+def test_the_default_spacing_is_at_most_the_bead_width(read, strategy, process, spacing):
+    """A job that gives only the width of its beads leaves no stripes between them."""
+    job = read(
+        f"version: 1\nname: part\npart: {{file: part.step}}\n"
+        f"strategy: {strategy}\nprocess: {process}\n"
+    )
+    assert job.features[0].strategy.bead_spacing == spacing

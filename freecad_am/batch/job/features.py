@@ -14,7 +14,7 @@ from ...core.families.registry import AUTO, DEFAULT_KIND, KINDS, family_of, find
 from ...core.issues import InputError
 from ...core.parameters import field as f
 from ...core.parameters.build_direction import BuildDirectionParameters
-from ...core.parameters.filled import SolidParameters
+from ...core.parameters.filled import FilledParameters, SolidParameters
 from ...core.parameters.process import ProcessParameters
 from ...core.parameters.strategy import LayerParameters
 from ...core.process import wire
@@ -142,6 +142,8 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
         return _left_open(values, section, name)
     strategy = strategy_of(_add_fuse(values.get("strategy") or {}, part_section))
     process = process_of(values.get("process") or {}, strategy)
+    if SPACING not in (values.get("strategy") or {}):
+        strategy = _narrow_spacing(strategy, process)
     build_direction = fields.build(
         BuildDirectionParameters, values.get("build_direction") or {}, "build_direction"
     )
@@ -177,6 +179,17 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
         start_faces=start_faces,
         scan=scan_of(scanned, strategy),
     )
+
+
+def _narrow_spacing(strategy: LayerParameters, process: ProcessParameters) -> LayerParameters:
+    """Return the strategy with a default bead spacing of at most the bead width.
+
+    With `process.fill_width: spacing` the spacing is the width of the beads, and stays.
+    """
+    if not isinstance(strategy, FilledParameters) or process.fill_width == "spacing":
+        return strategy
+    spacing = min(strategy.bead_spacing, process.bead_width)
+    return dataclasses.replace(strategy, bead_spacing=spacing)
 
 
 def _left_open(values: dict[str, Any], section: dict[str, Any], name: str) -> JobFeature:
