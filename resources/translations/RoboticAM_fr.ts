@@ -259,6 +259,11 @@
         <translation>Pour la position point : x y z en coordonnées de la pièce, en mm ; chaque cordon fermé commence à son endroit le plus proche de ce point.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>For position spread: least distance between the start of a closed bead and the starts of other beads of its layer and of the layer below.</source>
+        <translation>Pour la position spread : distance minimale entre le début d&apos;un cordon fermé et les débuts des autres cordons de sa couche et de la couche inférieure.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Four axes only: largest deviation of the tool from the requested direction.</source>
         <translation>Quatre axes seulement : de combien l&apos;outil peut manquer la direction demandée.</translation>
@@ -1070,8 +1075,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Start of closed beads: at the angle, nearest to the point, at the sharpest corner, or hidden from a viewer.</source>
-        <translation>Début des cordons fermés : à l&apos;angle, au plus près du point, au coin le plus vif, ou caché à un observateur.</translation>
+        <source>Start of closed beads: at the angle, nearest to the point, at the sharpest corner, spread at a distance from other starts, or hidden from a viewer.</source>
+        <translation>Début des cordons fermés : à l&apos;angle, au plus près du point, au coin le plus vif, réparti à distance des autres débuts, ou caché à un observateur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2657,6 +2662,11 @@
         <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, là où ni les courbes ni des faces n&apos;en indiquent.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Distance</source>
+        <translation>Distance</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Distance along Z from the flange, or from the face of a rotary table, to the mounting plane; or a pose relative to it.</source>
         <translation>Distance selon Z de la bride, ou de la face d&apos;un axe rotatif, au plan de montage ; ou une pose relative à elle.</translation>
@@ -3095,6 +3105,11 @@
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>For position point: x y z in part coordinates, mm; every closed bead starts at its place nearest to this point.</source>
         <translation>Pour la position point : x y z en coordonnées de la pièce, en mm ; chaque cordon fermé commence à son endroit le plus proche de ce point.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>For position spread: least distance between the start of a closed bead and the starts of other beads of its layer and of the layer below.</source>
+        <translation>Pour la position spread : distance minimale entre le début d&apos;un cordon fermé et les débuts des autres cordons de sa couche et de la couche inférieure.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
@@ -5893,8 +5908,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Start of closed beads: at the angle, nearest to the point, at the sharpest corner, or hidden from a viewer.</source>
-        <translation>Début des cordons fermés : à l&apos;angle, au plus près du point, au coin le plus vif, ou caché à un observateur.</translation>
+        <source>Start of closed beads: at the angle, nearest to the point, at the sharpest corner, spread at a distance from other starts, or hidden from a viewer.</source>
+        <translation>Début des cordons fermés : à l&apos;angle, au plus près du point, au coin le plus vif, réparti à distance des autres débuts, ou caché à un observateur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -9157,6 +9172,11 @@
         <translation>est un angle</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>is {0} mm, but the longest closed bead is only {1} mm long; use less than half of that length</source>
+        <translation>vaut {0} mm, mais le plus long cordon fermé n&apos;a que {1} mm de long ; choisissez moins de la moitié de cette longueur</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>iso-height</source>
         <translation>hauteur constante</translation>
@@ -12109,7 +12129,7 @@
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>spread</source>
-        <translation>répartis</translation>
+        <translation>réparti</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -15000,6 +15020,11 @@
         <location filename="../../freecad_am/core/process/seams.py"/>
         <source>{0} closed bead(s) are in a plane across process.seam.away_from, so no side of them is hidden, and they start by process.seam.angle; choose a direction along the layers</source>
         <translation>{0} cordon(s) fermé(s) sont dans un plan perpendiculaire à process.seam.away_from : aucun de leurs côtés n&apos;est caché, et ils commencent selon process.seam.angle ; choisissez une direction le long des couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>{0} closed bead(s) in {1} layer(s) start nearer than process.seam.distance, {2} mm, to another start, at worst {3} mm in layer {4}; use a smaller distance</source>
+        <translation>{0} cordon(s) fermé(s) dans {1} couche(s) commencent à moins de process.seam.distance, {2} mm, d&apos;un autre début, au pire à {3} mm dans la couche {4} ; choisissez une distance plus petite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/in_sequence.py"/>

@@ -22,6 +22,7 @@ OF_FEATURE = (
     "seam_position",
     "seam_point",
     "seam_away_from",
+    "seam_distance",
     "direction",
     "bead_width",
     "fill_width",
@@ -38,7 +39,7 @@ IN_PROCESS = (
 )  # class attributes that replace a key of the process
 
 
-BY_ANGLE, BY_POINT, SHARPEST, HIDDEN = "angle", "point", "sharpest", "hidden"
+BY_ANGLE, BY_POINT, SHARPEST, SPREAD, HIDDEN = "angle", "point", "sharpest", "spread", "hidden"
 
 
 @dataclass(frozen=True)
@@ -50,9 +51,9 @@ class SeamParameters:
     position: str = f.parameter(
         BY_ANGLE,
         f.CHOICE,
-        "Start of closed beads: at the angle, nearest to the point, at the sharpest corner, or "
-        "hidden from a viewer.",
-        choices=(BY_ANGLE, BY_POINT, SHARPEST, HIDDEN),
+        "Start of closed beads: at the angle, nearest to the point, at the sharpest corner, "
+        "spread at a distance from other starts, or hidden from a viewer.",
+        choices=(BY_ANGLE, BY_POINT, SHARPEST, SPREAD, HIDDEN),
     )
     point: Point | None = f.parameter(
         None,
@@ -68,6 +69,14 @@ class SeamParameters:
         "For position hidden: direction x y z from the part to the viewer, in part coordinates; "
         "closed beads start on the far side.",
         records=direction_text("process.seam.away_from", "none"),
+    )
+    distance: float = f.parameter(
+        15.0,
+        f.LENGTH,
+        "For position spread: least distance between the start of a closed bead and the starts of "
+        "other beads of its layer and of the layer below.",
+        low=0.0,
+        open_low=True,
     )
 
     def __post_init__(self) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Starts of closed beads: near a point, at the sharpest corner, or hidden from a viewer.
+"""Starts of closed beads: near a point, at the sharpest corner, hidden from a viewer, or spread.
 
 Places depend only on the beads and on parameters in part coordinates. A moved part has the same places.
 """
@@ -21,6 +21,7 @@ from ..parameters.process import (
     BY_POINT,
     HIDDEN,
     SHARPEST,
+    SPREAD,
     ProcessParameters,
     SeamParameters,
 )
@@ -31,6 +32,9 @@ NO_EFFECT = "NO_EFFECT"
 SNAP_MM = 0.01  # mm; maximum distance at which a seam moves to an existing point of the bead
 EQUAL_MM = 1e-6  # mm; places at distances that differ less are equally near
 EQUAL_RAD = math.radians(1.0)  # corners whose turns differ less are equally sharp
+LEAST_SENSE = 0.1  # cosine; a bead whose area is nearly along the layer has no sense of rotation
+HALVINGS = 20  # iterations for the largest possible distance between starts
+TOUCH_MM = 1e-7  # mm; stretches nearer to each other are one
 BEFORE_START_MM = 1e-3  # mm; a place this far before the start of the bead counts as at the start
 
 
@@ -60,6 +64,14 @@ class _Loop:
     def total(self) -> float:
         """Length of the bead, mm."""
         return float(self.arc[-1])
+
+    @property
+    def sense(self) -> float:
+        """1 if the bead runs counter-clockwise about its build directions, -1 if clockwise."""
+        mean = self.bead.build[:-1].mean(axis=0)
+        area = self.area
+        share = float(area @ mean) / max(float(np.linalg.norm(area)), 1e-300)
+        return -1.0 if share < -LEAST_SENSE else 1.0
 
     @property
     def area(self) -> Array:
@@ -120,10 +132,7 @@ def find_corners(bead: Bead) -> tuple[Array, Mask]:
     leaving = unit_rows(bead.outline.leaving)
     turn_axis = crosses(np.ascontiguousarray(arriving), leaving)
     turns = np.arctan2(lengths(turn_axis), dots(arriving, leaving))
-    build = bead.build[:-1]
-    area = _Loop(bead).area
-    sense = 1.0 if area @ build.mean(axis=0) >= 0.0 else -1.0
-    return np.asarray(turns), sense * dots(turn_axis, build) > 0.0
+    return np.asarray(turns), _Loop(bead).sense * dots(turn_axis, bead.build[:-1]) > 0.0
 
 
 def _sharpest(loop: _Loop) -> list[SeamLocation]:
@@ -175,6 +184,61 @@ def _stretches_below(loop: _Loop, level: Array, limit: float) -> list[tuple[floa
     return list(zip(enters.tolist(), leaves.tolist(), strict=True))
 
 
+def find_free_arc(
+    loop: _Loop, others: Array, distance: float, start: float, sense: float
+) -> float | None:
+    """Return the first arc length from a start at which a bead is far enough from points.
+
+    The exact intervals of the chords inside the spheres about the points are excluded.
+
+    Parameters
+    ----------
+    loop : _Loop
+        The bead.
+    others : (m, 3) array
+        The points, mm.
+    distance : float
+        Radius of the spheres, mm.
+    start : float
+        Arc length at which the search begins, mm.
+    sense : float
+        1 to search forwards along the bead, -1 backwards.
+
+    Returns
+    -------
+    float or None
+        The arc length, mm; None if the spheres hide the whole bead.
+    """
+    offset = loop.bead.points[:-1] - others[:, None]
+    along = (offset * loop.chords).sum(axis=2)
+    square = loop.length**2
+    inside = along**2 - square * ((offset**2).sum(axis=2) - distance**2)
+    root = np.sqrt(np.maximum(inside, 0.0))
+    low = np.clip((-along - root) / square, 0.0, 1.0)
+    high = np.clip((-along + root) / square, 0.0, 1.0)
+    rows, segments = np.nonzero((inside > 0.0) & (high > low))
+    ends = loop.arc[segments] + np.stack([low, high])[:, rows, segments] * loop.length[segments]
+    enter = (sense * (ends[0 if sense > 0.0 else 1] - start)) % loop.total
+    leave = enter + ends[1] - ends[0]
+    enter, leave = np.r_[enter, enter - loop.total], np.r_[leave, leave - loop.total]
+    order = np.argsort(enter, kind="stable")
+    order = order[leave[order] > 0.0]
+    reached = np.maximum.accumulate(np.r_[0.0, leave[order]])
+    gaps = np.r_[enter[order], np.inf] > reached + TOUCH_MM
+    free = float(reached[int(np.argmax(gaps))])
+    return None if free > loop.total - TOUCH_MM else (start + sense * free) % loop.total
+
+
+def _farthest_arc(loop: _Loop, others: Array, distance: float, start: float, sense: float) -> float:
+    """Return the arc length at which a bead is farthest from points, mm; arguments as in `find_free_arc`."""
+    low, high, arc = 0.0, distance, start
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        free = find_free_arc(loop, others, middle, start, sense)
+        low, high, arc = (low, middle, arc) if free is None else (middle, high, free)
+    return arc
+
+
 # ---- Layers in print order
 
 
@@ -182,7 +246,7 @@ class SeamPlacer:
     """Choose the starts of closed beads, layer by layer.
 
     Of equal places, the place nearest to a start in the layer below is chosen, else the first place
-    from the start that `process.seam.angle` gives.
+    from the start that `process.seam.angle` gives. Spread starts move on counter-clockwise from layer to layer.
     """
 
     def __init__(self, seam: SeamParameters, chord_error: float, bead_width: float) -> None:
@@ -193,6 +257,8 @@ class SeamPlacer:
         self._below: Array = np.zeros((0, 3))
         self._applies = False  # whether any bead has a place by the rule
         self._without = 0  # number of closed beads without a place
+        self._starts_below: Array = np.zeros((0, 3))  # of open beads too
+        self._short: list[tuple[float, int]] = []  # distance from another start, mm, and layer
         self._nearest = (math.inf, 0)  # distance of the seam point, mm, and layer of that bead
         self._is_inside = False
 
@@ -203,7 +269,7 @@ class SeamPlacer:
 
     def begin_stack(self) -> None:
         """Forget the layer below."""
-        self._below = np.zeros((0, 3))
+        self._below = self._starts_below = np.zeros((0, 3))
 
     def choose_locations(self, beads: Sequence[Bead], layer: int) -> list[SeamLocation]:
         """Return the start of each bead of a layer; START for open beads.
@@ -221,19 +287,26 @@ class SeamPlacer:
             The starts.
         """
         locations = []
-        starts = []
+        starts: list[Array] = []
+        open_starts = [bead.points[0] for bead in beads if not bead.closed]
         for bead in beads:
-            location = self._locate(_Loop(bead)) if bead.closed else START
-            locations.append(location)
-            if bead.closed:
-                starts.append(_Loop(bead).point(location))
+            if not bead.closed:
+                locations.append(START)
+                continue
+            loop = _Loop(bead)
+            others = np.array([*open_starts, *starts]).reshape(-1, 3)
+            locations.append(self._locate(loop, others, layer))
+            starts.append(loop.point(locations[-1]))
         if self._seam.position == BY_POINT:
             self._measure_point(beads, layer)
         self._below = np.array(starts).reshape(-1, 3)
+        self._starts_below = np.array([*open_starts, *starts]).reshape(-1, 3)
         return locations
 
-    def _locate(self, loop: _Loop) -> SeamLocation:
+    def _locate(self, loop: _Loop, others: Array, layer: int) -> SeamLocation:
         seam = self._seam
+        if seam.position == SPREAD:
+            return self._spread(loop, np.vstack([others, self._starts_below]), layer)
         if seam.position == BY_POINT:
             self._applies = True
             return loop.nearest(np.array(seam.point))[0]
@@ -245,6 +318,28 @@ class SeamPlacer:
         self._applies |= bool(locations)
         self._without += not locations
         return self._preferred(loop, locations) if locations else START
+
+    def _spread(self, loop: _Loop, others: Array, layer: int) -> SeamLocation:
+        """Return the first place far enough from other starts (m, 3), else the farthest one."""
+        start = 0.0
+        if len(self._below):  # above the start of the bead below
+            gaps = np.linalg.norm(loop.bead.points[:, None] - self._below, axis=2).min(axis=0)
+            above = loop.nearest(self._below[int(np.argmin(gaps))])[0]
+            start = float(loop.arc[above.segment] + above.share * loop.length[above.segment])
+        wanted_distance = self._seam.distance
+        margin = self._tolerance + SNAP_MM  # the seam is on the curve, not on the chord
+        low, high = loop.bead.points.min(axis=0), loop.bead.points.max(axis=0)
+        outside = np.maximum(low - others, others - high).max(axis=1)
+        others = others[outside < wanted_distance + margin]
+        arc = find_free_arc(loop, others, wanted_distance + margin, start, loop.sense)
+        if arc is not None:
+            return loop.location_at(arc)
+        arc = _farthest_arc(loop, others, wanted_distance, start, loop.sense)
+        location = loop.location_at(arc)
+        gap = float(np.linalg.norm(others - loop.point(location), axis=1).min())
+        if gap < wanted_distance:
+            self._short.append((gap, layer))
+        return location
 
     def _preferred(self, loop: _Loop, locations: Sequence[SeamLocation]) -> SeamLocation:
         """Return the place nearest to a start below, else the first place along the bead."""
@@ -283,6 +378,25 @@ class SeamPlacer:
                         "beads, {:.3g} mm from the nearest one, so a small change of a layer may "
                         "move its seam to the other side; choose a point on the surface or outside",
                         distance,
+                    ),
+                    layer,
+                )
+            ]
+        if self._short:
+            gap, layer = min(self._short)
+            return [
+                Issue(
+                    WARNING,
+                    "SEAM_DISTANCE",
+                    Text(
+                        "{} closed bead(s) in {} layer(s) start nearer than process.seam.distance, "
+                        "{:g} mm, to another start, at worst {:.3g} mm in layer {}; use a smaller "
+                        "distance",
+                        len(self._short),
+                        len({number for _, number in self._short}),
+                        seam.distance,
+                        gap,
+                        layer,
                     ),
                     layer,
                 )
@@ -333,7 +447,9 @@ def _unit(vector: Sequence[float] | None) -> Array:
 
 
 def start_bead(bead: Bead, location: SeamLocation) -> Bead:
-    """Return the closed bead with its seam at a place; a point is added there if the bead has none."""
+    """Return the bead with its seam at a place, where a point is added if it has none; START changes nothing."""
+    if location == START:
+        return bead
     if location.share == 0.0:
         return bead.started_at(location.segment)
     divided = bead.divided(np.array([location.segment]), np.array([location.share]))
@@ -389,6 +505,20 @@ def check_parameters(seam: SeamParameters) -> None:
             )
 
 
+def check_distance(toolpath: Toolpath, seam: SeamParameters) -> None:
+    """Raise InputError BAD_VALUE if starts are to be farther apart than any closed bead is long."""
+    lengths_ = [bead.length for _, _, bead in toolpath if bead.closed]
+    if seam.position == SPREAD and lengths_ and max(lengths_) < seam.distance:
+        raise InputError(
+            "BAD_VALUE",
+            "process.seam.distance",
+            "is {:g} mm, but the longest closed bead is only {:.4g} mm long; use less than half of "
+            "that length",
+            seam.distance,
+            max(lengths_),
+        )
+
+
 def unused_issues(toolpath: Toolpath, seam: SeamParameters) -> list[Issue]:
     """Return warnings about parameters that change nothing.
 
@@ -406,10 +536,11 @@ def unused_issues(toolpath: Toolpath, seam: SeamParameters) -> list[Issue]:
     """
     usual = SeamParameters()
     used = {
-        "angle": (BY_ANGLE, SHARPEST),
+        "angle": (BY_ANGLE, SHARPEST, SPREAD),
         "step": (BY_ANGLE, SHARPEST),
         "point": (BY_POINT,),
         "away_from": (HIDDEN,),
+        "distance": (SPREAD,),
     }
     issues = [
         Issue(

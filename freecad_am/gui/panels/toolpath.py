@@ -11,7 +11,7 @@ import numpy as np
 from PySide import QtCore, QtGui
 
 from ...core.issues import InputError
-from ...core.parameters.process import BY_ANGLE, BY_POINT, HIDDEN, SHARPEST
+from ...core.parameters.process import BY_ANGLE, BY_POINT, HIDDEN, SHARPEST, SPREAD
 from ...core.process import bead_model, wire
 from ...core.process.bead_model import MINUTE, BeadModel
 from ...core.process.wire import Measured
@@ -273,6 +273,7 @@ SEAM_KEYS = {  # keys of the seam that a position uses
     BY_ANGLE: {"angle", "step"},
     BY_POINT: {"point"},
     SHARPEST: {"angle", "step"},
+    SPREAD: {"angle", "distance"},
     HIDDEN: {"away_from"},
 }
 NO_POINT = marked("Click a place of the part in the 3D view first.")

@@ -124,6 +124,7 @@ def layers_of(inputs: Given) -> CoreToolpath:
     layers, model = planner_of(family).plan_layers(inputs), inputs.model
     if not family.is_filled:
         layers = seams.place_seams(layers, process)
+    seams.check_distance(layers, process.seam)
     layers = dataclasses.replace(
         layers, issues=(*layers.issues, *seams.unused_issues(layers, process.seam))
     )

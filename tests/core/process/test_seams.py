@@ -89,6 +89,7 @@ RULES = [
     {"position": "point", "point": (50.0, 13.0, 4.0)},
     {"position": "sharpest"},
     {"position": "hidden", "away_from": (0.3, -1.0, 0.0)},
+    {"position": "spread", "distance": 11.0},
 ]
 
 
@@ -205,12 +206,12 @@ def body_of(outline, height):
     return Body("prism", points, np.array(faces, dtype=np.int64))
 
 
-def solid_plan(seam, **values):
+def solid_plan(seam, outline=STAR, **values):
     strategy = SolidParameters(
         layer_height=2.0, bead_spacing=4.0, chord_error=CHORD_ERROR, **values
     )
     process = ProcessParameters(seam=seam)
-    stack = prepare_stack([body_of(STAR, 12.0)], strategy, "part")
+    stack = prepare_stack([body_of(outline, 12.0)], strategy, "part")
     return plan(stack, strategy, BuildDirectionParameters(), process, None)
 
 
@@ -230,6 +231,8 @@ def test_filled_solids_have_the_beads_of_the_usual_seam_started_elsewhere(rule):
                 target = np.array(rule["point"])
                 least = np.linalg.norm(dense(bead) - target, axis=1).min()
                 assert np.linalg.norm(at - target) <= least + seams.SNAP_MM + CHORD_ERROR
+            elif rule["position"] == "spread":
+                continue
             elif rule["position"] == "hidden":
                 way = np.array(rule["away_from"]) / np.linalg.norm(rule["away_from"])
                 assert at @ way <= (dense(bead) @ way).min() + CHORD_ERROR + seams.SNAP_MM
@@ -237,6 +240,97 @@ def test_filled_solids_have_the_beads_of_the_usual_seam_started_elsewhere(rule):
                 assert np.linalg.norm(at) == pytest.approx(
                     np.linalg.norm(bead.points, axis=1).max(), abs=1e-6
                 )
+
+
+def gaps_of_starts(toolpath, open_beads=False):
+    """For every closed bead in print order: its gap to starts known before it, and the largest possible gap."""
+    below = np.zeros((0, 3))
+    for number, layer in enumerate(toolpath.layers):
+        current = [bead.points[0] for bead in layer.beads if not bead.closed]
+        for bead in layer.beads:
+            if not bead.closed:
+                continue
+            others = (
+                np.vstack([*current, *below]).reshape(-1, 3) if len(current) or len(below) else None
+            )
+            if others is not None:
+                gap = np.linalg.norm(others - bead.points[0], axis=1).min()
+                free = np.linalg.norm(dense(bead, 0.2)[:, None] - others, axis=2).min(axis=1).max()
+                yield number, gap, free
+            current.append(bead.points[0])
+        below = np.array(current)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_spread_starts_keep_their_distance_or_the_largest_possible_one(seed):
+    random = np.random.default_rng(seed)
+    distance = float(random.uniform(5.0, 45.0))
+    layers = []
+    for k in range(12):
+        loops = [closed_bead(STAR * scale, 2.0 * k) for scale in (1.0, 0.85, 0.7)]
+        loops += [closed_bead(ELL[:: (-1) ** k] * 0.6 + (35.0, -10.0), 2.0 * k)]
+        line = closed_bead(circle(5.0, centre=(0.0, 3.0 * k)), 2.0 * k).part(slice(0, 20))
+        layers.append([*loops, line])
+    made = placed(toolpath_of(*layers), position="spread", distance=distance)
+    short = {}
+    for number, gap, free in gaps_of_starts(made):
+        if gap < distance - 1e-9:
+            assert free < gap + 0.3  # the samples of the bead are less than this apart
+            short.setdefault(number, []).append(gap)
+    if not short:
+        assert codes(made) == []
+        return
+    (issue,) = made.issues
+    assert issue.code == "SEAM_DISTANCE"
+    assert min(short[issue.layer]) == min(map(min, short.values()))
+    assert (
+        f"{sum(map(len, short.values()))} closed bead(s) in {len(short)} layer(s)" in issue.message
+    )
+
+
+def test_some_spread_starts_keep_and_some_miss_their_distance():
+    """The test above has seen both."""
+    ring = [[closed_bead(circle(10.0), 2.0 * k)] for k in range(5)]
+    assert codes(placed(toolpath_of(*ring), position="spread", distance=15.0)) == []
+    made = placed(toolpath_of(*ring), position="spread", distance=25.0)
+    assert codes(made) == ["SEAM_DISTANCE"]
+    starts = np.array([bead.points[0] for _, _, bead in made])
+    apart = np.linalg.norm(np.diff(starts, axis=0), axis=1)
+    assert apart == pytest.approx(math.hypot(20.0, 2.0), abs=0.02)
+
+
+def test_spread_starts_move_round_the_part_layer_by_layer():
+    """15 mm apart on a circle of 40 mm radius, so after a turn of 16 or 17 layers the seam is near the first one again."""
+    layers = [[closed_bead(circle(40.0)[:: -1 if k % 2 else 1], 1.0 * k)] for k in range(34)]
+    made = placed(toolpath_of(*layers), position="spread", distance=15.0)
+    starts = np.array([bead.points[0] for _, _, bead in made])
+    turn = np.degrees(np.unwrap(np.arctan2(starts[:, 1], starts[:, 0])))
+    chord = math.sqrt(15.0**2 - 1.0)
+    step = math.degrees(2.0 * math.asin(chord / 80.0))
+    assert np.diff(turn) == pytest.approx(step, abs=0.2)
+
+
+def test_spread_starts_of_a_solid_keep_their_distance():
+    seam = SeamParameters(position="spread", distance=9.0)
+    made = solid_plan(seam, circle(30.0, 6), fill="zigzag", walls=2)
+    layers = [list(layer.beads) for layer in made.layers]
+    ordered = [sorted(layer, key=lambda bead: bead.role.ring) for layer in layers]
+    for layer, below in zip(ordered[1:], ordered):
+        for bead in layer:
+            if bead.closed:
+                others = [other.points[0] for other in (*layer, *below) if other is not bead]
+                gap = np.linalg.norm(np.array(others) - bead.points[0], axis=1).min()
+                assert gap >= 9.0 - 1e-9
+    assert "SEAM_DISTANCE" not in codes(made)
+
+
+def test_a_distance_longer_than_every_bead_is_rejected():
+    ring = toolpath_of([closed_bead(circle(5.0))])
+    seam = SeamParameters(position="spread", distance=40.0)
+    with pytest.raises(InputError, match=r"longest closed bead is only 31\.41 mm") as raised:
+        seams.check_distance(ring, seam)
+    assert raised.value.where == "process.seam.distance"
+    seams.check_distance(ring, SeamParameters(distance=40.0))
 
 
 def codes(toolpath):
