@@ -305,17 +305,14 @@ class Obstacles:
                     level.lines, level.since, solid, query, node, tips, axes, layer_start
                 )
                 query, node = query.take(remaining), node.take(remaining)
-            if depth == 1:
+            if depth:
                 # cheap test first: most solids in contact contain the first corner of a node
-                hits[
-                    query[
-                        self._sampled(
-                            solid, query, node * tree.BRANCH, tip, axis, moment, layer_start
-                        )
-                    ]
-                ] = True
+                sample = node * self._sizes[depth]
+                hits[query[self._sampled(solid, query, sample, tip, axis, moment, layer_start)]] = (
+                    True
+                )
                 remaining = np.flatnonzero(~hits.take(query))
-                if lying:
+                if depth == 1 and lying:
                     q, n = query.take(remaining), node.take(remaining)
                     remaining = remaining[
                         select_close(
@@ -350,8 +347,18 @@ class Obstacles:
         offset = self._sample.take(sample, axis=0) - tip.take(query, axis=0)
         inside: Mask = solid.rows(query).holds(offset, axis.take(query, axis=0))
         since = self.since.take(sample)
-        inside &= (since < moment.take(query)) & (since < layer_start.take(query))
+        inside &= since < moment.take(query)
+        if self.line is not None and self.foot is not None:
+            laying = np.flatnonzero(inside & (since >= layer_start.take(query)))
+            inside[laying] = ~self._as_line(sample[laying], tip.take(query[laying], axis=0))
         return inside
+
+    def _as_line(self, node: Index, tip: Array) -> Mask:
+        """Return whether pieces (k,) of the current layer are so close to the tips (k, 3) that only their lines count."""
+        assert self.line is not None and self.foot is not None
+        line = self.line.take(node, axis=0) - tip[:, None]
+        as_line: Mask = separation.from_origin(line) < self.foot.take(node)
+        return as_line
 
     def _look(
         self,
@@ -395,10 +402,9 @@ class Obstacles:
         rows = np.flatnonzero(high > solid.low)
         node = node.take(rows)
         laying = np.flatnonzero(self.since.take(node) >= layer_start.take(rows))
-        line = self.line.take(node[laying], axis=0) - tip.take(rows[laying], axis=0)[:, None]
-        close = separation.from_origin(line) < self.foot.take(node[laying])
-        as_line, line = laying[close], line[close]
+        as_line = laying[self._as_line(node[laying], tip.take(rows[laying], axis=0))]
         lines = rows[as_line]
+        line = self.line.take(node[as_line], axis=0) - tip.take(lines, axis=0)[:, None]
         meets[lines] = solid.rows(lines).meets_segments(line[:, 0], line[:, 1], axis[lines])
         rows, node = np.delete(rows, as_line), np.delete(node, as_line)
         meets[rows] = separation.find_any_overlap(

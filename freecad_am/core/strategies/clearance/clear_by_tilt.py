@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...geometry.obstacles import Body
+from ...geometry.step_count import step_count
 from ...geometry.walls.surface import dot
 from ...issues import InputError, Issue, Text
 from ...parameters.build_direction import BuildDirectionParameters
@@ -35,7 +36,15 @@ from .nozzle_check import (
     touched_between,
     turn_issues,
 )
-from .tilt_search import SPREAD, Change, TiltSearch, Touching, what_helps
+from .tilt_search import (
+    RELEASED,
+    SPREAD,
+    Change,
+    TiltSearch,
+    Touching,
+    near_marks,
+    what_helps,
+)
 
 SLOWER = 6  # maximum number of new tilt searches for a bead that turns too fast
 SEARCHED = 0.7  # fraction of the progress at which these searches begin
@@ -85,19 +94,30 @@ def keep_clear(
         The toolpath with issues about tilts and contacts.
     """
     earlier: list[_Way | None] = [None for _ in toolpath]
+    examined = beads_of(toolpath, feature)
     for turn in range(HALVINGS + 1):
         sub_watch = (watch or Watch()).section(turn / (HALVINGS + 1), (turn + 1) / (HALVINGS + 1))
         tilted, between, solutions = _tilted(
-            toolpath, bodies, nozzle, build, plane, feature, turn == HALVINGS, sub_watch, earlier
+            toolpath,
+            bodies,
+            nozzle,
+            build,
+            plane,
+            feature,
+            turn == HALVINGS,
+            sub_watch,
+            earlier,
+            examined,
         )
         if not between.any():
             break
         marks = np.split(between, np.cumsum([len(bead) for _, _, bead in toolpath])[:-1])
         earlier = [
-            None if mark.any() else solution
+            None if solution is None else solution.halved(np.flatnonzero(mark))
             for solution, mark in zip(solutions, marks, strict=True)
         ]
         toolpath = halved(toolpath, between)
+        examined = np.array([bool(mark.any()) for mark in marks])
     if not remedy or not _touches(tilted, toolpath):
         return tilted
     stuck = [
@@ -137,6 +157,16 @@ class _Way(NamedTuple):
     tilt: Array
     stuck: Mask
 
+    def halved(self, rows: Index) -> _Way:
+        """Return the tilts with the means of points and their next points inserted."""
+        tool = 0.5 * (self.tool[rows] + self.tool[rows + 1])
+        tool /= np.linalg.norm(tool, axis=1, keepdims=True)
+        return _Way(
+            np.insert(self.tool, rows + 1, tool, axis=0),
+            np.insert(self.tilt, rows + 1, 0.5 * (self.tilt[rows] + self.tilt[rows + 1])),
+            np.insert(self.stuck, rows + 1, False),
+        )
+
 
 def _tilted(
     toolpath: Toolpath,
@@ -148,40 +178,60 @@ def _tilted(
     is_last: bool,
     watch: Watch,
     earlier: list[_Way | None],
+    examined: Mask,
 ) -> tuple[Toolpath, Mask, list[_Way | None]]:
     """Tilt the toolpath clear at its points.
 
     Returns the toolpath, the points (n,) with a contact halfway to the next point, and the tilts of
-    each bead. The last attempt returns no such points but reports them in an issue. If there are
-    such contacts with the original axes, nothing is tilted yet. earlier: tilts of an earlier
-    attempt, for beads with the same points.
+    each bead. The last attempt returns no such points but reports them in an issue. earlier: tilts
+    of an earlier attempt. examined: beads (b,) to tilt; others have the points of an earlier
+    attempt, keep its tilts, and are checked at the end.
     """
     beads = [bead for _, _, bead in toolpath]
     begin = np.r_[0, np.cumsum([len(bead) for bead in beads])]
+    counts = np.diff(begin)
     tool_before = np.concatenate([bead.tool for bead in beads])
     space = space_of(toolpath, bodies, nozzle, build.max_tilt, feature=feature or 0)
-    in_feature = np.repeat(beads_of(toolpath, feature), np.diff(begin))
-    free = ~in_feature
-    free[in_feature] = space.clear(np.flatnonzero(in_feature), tool_before[in_feature])
-    between = touched_between(space, beads, tool_before, free & in_feature)
-    if between.any() and not is_last:
-        return toolpath, between, earlier
-    blocked = [k for k in range(len(beads)) if not (free & ~between)[begin[k] : begin[k + 1]].all()]
-    if not blocked:
-        return toolpath, between, earlier
+    rows = np.flatnonzero(np.repeat(examined, counts))
+    free = np.ones(len(tool_before), dtype=bool)
+    free[rows] = space.clear(rows, tool_before[rows])
+    touched = ~np.logical_and.reduceat(free, begin[:-1])
+    kept = np.array([solution is not None for solution in earlier]) & ~examined
+    blocked = np.flatnonzero(touched | kept).tolist()
     (tool, tilt, stuck), turned = _ways(
-        space, beads, begin, blocked, tool_before, plane, free, build.turn(), watch, earlier
+        space, beads, begin, blocked, tool_before, plane, free, build.turn(), watch, earlier, kept
     )
     solutions: list[_Way | None] = [None for _ in beads]
     for k in blocked:
         row = slice(begin[k], begin[k + 1])
         solutions[k] = _Way(tool[row], tilt[row], stuck[row].copy())
     # stuck beads get no more points; their current points are reported
-    sound = in_feature & ~np.repeat(np.logical_or.reduceat(stuck, begin[:-1]), np.diff(begin))
-    between = touched_between(space, beads, tool, sound)
+    sound = ~np.repeat(np.logical_or.reduceat(stuck, begin[:-1]), counts)
+    between = touched_between(space, beads, tool, sound & np.repeat(examined, counts))
     if between.any() and not is_last:
         return toolpath, between, solutions
+    in_feature = beads_of(toolpath, feature)
+    if (in_feature & ~examined).any():
+        # new points of the examined beads change the deposit a little
+        rows = np.flatnonzero(np.repeat(in_feature & ~examined, counts) & sound)
+        clear = space.clear(rows, tool[rows]).all()
+        others = touched_between(space, beads, tool, sound & np.repeat(in_feature, counts))
+        if not clear or (others & ~between).any():
+            return _tilted(
+                toolpath,
+                bodies,
+                nozzle,
+                build,
+                plane,
+                feature,
+                is_last,
+                watch,
+                solutions,
+                in_feature,
+            )
     stuck |= between
+    if not (blocked or between.any()):
+        return toolpath, between, solutions
     issues = (
         *tilt_issues([(i, j) for i, j, _ in toolpath], begin, tilt, stuck),
         *turn_issues(turned, build.turn()),
@@ -214,19 +264,25 @@ def _ways(
     max_rate: float,
     watch: Watch,
     earlier: list[_Way | None],
+    kept: Mask,
 ) -> tuple[_Way, float]:
     """Return axes, tilts and stuck points, and the maximum turn rate, rad/mm, of beads above `max_rate`.
 
-    Only beads whose original axes were within `max_rate` count. Earlier tilts of a bead are kept while clear.
+    Only beads whose original axes were within `max_rate` count. Earlier tilts of a bead are kept while clear, and those
+    of beads `kept` (b,) without a check.
     """
     tool = tool_before.copy()
     tilt = np.zeros(len(tool_before))
     lost = np.zeros(len(tool_before), dtype=bool)
     kept_rows, new_rows = [], []
+    start: list[Array | None] = []
     for k in blocked:
         row, solution = np.arange(begin[k], begin[k + 1]), earlier[k]
-        if solution is None or not (space.clear(row, solution.tool) | solution.stuck).all():
+        if solution is None or not (
+            kept[k] or (space.clear(row, solution.tool) | solution.stuck).all()
+        ):
             new_rows.append((row, beads[k].closed))
+            start.append(None if solution is None or solution.stuck.any() else solution.tool)
             continue
         tool[row], tilt[row], lost[row] = solution
         kept_rows.append(row)
@@ -244,7 +300,7 @@ def _ways(
     watch.points(len(flat), 1)
     loops = np.array([loop for _, loop in new_rows])
     tilted, leant, stuck = _cleared(
-        space, rows, loops, tool_before, plane, free, watch.section(0.0, SEARCHED)
+        space, rows, loops, tool_before, plane, free, start, watch.section(0.0, SEARCHED)
     )
     tool[flat], tilt[flat] = tilted[flat], leant[flat]
     lost[stuck] = True
@@ -271,44 +327,153 @@ def _cleared(
     tool_before: Array,
     plane: Array | None,
     free: Mask,
+    start: list[Array | None],
     watch: Watch,
     spread: float = SPREAD,
 ) -> tuple[Array, Array, Index]:
-    """Tilt the beads of `rows` clear; return axes (n, 3) of all points, tilts (n,), rad, and the stuck points."""
-    knots = [knots_along(row) for row in rows]
-    for row, bead_knots in zip(rows, knots, strict=True):
-        if len(bead_knots) < len(row):
-            free = free.copy()
-            free[bead_knots] = free_about(row, bead_knots, free)
-    tool, tilt = tool_before.copy(), np.zeros(len(tool_before))
-    touching = []
-    blocks = _blocks(np.array([len(bead_knots) for bead_knots in knots]))
-    for number, block in enumerate(blocks):
-        some_knots = [knots[k] for k in block]
-        search = TiltSearch(space, some_knots, closed[block], tool_before, plane, free, spread)
-        offset, stuck = search.search(
-            watch.section(number / len(blocks), (number + 1) / len(blocks))
+    """Tilt the beads of `rows` clear; return axes (n, 3) of all points, tilts (n,), rad, and the stuck points.
+
+    Beads are searched at their knots. The nozzle is then checked at every point. Points at which it touches become knots
+    too, and are searched near the present tilts. Beads that still touch are searched at every point.
+
+    start: tilted axes (k, 3) from an earlier attempt, near which a bead is searched first; None for none.
+    """
+    beads = _Knotted(
+        space, rows, list(rows), closed, tool_before, plane, free.copy(), spread, tool_before.copy()
+    )
+    started = np.array([axes is not None for axes in start])
+    for row, axes in zip(rows, start, strict=True):
+        if axes is not None:
+            beads.tool[row] = axes
+    unknown = ~started | _any(beads.search(started, True, watch.section(0.0, 0.1)))
+    for k in np.flatnonzero(unknown):
+        beads.knots[k] = knots_along(
+            space.points[rows[k]], tool_before[rows[k]], rows[k], free[rows[k]]
         )
-        flat = search.flat
-        tool[flat], tilt[flat] = search.axes(flat, offset), np.linalg.norm(offset, axis=1)
-        touching.append(flat[stuck])
-    for row, bead_knots in zip(rows, knots, strict=True):
-        if len(bead_knots) < len(row):
-            tool[row], touching_rows = spread_out(
-                space, row, bead_knots, tool_before, tool[bead_knots]
-            )
-            tilt[row] = np.arctan2(
-                np.linalg.norm(np.cross(tool_before[row], tool[row]), axis=1),
-                dot(tool_before[row], tool[row]),
-            )
-            touching.append(touching_rows)
-    return tool, tilt, np.concatenate(touching)
+    stuck = beads.search(unknown, False, watch.section(0.1, 0.6))
+    lost = _any(stuck)
+    again, pending = np.zeros(len(rows), dtype=bool), ~lost
+    for number in range(REPAIRS):
+        pending &= beads.touching_become_knots(pending)
+        if not pending.any():
+            break
+        section = watch.section(0.6 + 0.1 * number / REPAIRS, 0.6 + 0.1 * (number + 1) / REPAIRS)
+        again |= _any(beads.search(pending, True, section))
+        pending &= ~again
+    again |= _any(beads.touching(pending))
+    for k in np.flatnonzero(again):
+        beads.knots[k] = every_point(rows[k])
+    stuck += beads.search(again, False, watch.section(0.7, 1.0))
+    stuck += beads.touching(lost | again)
+    flat = np.concatenate(rows)
+    tilt = np.zeros(len(tool_before))
+    tilt[flat] = _angles(tool_before[flat], beads.tool[flat])
+    return beads.tool, tilt, np.concatenate(stuck)
 
 
-def _blocks(counts: Index) -> list[Index]:
+def _any(points: list[Index]) -> Mask:
+    """Return which beads have points in a list by bead."""
+    return np.array([len(of_bead) > 0 for of_bead in points], dtype=bool)
+
+
+class _Knotted(NamedTuple):
+    """Beads that are tilted at knots.
+
+    rows, knots: points of each bead, and the knots among them. tool: (n, 3) present axes of all points. Other fields: as
+    for `TiltSearch`.
+    """
+
+    space: Space
+    rows: list[Index]
+    knots: list[Index]
+    closed: Mask
+    tool_before: Array
+    plane: Array | None
+    free: Mask
+    spread: float
+    tool: Array
+
+    def search(self, searched: Mask, near: bool, watch: Watch) -> list[Index]:
+        """Tilt some beads at their knots, in place, and between them; return the points of each bead without clear tilt.
+
+        near: search only near the present axes, and leave a bead without clear tilts unchanged.
+        """
+        stuck = [row[:0] for row in self.rows]
+        numbers = np.flatnonzero(searched)
+        knots = {k: self._adjustable(k) for k in numbers}
+        blocks = _blocks(numbers, np.array([len(knots[k]) for k in numbers], dtype=np.intp))
+        for number, block in enumerate(blocks if len(numbers) else ()):
+            share = watch.section(number / len(blocks), (number + 1) / len(blocks))
+            tilts = TiltSearch(
+                self.space,
+                [self.rows[k] for k in block],
+                [knots[k] for k in block],
+                self.closed[block],
+                self.tool_before,
+                self.plane,
+                self.free,
+                self.spread,
+            )
+            offset, touching = (
+                tilts.repair(self.tool[tilts.flat], share) if near else tilts.search(share)
+            )
+            axes = tilts.axes(tilts.flat, offset)
+            for k, begin, count in zip(block, tilts.begin, tilts.counts, strict=True):
+                at = slice(begin, begin + count)
+                stuck[k] = knots[k][touching[at]]
+                if not (near and len(stuck[k])):
+                    self.tool[knots[k]] = axes[at]
+                    self.tool[self.rows[k]] = spread_out(
+                        self.space.points, self.rows[k], self.knots[k], self.tool_before, self.tool
+                    )
+        return stuck
+
+    def _adjustable(self, number: int) -> Index:
+        """Return the knots of a bead that may be tilted, the knots next to them, and both ends."""
+        row, knots = self.rows[number], self.knots[number]
+        reach = RELEASED * self.spread
+        points = self.space.points[row]
+        near = near_marks(points, ~self.free[row], bool(self.closed[number]), reach)
+        near = near[np.searchsorted(row, knots)]
+        kept = near.copy()
+        kept[1:] |= near[:-1]
+        kept[:-1] |= near[1:]
+        kept[[0, -1]] = True
+        return knots[kept]
+
+    def touching(self, checked: Mask) -> list[Index]:
+        """Return the points of each checked bead between its knots at which the nozzle touches."""
+        between = [
+            np.setdiff1d(row, knots if is_checked else row, assume_unique=True)
+            for row, knots, is_checked in zip(self.rows, self.knots, checked, strict=True)
+        ]
+        points = np.concatenate(between)
+        touching = ~self.space.clear(points, self.tool[points])
+        ends = np.cumsum([len(of_bead) for of_bead in between])
+        return [
+            of_bead[mask]
+            for of_bead, mask in zip(between, np.split(touching, ends[:-1]), strict=True)
+        ]
+
+    def touching_become_knots(self, checked: Mask) -> Mask:
+        """Add the touching points of checked beads to their knots; return which beads have such points."""
+        touching = self.touching(checked)
+        for k, points in enumerate(touching):
+            self.knots[k] = np.union1d(self.knots[k], points)
+            self.free[points] = False
+        return _any(touching)
+
+
+def _angles(before: Array, after: Array) -> Array:
+    """Return the angles (n,), rad, between unit vectors (n, 3)."""
+    angles: Array = np.arctan2(np.linalg.norm(np.cross(before, after), axis=1), dot(before, after))
+    return angles
+
+
+def _blocks(beads: Index, counts: Index) -> list[Index]:
     """Return blocks of beads, of `counts` points, that are searched together; this bounds the memory."""
     number = (np.cumsum(counts) - counts) // POINTS_AT_ONCE
-    return np.split(np.arange(len(counts)), np.flatnonzero(np.diff(number)) + 1)
+    return np.split(beads, np.flatnonzero(np.diff(number)) + 1)
 
 
 def _fastest(space: Space, row: Index, axes: Array) -> float:
@@ -365,15 +530,11 @@ def _slowed(
             trial, stuck = slower, row[:0]
             if not free[row].all():
                 trial, _, stuck = _cleared(
-                    space, [row], np.array([loop]), slower, plane, free, sub_watch, spread
+                    space, [row], np.array([loop]), slower, plane, free, [None], sub_watch, spread
                 )
             now = _fastest(space, row, trial)
             if not len(stuck) and now < _fastest(space, row, tool):
-                cross = np.linalg.norm(np.cross(tool_before[row], trial[row]), axis=1)
-                tool[row], tilt[row] = (
-                    trial[row],
-                    np.arctan2(cross, dot(tool_before[row], trial[row])),
-                )
+                tool[row], tilt[row] = trial[row], _angles(tool_before[row], trial[row])
             if now <= max_rate:
                 break
         remaining = _fastest(space, row, tool)
@@ -381,96 +542,88 @@ def _slowed(
     return worst
 
 
-# ---- Long beads are tilted at some points, the knots; between knots, tilts are interpolated and
-# checked
+# ---- Beads are tilted at some points, the knots; between knots, tilts are interpolated and checked
 #
 # Tilts change over millimetres, but points may be only hundredths of a millimetre apart. A search at
 # every point would take long, and candidates several degrees apart would turn the tool too fast
 # between adjacent points.
 
+KNOT_MM = 2.0  # mm; distance of knots along a bead, less than half of SPREAD
+KNOT_TURN = np.radians(10.0)  # turn of the requested axis between knots
 MAX_POINTS = 2500  # maximum number of points of a bead at which tilts are searched
+REPAIRS = 4  # maximum number of searches near tilts that touch between knots
 
 
-def knots_along(row: Index) -> Index:
-    """Return the points of a bead at which tilts are searched.
+def knots_along(points: Array, tool: Array, row: Index, free: Mask) -> Index:
+    """Return the points of a bead at which tilts are searched first.
 
     Parameters
     ----------
+    points : (n, 3) array
+        Points of the bead, mm.
+    tool : (n, 3) array
+        Requested axes, unit vectors.
     row : (n,) array of int
-        Indices of the bead's points, in order.
+        Indices of the points, in order.
+    free : (n,) bool array
+        Points at which the requested axes are clear.
 
     Returns
     -------
     (k,) array of int
-        At most MAX_POINTS evenly distributed points, including both ends.
+        Points about KNOT_MM or KNOT_TURN apart, both ends of the bead, and both ends of each
+        blocked stretch; but at most MAX_POINTS, evenly distributed.
     """
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1) / KNOT_MM
+    steps += _angles(tool[:-1], tool[1:]) / KNOT_TURN
+    along = np.r_[0.0, np.cumsum(steps)]
+    places = np.linspace(0.0, along[-1], step_count(along[-1], 1.0, 2) + 1)
+    changes = np.flatnonzero(np.diff(free))
+    blocked_ends = np.where(free[changes], changes + 1, changes)
+    knots = np.union1d(along.searchsorted(places - ROUNDING), blocked_ends)
+    knots = np.union1d(knots, [0, len(row) - 1]).astype(np.intp)
+    return np.asarray(row[knots]) if len(knots) <= MAX_POINTS else every_point(row)
+
+
+def every_point(row: Index) -> Index:
+    """Return the points of a bead, but at most MAX_POINTS, evenly distributed, with both ends."""
     if len(row) <= MAX_POINTS:
         return row
-    knots: Index = row[
-        np.unique(np.round(np.linspace(0, len(row) - 1, MAX_POINTS)).astype(np.intp))
-    ]
+    places = np.linspace(0, len(row) - 1, MAX_POINTS)
+    knots: Index = row[np.unique(np.round(places).astype(np.intp))]
     return knots
 
 
-def free_about(row: Index, knots: Index, free: Mask) -> Mask:
-    """Return whether all points nearest to each knot are free.
-
-    Parameters
-    ----------
-    row : (m,) int array
-        Points of the bead.
-    knots : (k,) int array
-        Knots among them.
-    free : (n,) bool array
-        Free points of the toolpath.
-
-    Returns
-    -------
-    (k,) bool array
-        True where all are free.
-    """
-    position = np.searchsorted(row, knots)
-    middles = np.r_[0, (position[:-1] + position[1:] + 1) // 2]
-    about: Mask = np.logical_and.reduceat(free[row], middles)
-    return about
-
-
-def spread_out(
-    space: Space, row: Index, knots: Index, tool: Array, axes: Array
-) -> tuple[Array, Index]:
+def spread_out(points: Array, row: Index, knots: Index, tool: Array, tilted: Array) -> Array:
     """Interpolate tool axes between the knots of a bead.
 
     Parameters
     ----------
-    space : Space
-        The clearance data.
+    points : (n, 3) array
+        Points of the toolpath, mm.
     row : (m,) int array
         Points of the bead.
     knots : (k,) int array
         Knots among them.
     tool : (n, 3) array
         Requested axes of all points of the toolpath.
-    axes : (k, 3) array
-        Axes at the knots.
+    tilted : (n, 3) array
+        Axes of all points; only the axes at the knots count.
 
     Returns
     -------
-    axes : (m, 3) array
+    (m, 3) array
         Axes at all points of the bead, unit vectors.
-    touching : int array
-        Points between the knots at which the nozzle touches.
     """
-    points = space.points[row]
-    along = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    knot_lengths = along[np.searchsorted(row, knots)]
-    lean = axes - tool[knots]
-    tilted = tool[row] + np.stack(
-        [np.interp(along, knot_lengths, column) for column in lean.T], axis=1
+    along = np.cumsum(np.linalg.norm(np.diff(points[row], axis=0, prepend=points[row[:1]]), axis=1))
+    at = np.searchsorted(row, knots)
+    lean = tilted[knots] - tool[knots]
+    axes: Array = tool[row] + np.stack(
+        [np.interp(along, along[at], column) for column in lean.T], axis=1
     )
-    tilted /= np.linalg.norm(tilted, axis=1, keepdims=True)
-    between = dataclasses.replace(space, nozzle=space.nozzle.halfway())
-    between_rows = np.setdiff1d(row, knots, assume_unique=True)
-    touching: Index = between_rows[
-        ~between.clear(between_rows, tilted[np.searchsorted(row, between_rows)])
-    ]
-    return tilted, touching
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    # where nothing is tilted, the axes stay to the last bit
+    still = np.interp(along, along[at], lean.any(axis=1)) == 0.0
+    axes[still] = tool[row[still]]
+    axes[at] = tilted[knots]
+    return axes

@@ -163,13 +163,14 @@ CORRIDOR = 24  # number of candidates near a path that are searched first
 COST_TOLERANCE = 1e-5  # tolerance of costs; much larger than ties
 NEIGHBOUR_COUNT = 9  # number of candidates tested together about a candidate of the best path
 LEVELS = 4  # number of refinements, each at half the distance
+REPAIRED = 1  # first refinement of axes that touch between knots
 COARSE = 0.6  # fraction of the progress before the refinements
 SPREAD = 5.0  # mm; distance along the bead over which a tilt builds up and decays
 RELEASED = 4.0  # times SPREAD; distance at which a tilt has decayed
 
 
 class TiltSearch:
-    """Tilt search for several blocked beads: points concatenated (m,), and padded to chains (b, n).
+    """Tilt search at some points, `rows`, of several blocked beads: concatenated (m,), and padded to chains (b, n).
 
     A tilt is a rotation from the original axis. Its two components, rad, are along directions that are carried along the
     bead without twist. One component is 0 if the tool must stay in a plane.
@@ -178,6 +179,7 @@ class TiltSearch:
     def __init__(
         self,
         space: Space,
+        beads: list[Index],
         rows: list[Index],
         closed: Mask,
         tool: Array,
@@ -197,14 +199,21 @@ class TiltSearch:
         end = start + self.counts[closed] - 1
         self._twin[start], self._twin[end] = end, start
         self.lost = np.zeros(len(rows), dtype=bool)  # beads that no tilt clears
-        self.sides = np.concatenate([_sides(tool[row], plane) for row in rows])
+        self.sides = np.concatenate(
+            [
+                _sides(tool[bead], plane)[np.searchsorted(bead, row)]
+                for bead, row in zip(beads, rows, strict=True)
+            ]
+        )
         points = space.points[self.flat]
         self.step = np.r_[np.linalg.norm(np.diff(points, axis=0), axis=1), 0.0]
         self.step[self.begin + self.counts - 1] = 0.0
         self.near = np.concatenate(
             [
-                _near(points[b : b + n], ~free[row], loop, RELEASED * spread)
-                for b, n, row, loop in zip(self.begin, self.counts, rows, closed, strict=True)
+                near_marks(space.points[bead], ~free[bead], loop, RELEASED * spread)[
+                    np.searchsorted(bead, row)
+                ]
+                for bead, row, loop in zip(beads, rows, closed, strict=True)
             ]
         )
 
@@ -260,8 +269,46 @@ class TiltSearch:
         offset, stuck = self.coarse(watch.section(0.0, COARSE))
         for level in range(1, LEVELS + 1):
             watch.share(COARSE + (1.0 - COARSE) * (level - 1) / LEVELS)
-            offset = self.finer(offset, RING / 2.0**level, level)
+            offset, _ = self.finer(offset, RING / 2.0**level, level)
         return offset, stuck
+
+    def repair(self, axes: Array, watch: Watch) -> tuple[Array, Mask]:
+        """Search near given axes, which may touch at some points.
+
+        Parameters
+        ----------
+        axes : (m, 3) array
+            Axes at all points, unit vectors.
+        watch : Watch
+            Progress of the search.
+
+        Returns
+        -------
+        offset : (m, 2) array
+            Tilts of all points, rad.
+        stuck : (m,) bool array
+            Points without a clear tilt near the given axis.
+        """
+        offset = self._offsets(axes)
+        clear = ~self.near
+        rows = np.flatnonzero(self.near)
+        clear[rows] = self._clear(rows, offset[rows, None])[:, 0]
+        stuck = ~clear
+        for level in range(REPAIRED, LEVELS + 1):
+            watch.share((level - REPAIRED) / (LEVELS + 1 - REPAIRED))
+            offset, stuck = self.finer(offset, RING / 2.0**level, level, ~stuck)
+        return offset, stuck
+
+    def _offsets(self, axes: Array) -> Array:
+        """Return the tilts (m, 2) of axes (m, 3)."""
+        asked = self.asked[self.flat]
+        lean = np.einsum("kij,kj->ki", self.sides, axes)
+        size = np.linalg.norm(lean, axis=1)
+        angle = np.arctan2(size, np.einsum("kj,kj->k", asked, axes))
+        offset: Array = lean * (angle / np.where(size > 0.0, size, 1.0))[:, None]
+        if self.plane is not None:
+            offset[:, 1] = 0.0
+        return offset
 
     def coarse(self, watch: Watch) -> tuple[Array, Mask]:
         """Search for tilts on cones about the requested axes.
@@ -408,7 +455,9 @@ class TiltSearch:
         beads: Index = np.unique(self._bead[rows_])
         return beads
 
-    def finer(self, offset: Array, step: float, turn: int) -> Array:
+    def finer(
+        self, offset: Array, step: float, turn: int, clear: Mask | None = None
+    ) -> tuple[Array, Mask]:
         """Improve tilts on a finer grid about the present tilts.
 
         Parameters
@@ -420,29 +469,47 @@ class TiltSearch:
         turn : int
             Index of the refinement. Each refinement keeps another point of a closed bead
             unchanged.
+        clear : (m,) bool array or None, optional
+            Points whose present tilt is clear; None for all.
 
         Returns
         -------
-        (m, 2) array
+        offset : (m, 2) array
             Improved tilts, rad.
+        stuck : (m,) bool array
+            Points without a clear tilt on the grid.
         """
         around = step * np.arange(-2.0, 3.0)
         grid = np.stack(
             np.meshgrid(around, around if self.plane is None else [0.0], indexing="ij"), axis=-1
         ).reshape(-1, 2)
+        # the corners of the square would take most of the time
+        grid = grid[np.abs(grid).sum(axis=1) < 2.5 * step]
         offsets = offset[:, None] + grid
         centre_state = len(grid) // 2
         offsets[:, centre_state] = offset
         searched = self.near & ~self.lost[self._bead]
         open_ = self._both_ends(np.repeat(searched[:, None], offsets.shape[1], axis=1))
         tested = ~open_
-        open_[:, centre_state] = tested[:, centre_state] = True
-        # each refinement keeps another point of a closed bead unchanged
+        tested[:, centre_state] = True
+        open_[:, centre_state] = True if clear is None else clear
+        open_ = self._both_ends(open_)
         anchor = (self.counts - 1) * (turn % 3) // 3
+        if clear is not None:
+            anchor = self._nearest_clear(anchor, open_[:, centre_state])
         fixed = np.full(len(offset), centre_state)
         chosen = self._least_clear(offsets, open_, tested, anchor, fixed)
-        better: Array = offsets[np.arange(len(offset)), chosen]
-        return better
+        point = np.arange(len(offset))
+        return offsets[point, chosen], ~open_[point, chosen]
+
+    def _nearest_clear(self, anchor: Index, clear: Mask) -> Index:
+        """Return for each bead the point nearest to `anchor` (b,) among the clear points (m,), if any."""
+        nearest_ = anchor.copy()
+        for bead, (start, count) in enumerate(zip(self.begin, self.counts, strict=True)):
+            points = np.flatnonzero(clear[start : start + count - 1])
+            if len(points):
+                nearest_[bead] = points[np.abs(points - anchor[bead]).argmin()]
+        return nearest_
 
     def _ring(self, number: int) -> Array:
         azimuth = (
@@ -579,10 +646,27 @@ class _Chains(NamedTuple):
     change: Array
 
 
-def _near(points: Array, blocked: Mask, closed: bool, reach: float) -> Mask:
-    """Return which points of a bead are within `reach` mm along the bead of a blocked point."""
+def near_marks(points: Array, marked: Mask, closed: bool, reach: float) -> Mask:
+    """Return which points of a bead are near marked points.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Points of the bead, mm.
+    marked : (n,) bool array
+        The marked points.
+    closed : bool
+        Whether the bead is closed.
+    reach : float
+        Maximum distance along the bead, mm.
+
+    Returns
+    -------
+    (n,) bool array
+        True near a marked point.
+    """
     length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]
-    is_near: Mask = nearest(length[blocked], length, float(length[-1]) if closed else None) <= reach
+    is_near: Mask = nearest(length[marked], length, float(length[-1]) if closed else None) <= reach
     return is_near
 
 
@@ -634,7 +718,11 @@ def _sides(tool: Array, plane: Array | None) -> Array:
 
 
 LOOKED_AT = 240  # maximum number of checked points
-BATCH_POINTS = 24  # points in a batch; if a point has no clear tilt, later batches are skipped
+BATCH_POINTS = (
+    3  # points in the first batch; if a point has no clear tilt, later batches are skipped
+)
+GROWING_BATCHES = 6  # number of batches, each of twice as many points, before the last one
+BUILT_POINTS = 200_000  # maximum number of points whose deposit is built as a whole, 0.1 GB
 SHARES = (0.75, 0.5, 0.25)  # fractions of the nozzle's half angle that are tried
 FARTHER = np.radians(15.0)  # step by which the maximum tilt is raised
 MAX_TRIALS = 4  # maximum number of changes for which every bead is tilted again
@@ -668,7 +756,7 @@ class Touching(NamedTuple):
             change.bodies,
             change.nozzle,
             change.build.max_tilt,
-            False,
+            self.toolpath.point_count <= BUILT_POINTS,
             self.feature or 0,
         )
         sample = self.rows[
@@ -677,13 +765,14 @@ class Touching(NamedTuple):
             )
         ]
         tool = np.concatenate([bead.tool for _, _, bead in self.toolpath])
-        return all(
-            self._clear_at(space, tool, sample[start : start + BATCH_POINTS])
-            for start in range(0, len(sample), BATCH_POINTS)
-        )
+        # one point without a clear tilt decides: the batches grow
+        batches = np.split(sample, np.cumsum(BATCH_POINTS * 2 ** np.arange(GROWING_BATCHES)))
+        return all(self._clear_at(space, tool, batch) for batch in batches)
 
     def _clear_at(self, space: Space, tool: Array, rows: Index) -> bool:
         for number in range(round(MAX_TILT_RAD / RING) + 1):
+            if not len(rows):
+                return True
             axes = self._cone(tool[rows], number * RING)
             free = (
                 space.clear(np.repeat(rows, axes.shape[1]), axes.reshape(-1, 3))
@@ -691,9 +780,7 @@ class Touching(NamedTuple):
                 .any(axis=1)
             )
             rows = rows[~free]
-            if not len(rows):
-                return True
-        return False
+        return not len(rows)
 
     def _cone(self, tool: Array, angle: float) -> Array:
         """Return axes (k, s, 3) at an angle, rad, from the requested axes (k, 3)."""
