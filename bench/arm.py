@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`cell.arm_clearance`: how near links come to what stands beside a dome, and what keeping them clear adds to planning.
-
-A post that is a fixture, a table on which the part stands and a tall finished wall, which the same job drives links into
-without the key: the library has to see that too, or it sees nothing. And a screen between robot and part, which is refused
-by name. Judged by others on what was saved: joints of every row of waypoints.csv, and at nine places between two rows,
-through PyKDL's chain of the machine, and distances by python-fcl between the rods of the links and the body. What moves
-against links, these among themselves, is in `arm_apart`.
-"""
+"""`cell.arm_clearance`: distance of the links from obstacles next to a dome, and the planning time
+that it costs. The obstacles are a post declared as a fixture, a table that carries the part, and a
+tall finished wall. Without the key the same job drives links into each obstacle; the library must
+detect that too, or its result proves nothing. A screen between robot and part must be rejected by
+name. Other libraries judge the saved files: PyKDL's chain of the machine gives the links for every
+row of waypoints.csv and nine joint positions between two rows; python-fcl gives distances between
+link capsules and obstacle. `arm_apart` covers links against each other, the torch and the
+positioner."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from statistics import median
 
 import arm_apart
 import numpy as np
-from arm_jobs import CLEARANCE, EXAMPLE, box_text, carried_out, cylinder, is_path, places
+from arm_jobs import CLEARANCE, EXAMPLE, box_text, cylinder, is_path, run_plan, sample_joints
 
 from freecad_am.core.kinematics.links import external_links
 from freecad_am.core.kinematics.machines import machine
@@ -27,7 +27,7 @@ from tests.kdl_links import KdlLinks
 from rows import Row
 from sizes import choose
 
-TIMES = 3.0  # the planning may take, of what it takes without
+MAX_TIME_RATIO = 3.0  # maximum planning time, as a multiple of the time without the key
 ROUNDS = choose(5, 1)  # of both jobs in turns
 ROBOT, STATION, LEAN = "fanuc-arcmate120ic", (1000.0, 0.0, -100.0), 45.0
 JOB = """version: 1
@@ -44,9 +44,9 @@ DOWN, AUTO = "[front, down, noflip]", "auto"
 
 
 @dataclass(frozen=True)
-class Standing:
-    """A box beside the part: its name, its lower corner and its edges, mm in part coordinates, the branch that is asked for,
-    and whether it is a fixture."""
+class Obstacle:
+    """A box next to the part: name, lower corner and edge lengths (mm, part coordinates), requested
+    configuration, and whether it is a fixture."""
 
     name: str
     low: tuple[float, float, float]
@@ -55,7 +55,7 @@ class Standing:
     fixture: bool = False
 
     def job(self, key: str) -> str:
-        """The text of a job beside it."""
+        """Return the text of a job with this obstacle."""
         x, y, z = STATION
         middle = np.add(self.low, 0.5 * np.array(self.size)) + STATION
         stands = (
@@ -79,79 +79,87 @@ class Standing:
         )
 
 
-CLEARED = (
-    Standing("post", (50.0, 108.5, -5.0), (60.0, 60.0, 400.0), DOWN, fixture=True),
-    Standing("table", (-500.0, -400.0, -30.0), (1000.0, 800.0, 30.0), AUTO),
-    Standing("finished wall", (-130.0, 104.0, 0.0), (260.0, 12.0, 420.0), DOWN),
+OBSTACLES = (
+    Obstacle("post", (50.0, 108.5, -5.0), (60.0, 60.0, 400.0), DOWN, fixture=True),
+    Obstacle("table", (-500.0, -400.0, -30.0), (1000.0, 800.0, 30.0), AUTO),
+    Obstacle("finished wall", (-130.0, 104.0, 0.0), (260.0, 12.0, 420.0), DOWN),
 )
-SCREEN = Standing("screen", (-470.0, -1500.0, -1400.0), (40.0, 3000.0, 3000.0), AUTO)
+SCREEN = Obstacle("screen", (-470.0, -1500.0, -1400.0), (40.0, 3000.0, 3000.0), AUTO)
 
 
 def run() -> list[Row]:
-    """The least distance from each against what was asked for, and the time against the same without."""
-    found = []
-    for body in choose(CLEARED, CLEARED[:1]):
+    """Compare the least distance from each obstacle with the clearance, and planning times with and
+    without the key."""
+    rows = []
+    for body in choose(OBSTACLES, OBSTACLES[:1]):
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             (folder / "post.stl").write_text(box_text(body.low, body.size), encoding="utf-8")
-            done = [
-                [_planned(folder, body, key) for key in ("", f", arm_clearance: {CLEARANCE:g} mm")]
+            rounds = [
+                [
+                    plan_and_measure(folder, body, key)
+                    for key in ("", f", arm_clearance: {CLEARANCE:g} mm")
+                ]
                 for _ in range(ROUNDS)
             ]
-        plain, took = (median(seconds for _, seconds in some) for some in zip(*done))
-        (near, _), (kept, _) = done[0]
-        assert near is None or near < CLEARANCE, (
-            f"nothing to keep clear of: {near:.1f} mm from the {body.name}"
+        plain, took = (median(seconds for _, seconds in times) for times in zip(*rounds))
+        (distance, _), (kept_distance, _) = rounds[0]
+        assert distance is None or distance < CLEARANCE, (
+            f"nothing to keep clear of: {distance:.1f} mm from the {body.name}"
         )
-        found += [
+        rows += [
             Row(
-                f"least distance of links from a {body.name} by python-fcl, {0.0 if near is None else near:.1f} mm without "
+                f"least distance of links from a {body.name} by python-fcl, {0.0 if distance is None else distance:.1f} mm without "
                 "cell.arm_clearance; what is kept",
                 CLEARANCE,
-                kept,
+                kept_distance,
                 "mm",
                 1.0,
             ),
             Row(
-                f"joint path beside a {body.name} with cell.arm_clearance, against {TIMES:g} times that without",
+                f"joint path beside a {body.name} with cell.arm_clearance, against {MAX_TIME_RATIO:g} times that without",
                 took,
-                TIMES * plain,
+                MAX_TIME_RATIO * plain,
                 "s",
                 1.0,
             ),
         ]
-    _refused()
-    return found + arm_apart.run()
+    check_rejection()
+    return rows + arm_apart.run()
 
 
-def _refused() -> None:
-    """The screen, which nothing clears, is refused by name, with link, layer and bead."""
+def check_rejection() -> None:
+    """The post rejects the screen, which no path clears, and names link, layer and bead."""
     with tempfile.TemporaryDirectory() as name:
-        done = carried_out(Path(name), SCREEN.job(f", arm_clearance: {CLEARANCE:g} mm"))
-    told = "error[ARM_CLEARANCE] layer 0 bead 0: ", ": link q", f"mm to {SCREEN.name}"
-    assert done.returncode == 3 and all(text in done.stderr for text in told), done.stderr
+        process = run_plan(Path(name), SCREEN.job(f", arm_clearance: {CLEARANCE:g} mm"))
+    fragments = "error[ARM_CLEARANCE] layer 0 bead 0: ", ": link q", f"mm to {SCREEN.name}"
+    assert process.returncode == 3 and all(text in process.stderr for text in fragments), (
+        process.stderr
+    )
 
 
-def _planned(folder: Path, body: Standing, key: str) -> tuple[float | None, float]:
-    """The least distance in mm, None without python-fcl, and seconds that the joint path took.
+def plan_and_measure(folder: Path, body: Obstacle, key: str) -> tuple[float | None, float]:
+    """Return the least distance (mm; None without python-fcl) and the planning time of the joint
+    path (s).
 
-    Without a clearance the arm may be in the body, which makes the job infeasible and its path the one to compare with.
+    Without a clearance the arm may collide with the obstacle; the job is then infeasible, but its
+    path serves as the reference.
     """
-    done = carried_out(folder, body.job(key))
-    assert is_path(done, key), done.stderr
+    process = run_plan(folder, body.job(key))
+    assert is_path(process, key), process.stderr
     report = json.loads((folder / "out" / "report.json").read_text(encoding="utf-8"))
-    return _nearest(folder, body), float(report["timing_s"]["joint_path"])
+    return least_distance(folder, body), float(report["timing_s"]["joint_path"])
 
 
-def _nearest(folder: Path, body: Standing) -> float | None:
-    """Least distance in mm of links from the body along a saved path."""
+def least_distance(folder: Path, body: Obstacle) -> float | None:
+    """Least distance in mm between links and obstacle along a saved path."""
     try:
         import fcl
     except ImportError:
         return None
     robot = machine.load(ROBOT)
-    arm, least = KdlLinks(robot), np.inf
-    # the part stands at the deposition point, its frame as that of the base
+    arm, distance = KdlLinks(robot), np.inf
+    # the part stands at the deposition point and its frame is parallel to the base
     middle = (
         robot.base[:3, :3] @ (np.add(body.low, 0.5 * np.array(body.size)) + STATION)
         + robot.base[:3, 3]
@@ -161,13 +169,15 @@ def _nearest(folder: Path, body: Standing) -> float | None:
         (number, [cylinder(fcl, rod) for rod in rods])
         for number, rods in enumerate(external_links.robot_cylinders(robot.chain))
     ]
-    for q in places(folder):
+    for q in sample_joints(folder):
         for number, rods in links[1:]:
             pose = arm.frame(q, number)
-            turn, place = pose[:3, :3], pose[:3, 3]
-            for solid, turned, at in rods:
-                moving = fcl.CollisionObject(solid, fcl.Transform(turn @ turned, place + turn @ at))
-                least = min(
-                    least, fcl.distance(moving, box, fcl.DistanceRequest(), fcl.DistanceResult())
+            turn, position = pose[:3, :3], pose[:3, 3]
+            for solid, turned, center in rods:
+                moving = fcl.CollisionObject(
+                    solid, fcl.Transform(turn @ turned, position + turn @ center)
                 )
-    return max(float(least), 0.0)
+                distance = min(
+                    distance, fcl.distance(moving, box, fcl.DistanceRequest(), fcl.DistanceResult())
+                )
+    return max(float(distance), 0.0)

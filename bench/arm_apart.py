@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`cell.arm_clearance` between what moves: links of a robot against each other, against the torch on its flange, and against
-the bodies of a positioner.
-
-In each job links come nearer than is kept as soon as the key is left out: the library has to see that too, or it sees
-nothing. Judged by others on what was saved: joints of every row of waypoints.csv, and at nine places between two rows,
-through PyKDL's chains of robot and positioner, and distances by python-fcl between the rods of links, the boxes that the
-torch's file shows, and the boxes and cylinders of the positioner's file. Pairs of links that the rule of the manual leaves
-out are found here by positions of the bench's own, at random within the limits.
-"""
+"""`cell.arm_clearance` between moving bodies: links of a robot against each other, the torch on the
+flange and the bodies of a positioner. Without the key the links of each job come nearer than the
+clearance; the library must detect that too, or its result proves nothing. Other libraries judge the
+saved files: PyKDL's chains of robot and positioner give the bodies for every row of waypoints.csv
+and nine joint positions between two rows; python-fcl gives distances between link capsules, the
+boxes of the torch's file, and the boxes and cylinders of the positioner's file. The benchmark finds
+the link pairs that the manual's rule omits from its own random joint positions within the
+limits."""
 
 from __future__ import annotations
 
@@ -20,7 +19,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from arm_jobs import CLEARANCE, EXAMPLE, box_text, carried_out, cylinder, is_path, places
+from arm_jobs import CLEARANCE, EXAMPLE, box_text, cylinder, is_path, run_plan, sample_joints
 
 from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.external import MECHANISMS
@@ -33,7 +32,7 @@ from tests.kdl_links import KdlLinks
 from rows import Row
 from sizes import choose
 
-POSITIONS = choose(1000, 50)  # at random, by which pairs are found that the rule leaves out
+POSITIONS = choose(1000, 50)  # random joint positions that decide which link pairs the rule omits
 JOB = """version: 1
 name: arm
 part: {{file: {step}}}
@@ -45,9 +44,9 @@ program: {{post: none}}
 
 
 @dataclass(frozen=True)
-class Moving:
-    """A job: what is told of it, its robot, the words of its cell, the pose of its tool on the flange, mm and deg; boxes
-    (low, size) of a torch's file, mm, Z out of the nozzle; a positioner with its pose."""
+class MovingBodies:
+    """A job: its description, robot, `cell` keys, tool pose on the flange (mm, deg), boxes (low,
+    size) of a torch file (mm, Z out of the nozzle), and a positioner with its pose."""
 
     name: str
     robot: str
@@ -59,7 +58,7 @@ class Moving:
     nozzle: str = "length: 60 mm"
 
     def job(self, key: str) -> str:
-        """The text of the job, with words that follow in `cell`."""
+        """Return the text of the job with further keys in `cell`."""
         shape = ", shape: {file: torch.stl}" if self.torch else ""
         beside = (
             ""
@@ -80,19 +79,19 @@ class Moving:
 
 ACROSS = (0.0, 0.0, 200.0, 0.0, 90.0, 0.0)
 JOBS = (
-    Moving(
+    MovingBodies(
         "forearm and wrist of a UR5e",
         "ur-ur5e",
         "platform_diameter: 0 mm, deposition_point: [470, 20, -80, 0, 0, 0]",
         ACROSS,
     ),
-    Moving(
+    MovingBodies(
         "forearm and wrist of a UR10e",
         "ur-ur10e",
         "platform_diameter: 0 mm, deposition_point: [590, -260, -180, 0, 0, 0]",
         ACROSS,
     ),
-    Moving(
+    MovingBodies(
         "torch and links",
         "ur-ur10e",
         "platform_diameter: 0 mm, deposition_point: [550, 0, -100, 0, 0, 0]",
@@ -103,7 +102,7 @@ JOBS = (
         ),
         nozzle="length: 60 mm, diameter: 10 mm",
     ),
-    Moving(
+    MovingBodies(
         "links and positioner",
         "kuka-kr8-r2100-2-arc-hw",
         "branch: auto, platform: 5 mm",
@@ -116,161 +115,184 @@ JOBS = (
 
 
 def run() -> list[Row]:
-    """The least distance between what is kept apart, of each job, against what was asked for."""
-    found = []
+    """Compare the least distance of each job with the clearance."""
+    rows = []
     for job in choose(JOBS, JOBS[:1]):
-        near, kept = (_judged(job, key) for key in ("", f", arm_clearance: {CLEARANCE:g} mm"))
-        assert near is None or near < CLEARANCE, (
-            f"nothing to keep apart: {near:.1f} mm between {job.name}"
+        distance, kept_distance = (
+            plan_and_measure(job, key) for key in ("", f", arm_clearance: {CLEARANCE:g} mm")
         )
-        found.append(
+        assert distance is None or distance < CLEARANCE, (
+            f"nothing to keep apart: {distance:.1f} mm between {job.name}"
+        )
+        rows.append(
             Row(
-                f"least distance between {job.name} by python-fcl, {0.0 if near is None else near:.1f} mm without "
+                f"least distance between {job.name} by python-fcl, {0.0 if distance is None else distance:.1f} mm without "
                 "cell.arm_clearance; what is kept",
                 CLEARANCE,
-                kept,
+                kept_distance,
                 "mm",
                 1.0,
             )
         )
-    return found
+    return rows
 
 
-def _judged(job: Moving, key: str) -> float | None:
-    """The least distance in mm on what a job writes, None without python-fcl."""
+def plan_and_measure(job: MovingBodies, key: str) -> float | None:
+    """Return the least distance (mm) along the path of a job, None without python-fcl."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         if job.torch:
             text = "".join(box_text(low, size) for low, size in job.torch)
             (folder / "torch.stl").write_text(text, encoding="utf-8")
-        done = carried_out(folder, job.job(key))
-        assert is_path(done, key), done.stderr
+        process = run_plan(folder, job.job(key))
+        assert is_path(process, key), process.stderr
         try:
             import fcl
         except ImportError:
             return None
-        return _least(fcl, job, places(folder))
+        return least_distance(fcl, job, sample_joints(folder))
 
 
 @dataclass(frozen=True)
-class Piece:
-    """A convex solid of the library, where it is in the frame of what it belongs to, and the radius of a ball about it."""
+class Solid:
+    """A convex solid of the library, its pose in the frame of its link, and its bounding radius."""
 
     solid: Any
     pose: Array
     radius: float
 
 
-def _least(fcl: Any, job: Moving, joints: Array) -> float:
-    """The least distance in mm with joints (k, axes) between what is kept apart."""
+def least_distance(fcl: Any, job: MovingBodies, joints: Array) -> float:
+    """Return the least distance (mm) between the checked pairs for joint positions (k, axes)."""
     robot = machine.load(job.robot)
     links = [
         [_rod(fcl, rod) for rod in rods] for rods in external_links.robot_cylinders(robot.chain)
     ]
-    last, arm = len(links) - 1, KdlLinks(robot)
+    last_link, arm = len(links) - 1, KdlLinks(robot)
 
-    def of_links(q: Array) -> list[Array]:
-        return [frames.inverse(robot.base) @ arm.frame(q, number) for number in range(last + 1)]
+    def link_poses(q: Array) -> list[Array]:
+        return [
+            frames.inverse(robot.base) @ arm.frame(q, number) for number in range(last_link + 1)
+        ]
 
-    # of a robot those that no joint connects and no stop of one axis keeps apart
-    free = [
-        (one, other)
-        for one, other in combinations(range(last + 1), 2)
-        if other - one > 1 and (one, other) not in ((0, 2), (last - 2, last))
+    # robot links that no joint connects and no stop of one axis separates
+    candidates = [
+        (first, second)
+        for first, second in combinations(range(last_link + 1), 2)
+        if second - first > 1 and (first, second) not in ((0, 2), (last_link - 2, last_link))
     ]
-    pairs = _not_mostly_near(fcl, robot, links, of_links, free)
+    pairs = select_separable(fcl, robot, links, link_poses, candidates)
     things = list(links)
     if job.torch:
-        pairs += [(one, len(things)) for one in range(last - 1)]
+        pairs += [(first, len(things)) for first in range(last_link - 1)]
         things.append(
             [_box(fcl, size, np.add(low, 0.5 * np.array(size))) for low, size in job.torch]
         )
     if job.positioner is not None:
         bodies = _bodies(fcl, job.positioner[0])
         pairs += [
-            (link, len(things) + body) for link in range(1, last + 1) for body in range(len(bodies))
+            (link, len(things) + body)
+            for link in range(1, last_link + 1)
+            for body in range(len(bodies))
         ]
         things += bodies
     tool = frames.bryant([*job.tool[:3], *np.radians(job.tool[3:])])
 
-    def of_all(q: Array) -> list[Array]:
-        found = of_links(q)
-        found += [frames.inverse(robot.base) @ arm.frame(q) @ tool] if job.torch else []
-        return found + ([] if job.positioner is None else mechanism(*job.positioner, q[last:]))
+    def body_poses(q: Array) -> list[Array]:
+        poses = link_poses(q)
+        poses += [frames.inverse(robot.base) @ arm.frame(q) @ tool] if job.torch else []
+        return poses + ([] if job.positioner is None else mechanism(*job.positioner, q[last_link:]))
 
-    least = np.inf
+    distance = np.inf
     for q in joints:
-        at = of_all(q)
-        for one, other in pairs:
-            least = _apart(fcl, (things[one], at[one]), (things[other], at[other]), least)
-    return max(float(least), 0.0)
+        poses_of_bodies = body_poses(q)
+        for first, second in pairs:
+            distance = body_distance(
+                fcl,
+                (things[first], poses_of_bodies[first]),
+                (things[second], poses_of_bodies[second]),
+                distance,
+            )
+    return max(float(distance), 0.0)
 
 
-def _not_mostly_near(
+def select_separable(
     fcl: Any,
     robot: machine.Machine,
-    links: Sequence[Sequence[Piece]],
-    of_links: Callable[[Array], list[Array]],
+    links: Sequence[Sequence[Solid]],
+    link_poses: Callable[[Array], list[Array]],
     pairs: Sequence[tuple[int, int]],
 ) -> list[tuple[int, int]]:
-    """Of pairs of links those that are nearer than the clearance in no more than half of all positions."""
+    """Select the link pairs that are nearer than the clearance in at most half of all positions."""
     limits, axes = robot.limits(machine.MAKER), len(robot.axes)
     joints = np.random.default_rng(15).uniform(
         np.maximum(limits.lower, -np.pi), np.minimum(limits.upper, np.pi), (POSITIONS, axes)
     )
-    near = np.zeros(len(pairs))
+    near_count = np.zeros(len(pairs))
     for q in joints:
-        at = of_links(q)
-        near += [
-            _apart(fcl, (links[one], at[one]), (links[other], at[other]), CLEARANCE) < CLEARANCE
-            for one, other in pairs
+        poses = link_poses(q)
+        near_count += [
+            body_distance(
+                fcl, (links[first], poses[first]), (links[second], poses[second]), CLEARANCE
+            )
+            < CLEARANCE
+            for first, second in pairs
         ]
-    return [pair for pair, share in zip(pairs, near / POSITIONS) if share <= 0.5]
+    return [pair for pair, share in zip(pairs, near_count / POSITIONS) if share <= 0.5]
 
 
-def _apart(
-    fcl: Any, one: tuple[Sequence[Piece], Array], other: tuple[Sequence[Piece], Array], least: float
+def body_distance(
+    fcl: Any,
+    body: tuple[Sequence[Solid], Array],
+    peer_body: tuple[Sequence[Solid], Array],
+    limit: float,
 ) -> float:
-    """The distance in mm of two things, pieces and their frame, where it is less than another."""
-    for first in one[0]:
-        for second in other[0]:
-            here, there = one[1] @ first.pose, other[1] @ second.pose
-            if np.linalg.norm(here[:3, 3] - there[:3, 3]) - first.radius - second.radius < least:
+    """Return the distance (mm) between two bodies, each a list of solids with its pose, but at most
+    `limit`."""
+    for solid in body[0]:
+        for peer_solid in peer_body[0]:
+            pose, peer_pose = body[1] @ solid.pose, peer_body[1] @ peer_solid.pose
+            if (
+                np.linalg.norm(pose[:3, 3] - peer_pose[:3, 3]) - solid.radius - peer_solid.radius
+                < limit
+            ):
                 solids = [
-                    fcl.CollisionObject(piece.solid, fcl.Transform(at[:3, :3], at[:3, 3]))
-                    for piece, at in ((first, here), (second, there))
+                    fcl.CollisionObject(
+                        member.solid, fcl.Transform(member_pose[:3, :3], member_pose[:3, 3])
+                    )
+                    for member, member_pose in ((solid, pose), (peer_solid, peer_pose))
                 ]
-                least = min(
-                    least, fcl.distance(*solids, fcl.DistanceRequest(), fcl.DistanceResult())
+                limit = min(
+                    limit, fcl.distance(*solids, fcl.DistanceRequest(), fcl.DistanceResult())
                 )
-    return least
+    return limit
 
 
-def _rod(fcl: Any, rod: Any) -> Piece:
-    solid, turned, at = cylinder(fcl, rod)
-    return Piece(solid, frames.pose(turned, at), float(np.hypot(0.5 * rod.length, rod.radius)))
+def _rod(fcl: Any, rod: Any) -> Solid:
+    solid, turned, center = cylinder(fcl, rod)
+    return Solid(solid, frames.pose(turned, center), float(np.hypot(0.5 * rod.length, rod.radius)))
 
 
-def _box(fcl: Any, size: Sequence[float], middle: Array) -> Piece:
-    return Piece(fcl.Box(*size), frames.pose(np.eye(3), middle), 0.5 * float(np.linalg.norm(size)))
+def _box(fcl: Any, size: Sequence[float], middle: Array) -> Solid:
+    return Solid(fcl.Box(*size), frames.pose(np.eye(3), middle), 0.5 * float(np.linalg.norm(size)))
 
 
-def _bodies(fcl: Any, name: str) -> list[list[Piece]]:
-    """Of each link of a mechanism, the base first, the boxes and cylinders of its file."""
-    told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))["bodies"]
+def _bodies(fcl: Any, name: str) -> list[list[Solid]]:
+    """Read the boxes and cylinders of each link of a mechanism file, the base first."""
+    bodies = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))["bodies"]
     return [
-        [_of_file(fcl, piece) for piece in told.get(link, ())]
-        for link in ("base", *(link for link in told if link not in ("base", "source")))
+        [read_solid(fcl, shape) for shape in bodies.get(link, ())]
+        for link in ("base", *(link for link in bodies if link not in ("base", "source")))
     ]
 
 
-def _of_file(fcl: Any, piece: dict[str, Sequence[float]]) -> Piece:
+def read_solid(fcl: Any, shape: dict[str, Sequence[float]]) -> Solid:
     pose = frames.from_rpy(
-        piece.get("origin", (0.0,) * 3), np.radians(piece.get("rpy", (0.0,) * 3))
+        shape.get("origin", (0.0,) * 3), np.radians(shape.get("rpy", (0.0,) * 3))
     )
-    if "box" in piece:
-        return Piece(fcl.Box(*piece["box"]), pose, 0.5 * float(np.linalg.norm(piece["box"])))
-    diameter, length = piece["cylinder"]
-    return Piece(
+    if "box" in shape:
+        return Solid(fcl.Box(*shape["box"]), pose, 0.5 * float(np.linalg.norm(shape["box"])))
+    diameter, length = shape["cylinder"]
+    return Solid(
         fcl.Cylinder(0.5 * diameter, length), pose, 0.5 * float(np.hypot(diameter, length))
     )

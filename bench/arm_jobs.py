@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the benchmarks of `cell.arm_clearance` share: jobs carried out, places along what they write, and shapes of fcl."""
+"""Shared by the benchmarks of `cell.arm_clearance`: run a job, sample its saved path, and build
+shapes for python-fcl."""
 
 from __future__ import annotations
 
@@ -17,12 +18,12 @@ from freecad_am.core.types import Array
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = ROOT / "resources" / "examples" / "hemisphere.step"
-CLEARANCE = 10.0  # mm that are kept
-BETWEEN = 10  # places looked at from one row to the next, the row's own among them
+CLEARANCE = 10.0  # mm of clearance
+SAMPLES_PER_ROW = 10  # samples from one row to the next, including the row
 
 
-def carried_out(folder: Path, job: str) -> subprocess.CompletedProcess[str]:
-    """What `plan` says of a job, which writes into the folder's `out`."""
+def run_plan(folder: Path, job: str) -> subprocess.CompletedProcess[str]:
+    """Run `plan` on a job that writes into the folder's `out`."""
     (folder / "arm.yaml").write_text(job, encoding="utf-8")
     command = [
         str(ROOT / "freecad-am"),
@@ -40,8 +41,9 @@ def carried_out(folder: Path, job: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
 
 
-def places(folder: Path) -> Array:
-    """(k, axes) rad along a saved path, external axes after those of the robot: every row, and between it and the next."""
+def sample_joints(folder: Path) -> Array:
+    """Return joint positions (k, axes) in rad along a saved path, external axes after the robot's:
+    every row and samples between rows."""
     with open(folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as file:
         rows = [
             [
@@ -52,21 +54,22 @@ def places(folder: Path) -> Array:
             for row in csv.DictReader(file)
         ]
     joints = np.radians(rows)
-    shares = np.linspace(0.0, 1.0, BETWEEN, endpoint=False)[:, None, None]
+    shares = np.linspace(0.0, 1.0, SAMPLES_PER_ROW, endpoint=False)[:, None, None]
     return np.asarray((joints[:-1] + shares * np.diff(joints, axis=0)).reshape(-1, joints.shape[1]))
 
 
 def cylinder(fcl: Any, rod: Cylinder) -> tuple[Any, Array, Array]:
-    """A rod as a cylinder of the library, and where it is in the frame of its link: its turn and its middle."""
+    """Convert a capsule to a cylinder of the library with its rotation and center in the frame of
+    its link."""
     axis = (rod.end - rod.start) / rod.length
-    one = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-    one /= np.linalg.norm(one)
-    turned = np.column_stack([one, np.cross(axis, one), axis])
-    return fcl.Cylinder(rod.radius, rod.length), turned, 0.5 * (rod.start + rod.end)
+    normal = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    normal /= np.linalg.norm(normal)
+    rotation = np.column_stack([normal, np.cross(axis, normal), axis])
+    return fcl.Cylinder(rod.radius, rod.length), rotation, 0.5 * (rod.start + rod.end)
 
 
 def box_text(low: Sequence[float], size: Sequence[float]) -> str:
-    """A box, its lower corner and its edges mm, as a text of STL."""
+    """Return a box, given by its lower corner and edge lengths (mm), as STL text."""
     corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * size + low
     faces = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
     lines = ["solid box"]
@@ -77,8 +80,9 @@ def box_text(low: Sequence[float], size: Sequence[float]) -> str:
     return "\n".join([*lines, "endsolid box", ""])
 
 
-def is_path(done: subprocess.CompletedProcess[str], clearance: str) -> bool:
-    """Whether a job gave the path asked for; one without a clearance may be infeasible because the arm is in something."""
-    if not clearance and done.returncode == 3:
-        return "error[ARM_COLLISION]" in done.stderr
-    return done.returncode == 0
+def is_path(process: subprocess.CompletedProcess[str], clearance: str) -> bool:
+    """Return whether a job gave the requested path; without a clearance an arm collision may make
+    it infeasible."""
+    if not clearance and process.returncode == 3:
+        return "error[ARM_COLLISION]" in process.stderr
+    return process.returncode == 0

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The Flexible Collision Library in place of our tree of obstacles: the peer of `bench collision`.
-
-It stands here and not in the workbench: a job has the same bytes on every machine, so that a library which is there on some
-and answers a little otherwise has no place in planning. A scene takes what answers `find_touching` and `distance` as `Obstacles`
-does, such as this. The library knows no frusta: a nozzle is a pyramid of SIDES sides within the round one, up to `off`
-smaller than it.
-"""
+"""The Flexible Collision Library as a replacement for our obstacle tree: the peer of `bench
+collision`. It belongs to the benchmark only. A job must give the same bytes on every machine, so
+planning cannot use a library that only some machines have and whose answers differ slightly. A
+scene accepts any object that answers `find_touching` and `distance` like `Obstacles`. The library
+has no frusta: a nozzle becomes an inscribed pyramid of SIDES sides, up to `max_difference` smaller."""
 
 from __future__ import annotations
 
@@ -24,8 +22,8 @@ SIDES = 64
 
 
 class FclObstacles:
-    """Answers `find_touching` and `distance` as `Obstacles` does of which it is made, but for beads of the layer being laid, which
-    count in full."""
+    """Answer `find_touching` and `distance` like the `Obstacles` it is built from, except that
+    beads of the current layer count in full."""
 
     def __init__(self, obstacles: Obstacles) -> None:
         count = len(obstacles.corners)
@@ -35,20 +33,20 @@ class FclObstacles:
         self._plain = bool(np.ptp(self._rounding) == 0.0 if count else True) and bool(
             (self._since == ALWAYS).all()
         )
-        # the library gives its objects back as others: what tells them apart is where each has its origin
-        places = obstacles.corners.mean(axis=1) + 1e-9 * np.arange(count)[:, None]
-        self._numbers = {place.tobytes(): k for k, place in enumerate(places)}
+        # the library returns its objects as new wrappers; their origins identify them
+        centers = obstacles.corners.mean(axis=1) + 1e-9 * np.arange(count)[:, None]
+        self._numbers = {center.tobytes(): k for k, center in enumerate(centers)}
         self._objects = [
-            fcl.CollisionObject(_geometry(corners - place), fcl.Transform(place))
-            for corners, place in zip(obstacles.corners, places)
+            fcl.CollisionObject(_geometry(corners - center), fcl.Transform(center))
+            for corners, center in zip(obstacles.corners, centers)
         ]
         self._manager = fcl.DynamicAABBTreeCollisionManager()
         self._manager.registerObjects(self._objects)
         self._manager.setup()
 
     @staticmethod
-    def off(solid: Frustum) -> float:
-        """How much smaller than the round solid the one that is looked at is at most, mm."""
+    def max_difference(solid: Frustum) -> float:
+        """Maximum difference (mm) between the round solid and the pyramid that replaces it."""
         return float((solid.radius + solid.slope * solid.high) * (1.0 - np.cos(np.pi / SIDES)))
 
     def find_touching(
@@ -59,16 +57,17 @@ class FclObstacles:
         moment: Index | None = None,
         layer_start: Index | None = None,
     ) -> Mask:
-        """(k,) whether solids with the tip (k, 3) and the unit axis (k, 3) meet an obstacle there before the moment (k,)."""
+        """Return (k,) whether solids with tip (k, 3) and unit axis (k, 3) touch an obstacle
+        deposited before the moment (k,)."""
         if not self._plain or self._all_round > 0.0:
-            near: Mask = self.distance(solid, tip, axis, moment) <= 0.0
-            return near
-        found = np.zeros(len(tip), dtype=bool)
+            touching: Mask = self.distance(solid, tip, axis, moment) <= 0.0
+            return touching
+        contacts = np.zeros(len(tip), dtype=bool)
         for k, moving in enumerate(self._moving(solid, tip, axis)):
             data = fcl.CollisionData()
             self._manager.collide(moving, data, fcl.defaultCollisionCallback)
-            found[k] = data.result.is_collision
-        return found
+            contacts[k] = data.result.is_collision
+        return contacts
 
     def distance(
         self,
@@ -78,42 +77,45 @@ class FclObstacles:
         moment: Index | None = None,
         reach: float = np.inf,
     ) -> Array:
-        """(k,) mm from solids to the nearest obstacle there before the moment (k,), 0 where they meet, at most `reach`."""
-        found = np.full(len(tip), reach)
+        """Return (k,) mm from solids to the nearest obstacle deposited before the moment (k,): 0 in
+        contact, at most `reach`."""
+        distances = np.full(len(tip), reach)
         for k, moving in enumerate(self._moving(solid, tip, axis)):
-            found[k] = min(self._least(moving, None if moment is None else int(moment[k])), reach)
-        return np.maximum(found, 0.0)
+            distances[k] = min(
+                self._least(moving, None if moment is None else int(moment[k])), reach
+            )
+        return np.maximum(distances, 0.0)
 
     @staticmethod
     def _moving(solid: Frustum, tip: Array, axis: Array) -> Iterator[Any]:
         nozzle = _pyramid(solid)
         turned = smallest_rotation(np.array([0.0, 0.0, 1.0]), axis)
-        for place, turn in zip(tip, turned):
-            yield fcl.CollisionObject(nozzle, fcl.Transform(turn, place))
+        for point, turn in zip(tip, turned):
+            yield fcl.CollisionObject(nozzle, fcl.Transform(turn, point))
 
     def _least(self, moving: Any, moment: int | None) -> float:
         if self._plain:
             data = fcl.DistanceData(request=fcl.DistanceRequest(enable_signed_distance=False))
             self._manager.distance(moving, data, fcl.defaultDistanceCallback)
             return float(data.result.min_distance) - self._all_round
-        least = np.inf
+        minimum = np.inf
 
-        def look(one: Any, other: Any, _: Any) -> tuple[bool, float]:
-            nonlocal least
-            number = self._number(one, other)
+        def look(first: Any, second: Any, _: Any) -> tuple[bool, float]:
+            nonlocal minimum
+            number = self._number(first, second)
             if moment is None or self._since[number] < moment:
-                away = fcl.distance(one, other, fcl.DistanceRequest(), fcl.DistanceResult())
-                least = min(least, max(away, 0.0) - self._rounding[number])
-            return least <= 0.0, least + self._all_round
+                gap = fcl.distance(first, second, fcl.DistanceRequest(), fcl.DistanceResult())
+                minimum = min(minimum, max(gap, 0.0) - self._rounding[number])
+            return minimum <= 0.0, minimum + self._all_round
 
         self._manager.distance(moving, None, look)
-        return float(least)
+        return float(minimum)
 
-    def _number(self, one: Any, other: Any) -> int:
-        """Which of the obstacles is one of two objects."""
-        number = self._numbers.get(np.asarray(one.getTranslation()).tobytes())
+    def _number(self, first: Any, second: Any) -> int:
+        """Return the index of the obstacle among two objects."""
+        number = self._numbers.get(np.asarray(first.getTranslation()).tobytes())
         return (
-            self._numbers[np.asarray(other.getTranslation()).tobytes()]
+            self._numbers[np.asarray(second.getTranslation()).tobytes()]
             if number is None
             else number
         )
@@ -123,7 +125,7 @@ def _geometry(corners: Array) -> Any:
     if len(corners) == 3:
         return fcl.Convex(
             corners, 2, np.array([3, 0, 1, 2, 3, 0, 2, 1])
-        )  # its triangles meet no convex solids
+        )  # its triangles do not touch convex solids
     if len(corners) == 4:
         return fcl.Convex(corners, 4, np.array([3, 0, 1, 3, 3, 0, 3, 2, 3, 0, 2, 1, 3, 1, 2, 3]))
     raise ValueError(
@@ -132,7 +134,7 @@ def _geometry(corners: Array) -> Any:
 
 
 def _pyramid(solid: Frustum) -> Any:
-    """The solid, its axis along Z and its tip in the origin."""
+    """Build the solid with its axis along Z and its tip at the origin."""
     if np.ndim(solid.low):
         raise ValueError("fcl takes one nozzle for all looks; use one height that is left out")
     turn = np.linspace(0.0, 2.0 * np.pi, SIDES, endpoint=False)
@@ -141,8 +143,10 @@ def _pyramid(solid: Frustum) -> Any:
         for height in (float(solid.low), solid.high)
         for radius in (solid.radius + solid.slope * height,)
     ]
-    here = np.arange(SIDES)
-    on = np.roll(here, -1)
-    sides = np.column_stack([np.full(SIDES, 4), here, on, on + SIDES, here + SIDES]).ravel()
-    ends = np.concatenate([[SIDES], here[::-1], [SIDES], here + SIDES])
+    corners = np.arange(SIDES)
+    next_corners = np.roll(corners, -1)
+    sides = np.column_stack(
+        [np.full(SIDES, 4), corners, next_corners, next_corners + SIDES, corners + SIDES]
+    ).ravel()
+    ends = np.concatenate([[SIDES], corners[::-1], [SIDES], corners + SIDES])
     return fcl.Convex(np.concatenate(rings), SIDES + 2, np.concatenate([sides, ends]))

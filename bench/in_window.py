@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs a measuring script in FreeCAD's window under Xvfb, and what such a script begins and ends with.
-
-The script is told by FRAMES_TO where to write what it finds, and by FRAMES_OF which checkout it measures.
-"""
+"""Run a measuring script in FreeCAD's window under Xvfb; helpers with which such a script starts
+and ends. FRAMES_TO tells the script where to write its results, FRAMES_OF which checkout to
+measure."""
 
 from __future__ import annotations
 
@@ -21,30 +20,31 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 
 
-def freecad() -> str | None:
-    """FreeCAD with a window, None where it or a screen for it is missing, which is told."""
-    found = shutil.which("freecad") or shutil.which("FreeCAD")
-    if not found or not shutil.which("xvfb-run"):
+def find_freecad() -> str | None:
+    """Return FreeCAD with a window, or None with a message if FreeCAD or xvfb-run is missing."""
+    program = shutil.which("freecad") or shutil.which("FreeCAD")
+    if not program or not shutil.which("xvfb-run"):
         print("bench: no freecad or no xvfb-run: frames are not measured", file=sys.stderr)
         return None
-    return found
+    return program
 
 
-def measured(program: str, script: Path, folder: Path, longest: int, **more: str) -> Any:
-    """What a script finds; `longest`: s it may take; `more`: of its environment."""
+def measure_in_window(program: str, script: Path, folder: Path, longest: int, **more: str) -> Any:
+    """Run a script and return its result; `longest` is its time limit (s), `more` extends its
+    environment."""
     sys.path.insert(0, str(ROOT))
     from tests.window import SCREEN, private_home
 
-    told = folder / "told.json"
+    result_file = folder / "told.json"
     path = os.pathsep.join([str(script.parent), *filter(None, [os.environ.get("PYTHONPATH")])])
     env = {
         **private_home(folder),
-        "FRAMES_TO": str(told),
+        "FRAMES_TO": str(result_file),
         "FRAMES_OF": str(ROOT),
         "PYTHONPATH": path,
         **more,
     }
-    # drawn as users have it: with the cube of views, and with as many threads as the processor has
+    # drawn as users see it: with the navigation cube and as many threads as the processor has
     for name in ("VIRTUAL_ENV", "BENCH_INSIDE", "LP_NUM_THREADS"):
         env.pop(name, None)
     preferences = folder / "user.cfg"
@@ -53,7 +53,7 @@ def measured(program: str, script: Path, folder: Path, longest: int, **more: str
         preferences.read_text(encoding="utf-8").replace(without, ""), encoding="utf-8"
     )
     window = ["xvfb-run", "-a", "-s", SCREEN, "timeout", "-k", "5", str(longest)]
-    done = subprocess.run(
+    process = subprocess.run(
         [*window, program, str(script)],
         env=env,
         stdin=subprocess.DEVNULL,
@@ -61,26 +61,26 @@ def measured(program: str, script: Path, folder: Path, longest: int, **more: str
         text=True,
         check=False,
     )
-    if not told.is_file():
-        print(done.stderr[-2000:], file=sys.stderr)
+    if not result_file.is_file():
+        print(process.stderr[-2000:], file=sys.stderr)
         raise AssertionError("no frames were measured")
-    return json.loads(told.read_text(encoding="utf-8"))
+    return json.loads(result_file.read_text(encoding="utf-8"))
 
 
-def found_by(script: Path, longest: int) -> Any:
-    """What a script that needs nothing else finds; an empty list without a window."""
-    program = freecad()
+def run_script(script: Path, longest: int) -> Any:
+    """Return the result of a script without further inputs; an empty list without a window."""
+    program = find_freecad()
     if program is None:
         return []
     with tempfile.TemporaryDirectory() as folder:
-        return measured(program, script, Path(folder), longest)
+        return measure_in_window(program, script, Path(folder), longest)
 
 
 # ---- in the window
 
 
 def settle(seconds: float) -> None:
-    """Let the window come to rest."""
+    """Process events until the window is idle."""
     import FreeCADGui as Gui
 
     end = time.perf_counter() + seconds
@@ -90,23 +90,23 @@ def settle(seconds: float) -> None:
 
 
 class Drawn:
-    """Tells when a view has drawn its scene, and counts it where what it is to show is there."""
+    """Detect when a view has drawn its scene, counting a drawing only if `there` returns true."""
 
     def __init__(self, view, there=lambda: True) -> None:
         from pivy import coin
 
         self.there, self.count = there, 0
         self.node, self.drawing = coin.SoCallback(), coin.SoGLRenderAction.getClassTypeId()
-        self.node.setCallback(self._seen)
+        self.node.setCallback(self._count_draw)
         view.getSceneGraph().addChild(self.node)
 
-    def _seen(self, _: object, action) -> None:
+    def _count_draw(self, _: object, action) -> None:
         self.count += (
             action.isOfType(self.drawing) and self.there()
-        )  # FreeCAD's own is derived from it
+        )  # FreeCAD's render action derives from it
 
     def after(self, act) -> float:
-        """ms from before the act until it is drawn."""
+        """Return ms from the start of an action until the view has drawn it."""
         import FreeCADGui as Gui
 
         start, count = time.perf_counter(), self.count
@@ -117,7 +117,8 @@ class Drawn:
 
 
 def begin(measure: Callable[[], Any]) -> None:
-    """Measure once the window is there, write what is found, end FreeCAD; nothing outside of FreeCAD."""
+    """Measure once the window exists, write the result and end FreeCAD; do nothing outside
+    FreeCAD."""
     if "FreeCAD" in sys.modules:
         from PySide import QtCore
 
@@ -128,9 +129,9 @@ def _go(measure: Callable[[], Any]) -> None:
     code = 1
     try:
         sys.path.insert(0, os.environ["FRAMES_OF"])
-        found = measure()
+        result = measure()
         with open(os.environ["FRAMES_TO"], "w", encoding="utf-8") as file:
-            json.dump(found, file)
+            json.dump(result, file)
         code = 0
     except BaseException:
         print(traceback.format_exc(), file=sys.__stderr__)

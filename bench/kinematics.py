@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Kinematics against eaik, ssik and PyKDL, each as a ratio measured in the same run.
-
-Peers take turns with ours, round by round, and medians are compared. One thread each. All answers are checked
-against each other before anything is timed.
-"""
+"""Kinematics against eaik, ssik and PyKDL, each as a ratio measured in the same run. Peers take
+turns with ours, round by round, and medians are compared; each uses one thread. All results are
+compared with each other before any is timed."""
 
 from __future__ import annotations
 
@@ -22,21 +20,21 @@ from freecad_am.core.kinematics.machines import machine
 from rows import Row
 from sizes import choose
 
-POSES, FEW, ROUNDS = choose((2000, 200, 15), (20, 4, 1))
+POSES, SEEDED_POSES, ROUNDS = choose((2000, 200, 15), (20, 4, 1))
 JUDGED_POSES = choose(10_000, 20)
 MACHINE = "fanuc-arcmate120ic"
 LENGTH = 1000.0
 METRES = np.ones((4, 4))
 METRES[:3, 3] = 1e-3
-# who judges which class of wrist, and how many poses
+# peer for each class of wrist, and the number of poses
 JUDGED = (
     ("eaik", "fanuc-arcmate120ic", JUDGED_POSES),
     ("eaik", "ur-ur10e", JUDGED_POSES),
     ("ssik", "fanuc-crx10ia", JUDGED_POSES),
     ("ssik", "motoman-hc10", JUDGED_POSES),
 )
-OF_SSIK = {"fanuc-crx10ia": "fanuc_crx10ia", "motoman-hc10": "hc10"}
-# machines, and us a pose
+SSIK_NAMES = {"fanuc-crx10ia": "fanuc_crx10ia", "motoman-hc10": "hc10"}
+# machines, and the allowed time (us per pose)
 OTHER_WRISTS = {
     "ur-ur10e": 2.0,
     "fanuc-crx10ia": 60.0,
@@ -47,26 +45,27 @@ OTHER_WRISTS = {
 
 
 def run() -> list[Row]:
-    """All comparisons of this file."""
+    """Return all comparisons of this file."""
     arm = machine.load(MACHINE)
     rng = np.random.default_rng(1)
-    # the bent, reachable middle of the work space, where every solver answers
+    # the well-conditioned middle of the workspace, where every solver has a solution
     q = rng.uniform((-1.5, -0.5, -0.5, -2, 0.3, -2), (1.5, 0.8, 0.8, 2, 1.8, 2), (POSES, 6))
     poses = arm.chain.forward(q)
     return [
         _all_branches(arm, poses),
         *_other_wrists(),
-        *_found_by_peers(),
+        *compare_solutions(),
         *_one_branch(arm, q, poses),
         _condition(arm, q, poses),
     ]
 
 
 def has_avx512() -> bool:
-    """Whether numpy's loops use AVX-512 on this processor: without it the arc tangents are slower."""
+    """Return whether numpy's loops use AVX-512 on this processor; without it arc tangents are
+    slower."""
     core = getattr(np, "_core", None) or np.core
-    found = core._multiarray_umath.__cpu_features__
-    return bool(found.get("AVX512_SKX") or found.get("X86_V4"))
+    features = core._multiarray_umath.__cpu_features__
+    return bool(features.get("AVX512_SKX") or features.get("X86_V4"))
 
 
 def _all_branches(arm: machine.Machine, poses: np.ndarray) -> Row:
@@ -82,49 +81,52 @@ def _all_branches(arm: machine.Machine, poses: np.ndarray) -> Row:
         return Row(
             f"{name}: peer not installed", 1e6 * _time(ours) / POSES, None, "us/pose", required
         )
-    robot, given = _of_eaik(HomogeneousRobot, arm), list(poses * METRES)
+    robot, metric_poses = eaik_robot(HomogeneousRobot, arm), list(poses * METRES)
     closed = arm.opw.inverse(poses[:50])
-    for index, answer in enumerate(robot.IK_batched(given[:50], 1)):
-        for found in np.asarray(answer.Q)[~np.asarray(answer.is_LS, bool)]:
-            off = np.abs(np.exp(1j * found) - np.exp(1j * closed[:, index])).max(axis=1)
-            if not np.nanmin(off) < 1e-6:
+    for index, answer in enumerate(robot.IK_batched(metric_poses[:50], 1)):
+        for solution in np.asarray(answer.Q)[~np.asarray(answer.is_LS, bool)]:
+            difference = np.abs(np.exp(1j * solution) - np.exp(1j * closed[:, index])).max(axis=1)
+            if not np.nanmin(difference) < 1e-6:
                 raise AssertionError(f"eaik and the closed form differ at pose {index}")
-    return _row(name, ours, lambda: robot.IK_batched(given, 1), POSES, POSES, required)
+    return _row(name, ours, lambda: robot.IK_batched(metric_poses, 1), POSES, POSES, required)
 
 
-def _of_eaik(made: Callable[[np.ndarray], object], arm: machine.Machine) -> object:
-    """The robot as eaik has it, in metres, which its tolerances are made for."""
+def eaik_robot(robot_class: Callable[[np.ndarray], object], arm: machine.Machine) -> object:
+    """Build the robot for eaik in metres, the unit of its tolerances."""
     zero = arm.chain.frames(np.zeros(6))
     upright = frames.pose(frames.smallest_rotation((0.0, 0.0, 1.0), zero.directions), zero.origins)
-    return made(np.concatenate((upright, zero.flange[None])) * METRES)
+    return robot_class(np.concatenate((upright, zero.flange[None])) * METRES)
 
 
-def _found_by_peers() -> list[Row]:
-    """Whether each solution that eaik or ssik finds of random poses is found, joints over a whole turn, and what it costs;
-    AssertionError where one is not."""
+def compare_solutions() -> list[Row]:
+    """Compare the solutions of eaik and ssik for random poses with ours, joints over a whole turn,
+    and the times.
+
+    Raise AssertionError where a solution of the peer is missing.
+    """
     rows = []
     for peer, name, count in JUDGED:
         arm = machine.load(name)
         poses = arm.chain.forward(np.random.default_rng(14).uniform(-np.pi, np.pi, (count, 6)))
         title = f"inverse, every solution of {name} that {peer} finds of {count} poses, against it"
-        ours, took = _timed(partial(arm.arm.inverse, poses))
+        ours, took = time_once(partial(arm.arm.inverse, poses))
         solve = {"eaik": _eaik_solver, "ssik": _ssik_solver}[peer](arm)
         if solve is None:
             rows.append(
                 Row(f"{title}: peer not installed", 1e6 * took / count, None, "us/pose", 1.0)
             )
             continue
-        theirs, of_peer = _timed(partial(solve, poses))
-        for index, found in enumerate(theirs):
-            off = (
-                np.abs(arm.chain.forward(found) - poses[index]).max(axis=(1, 2))
-                if len(found)
+        theirs, peer_took = time_once(partial(solve, poses))
+        for index, solutions in enumerate(theirs):
+            pose_error = (
+                np.abs(arm.chain.forward(solutions) - poses[index]).max(axis=(1, 2))
+                if len(solutions)
                 else np.zeros(0)
             )
-            mine = ours[:, index][np.isfinite(ours[:, index]).all(axis=1)]
-            for angles in found[off < 1e-3]:
+            own_solutions = ours[:, index][np.isfinite(ours[:, index]).all(axis=1)]
+            for angles in solutions[pose_error < 1e-3]:
                 if (
-                    not np.abs(np.exp(1j * angles) - np.exp(1j * mine))
+                    not np.abs(np.exp(1j * angles) - np.exp(1j * own_solutions))
                     .max(axis=1, initial=0.0)
                     .min(initial=9.0)
                     < 1e-3
@@ -132,7 +134,7 @@ def _found_by_peers() -> list[Row]:
                     raise AssertionError(
                         f"{name}: {peer} finds {np.degrees(angles)} at pose {index}, and we do not"
                     )
-        rows.append(Row(title, 1e6 * took / count, 1e6 * of_peer / count, "us/pose", 1.0))
+        rows.append(Row(title, 1e6 * took / count, 1e6 * peer_took / count, "us/pose", 1.0))
     return rows
 
 
@@ -141,7 +143,7 @@ def _eaik_solver(arm: machine.Machine) -> Callable[[np.ndarray], list[np.ndarray
         from eaik.IK_Homogeneous import HomogeneousRobot
     except ImportError:
         return None
-    robot = _of_eaik(HomogeneousRobot, arm)
+    robot = eaik_robot(HomogeneousRobot, arm)
 
     def solve(poses: np.ndarray) -> list[np.ndarray]:
         answers = robot.IK_batched(list(poses * METRES), 1)
@@ -154,54 +156,58 @@ def _eaik_solver(arm: machine.Machine) -> Callable[[np.ndarray], list[np.ndarray
 
 
 def _ssik_solver(arm: machine.Machine) -> Callable[[np.ndarray], list[np.ndarray]] | None:
-    """Of one of its own arms, whose joints count as ours; its flange is another, which is found with all joints at zero."""
+    """Return a solver for one of ssik's arms with joints as ours; the flange offset comes from the
+    zero position."""
     try:
         import ssik
     except ImportError:
         return None
-    robot, unit = ssik.Manipulator.from_prebuilt(OF_SSIK[arm.id]), METRES
+    robot, unit = ssik.Manipulator.from_prebuilt(SSIK_NAMES[arm.id]), METRES
 
-    def at(q: np.ndarray) -> np.ndarray:
+    def peer_pose(q: np.ndarray) -> np.ndarray:
         return np.array(robot.fk(q)) / unit
 
-    to_peer = np.linalg.inv(arm.chain.forward(np.zeros((1, 6)))[0]) @ at(np.zeros(6))
+    to_peer = np.linalg.inv(arm.chain.forward(np.zeros((1, 6)))[0]) @ peer_pose(np.zeros(6))
     if (
-        not np.abs(arm.chain.forward(np.full((1, 6), 0.7))[0] @ to_peer - at(np.full(6, 0.7))).max()
+        not np.abs(
+            arm.chain.forward(np.full((1, 6), 0.7))[0] @ to_peer - peer_pose(np.full(6, 0.7))
+        ).max()
         < 1e-6
     ):
         raise AssertionError(f"{arm.id} is another arm in ssik")
 
     def solve(poses: np.ndarray) -> list[np.ndarray]:
         return [
-            np.array([one.q for one in robot.solve(pose @ to_peer * unit)]).reshape(-1, 6)
+            np.array([solution.q for solution in robot.solve(pose @ to_peer * unit)]).reshape(-1, 6)
             for pose in poses
         ]
 
     return solve
 
 
-def _timed(work: Callable[[], np.ndarray]) -> tuple[np.ndarray, float]:
-    """What comes of work, and the seconds it takes."""
+def time_once(work: Callable[[], np.ndarray]) -> tuple[np.ndarray, float]:
+    """Return the result of `work` and the seconds it takes."""
     start = perf_counter()
     return work(), perf_counter() - start
 
 
 def _other_wrists() -> list[Row]:
-    """All solutions of arms without a spherical wrist, against what is asked for in us a pose."""
+    """Time all solutions of arms without a spherical wrist against the allowed time (us per
+    pose)."""
     rows = []
-    for name, wanted in OTHER_WRISTS.items():
+    for name, limit_us in OTHER_WRISTS.items():
         arm = machine.load(name)
         q = np.random.default_rng(3).uniform(-np.pi, np.pi, (POSES, 6))
         poses = arm.chain.forward(q)
-        found = arm.arm.inverse(poses)
+        solutions = arm.arm.inverse(poses)
         if (
-            not np.nanmin(np.abs(np.exp(1j * found) - np.exp(1j * q)).max(axis=2), axis=0).max()
+            not np.nanmin(np.abs(np.exp(1j * solutions) - np.exp(1j * q)).max(axis=2), axis=0).max()
             < 1e-4
         ):
             raise AssertionError(f"{name}: the joint angles of a pose are not among its solutions")
         took = 1e6 * median(_time(partial(arm.arm.inverse, poses)) for _ in range(ROUNDS)) / POSES
-        title = f"inverse, all solutions of {name}, batch of {POSES}, against {wanted:g} us"
-        rows.append(Row(title, took, wanted, "us/pose", 1.0))
+        title = f"inverse, all solutions of {name}, batch of {POSES}, against {limit_us:g} us"
+        rows.append(Row(title, took, limit_us, "us/pose", 1.0))
     return rows
 
 
@@ -223,17 +229,26 @@ def _one_branch(arm: machine.Machine, q: np.ndarray, poses: np.ndarray) -> list[
             )
         ]
     second = kdl.KdlArm(arm)
-    seeds = q[:FEW] + np.random.default_rng(2).uniform(-1, 1, (FEW, 6)) * np.radians(2.0)
+    seeds = q[:SEEDED_POSES] + np.random.default_rng(2).uniform(
+        -1, 1, (SEEDED_POSES, 6)
+    ) * np.radians(2.0)
     rows = []
     for solver in kdl.SOLVERS:
-        found = second.inverse(poses[:FEW], seeds, solver, 1e-5)
-        # a numeric solver may end in another branch, but at the pose
-        off = np.abs(arm.chain.forward(found) - poses[:FEW]).max(axis=(1, 2))
-        if not np.mean(off < 1e-2) > 0.95:
+        solutions = second.inverse(poses[:SEEDED_POSES], seeds, solver, 1e-5)
+        # a numeric solver may return another configuration, but must reach the pose
+        pose_error = np.abs(arm.chain.forward(solutions) - poses[:SEEDED_POSES]).max(axis=(1, 2))
+        if not np.mean(pose_error < 1e-2) > 0.95:
             raise AssertionError(f"PyKDL's {solver} does not find the poses")
-        peer = _kdl_calls(second, solver, poses[:FEW], seeds)
+        peer = _kdl_calls(second, solver, poses[:SEEDED_POSES], seeds)
         rows.append(
-            _row(f"{name} {solver.upper()} seeded within 2 deg", ours, peer, POSES, FEW, 100.0)
+            _row(
+                f"{name} {solver.upper()} seeded within 2 deg",
+                ours,
+                peer,
+                POSES,
+                SEEDED_POSES,
+                100.0,
+            )
         )
     return rows
 
@@ -241,16 +256,16 @@ def _one_branch(arm: machine.Machine, q: np.ndarray, poses: np.ndarray) -> list[
 def _kdl_calls(
     second: kdl.KdlArm, solver: str, poses: np.ndarray, seeds: np.ndarray
 ) -> Callable[[], object]:
-    """The bare calls: what goes into PyKDL is made beforehand."""
+    """Return the bare calls of PyKDL; its inputs are prepared beforehand."""
     solve = second.solver(solver, 1e-5)
     arguments = [
         (second.angles(seed), second.frame(pose)) for seed, pose in zip(seeds, poses, strict=True)
     ]
-    found = second.kdl.JntArray(6)
+    joints = second.kdl.JntArray(6)
 
     def call() -> None:
         for seed, pose in arguments:
-            solve.CartToJnt(seed, pose, found)
+            solve.CartToJnt(seed, pose, joints)
 
     return call
 
@@ -275,21 +290,21 @@ def _row(
     peer_count: int,
     required: float,
 ) -> Row:
-    """Both timed in turns."""
+    """Time both in turns."""
     for function in (ours, peer):
         function()
     times = [(_time(ours), _time(peer)) for _ in range(ROUNDS)]
-    own = 1e6 * median(time for time, _ in times) / count
-    other = 1e6 * median(time for _, time in times) / peer_count
-    return Row(name, own, other, "us/pose", required)
+    own_us = 1e6 * median(time for time, _ in times) / count
+    peer_us = 1e6 * median(time for _, time in times) / peer_count
+    return Row(name, own_us, peer_us, "us/pose", required)
 
 
-def _time(function: Callable[[], object], least: float = choose(0.01, 0.0)) -> float:
-    """Seconds per call, over enough calls to last."""
+def _time(function: Callable[[], object], min_seconds: float = choose(0.01, 0.0)) -> float:
+    """Seconds per call, averaged over enough calls to last `least` seconds."""
     calls, start = 0, perf_counter()
     while True:
         function()
         calls += 1
         took = perf_counter() - start
-        if took > least:
+        if took > min_seconds:
             return took / calls

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A ladder graph, as Descartes plans, against `cell.arm_clearance` on the same points; and a certificate of a hemisphere.
-
-The peer is written here plainly and given what it needs: the joints of all rotations at all points at once by our
-closed form, our frames of links, and steps from rung to rung in one array each. At each point it asks python-fcl of
-each rotation that keeps limits and condition whether a link meets the wall or another link, of the pairs that we look
-at, all of them larger by half the clearance; the cheapest way up the ladder, bead by bead, is the exact one of its
-rotations. Ours is the whole joint path, at the same points, with the refinement and the last look that the peer has
-not.
-"""
+"""A ladder graph, the method of Descartes, against `cell.arm_clearance` on the same points; and a
+certificate of a hemisphere. The peer is written here plainly and receives the same inputs: joints
+of all rotations at all points from our closed form, our link frames, and steps from rung to rung as
+arrays. At each point it asks python-fcl, for each rotation within limits and conditioning, whether
+a link touches the wall or another link of our checked pairs, all enlarged by half the clearance.
+The cheapest way up the ladder, bead by bead, is the exact optimum of its rotations. Ours is the
+whole joint path at the same points, including the refinement and final check that the peer
+lacks."""
 
 from __future__ import annotations
 
@@ -43,7 +42,7 @@ from rows import Row
 from sizes import choose
 
 RADIUS, ROUNDS = 45.0, choose(3, 1)
-TURNS, CLEARANCE = choose(72, 36), 10.0  # rotations of a rung, mm
+TURNS, CLEARANCE = choose(72, 36), 10.0  # rotations of a rung; mm
 CERTIFIED = 10.0  # s
 LAYER_HEIGHT, LAYERS = choose((1.0, 71), (10.0, 8))  # of the certified hemisphere
 ROBOT, STATION, LEAN = "fanuc-arcmate120ic", (1000.0, 0.0, -100.0), 45.0
@@ -51,13 +50,13 @@ WALL_LOW, WALL = (-130.0, 104.0, 0.0), (260.0, 12.0, 420.0)
 
 
 def run() -> list[Row]:
-    """Both in turns on the same job, then the certificate."""
-    dome, cell = hemisphere(15.0, choose(0.2, 1.0), "fixed"), _beside_a_wall()
+    """Compare both in turns on the same job, then time the certificate."""
+    dome, cell = hemisphere(15.0, choose(0.2, 1.0), "fixed"), cell_with_wall()
     rods, task = (
         external_links.robot_cylinders(cell.robot.chain),
         Task(cell, cell.branch or 0, JointParameters()),
     )
-    found = []
+    rows = []
     times: list[tuple[float, float]] = []
     for _ in range(ROUNDS):
         began = time.perf_counter()
@@ -68,19 +67,19 @@ def run() -> list[Row]:
         cost = _ladder(dome, task, rods)
         times.append((ours, time.perf_counter() - began if cost is not None else np.nan))
     took, peer = (median(column) for column in zip(*times))
-    known = np.isfinite(peer)
-    found.append(
+    has_peer = np.isfinite(peer)
+    rows.append(
         Row(
             "joint path beside a wall with cell.arm_clearance, against a ladder graph of "
             f"{TURNS} rotations at the same {dome.point_count} points",
             took,
-            peer if known else None,
+            peer if has_peer else None,
             "s",
             10.0,
         )
     )
     if cost is not None:
-        found.append(
+        rows.append(
             Row(
                 "what that path costs (displacement), against the cheapest way up the ladder",
                 _cost(path),
@@ -89,20 +88,20 @@ def run() -> list[Row]:
                 0.98,
             )
         )
-    found.append(
+    rows.append(
         Row(
             f"joint path of the hemisphere of {LAYERS} layers with its certificate",
-            _certified(),
+            time_certificate(),
             CERTIFIED,
             "s",
             1.0,
         )
     )
-    return found
+    return rows
 
 
 def hemisphere(layer_height: float, chord_error: float, mode: str) -> Toolpath:
-    """The paper's hemisphere (Chalvin 2020, eq. 20)."""
+    """Return the paper's hemisphere (Chalvin 2020, eq. 20)."""
     meridian = sample_curve(
         lambda t: (np.c_[RADIUS * np.cos(t), RADIUS * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]),
         [0, np.pi / 2],
@@ -117,7 +116,7 @@ def hemisphere(layer_height: float, chord_error: float, mode: str) -> Toolpath:
     )
 
 
-def _beside_a_wall() -> Cell:
+def cell_with_wall() -> Cell:
     nozzle = NozzleParameters(
         length=60.0, tool=(120.0, 0.0, 200.0, 0.0, float(np.radians(LEAN)), 0.0)
     )
@@ -142,7 +141,7 @@ def _cost(path: JointPath) -> float:
     return sum(bead.objective for bead in path.beads)
 
 
-def _certified() -> float:
+def time_certificate() -> float:
     """Seconds of a joint path with its certificate."""
     dome, cell = (
         hemisphere(LAYER_HEIGHT, 0.02, "local"),
@@ -159,12 +158,12 @@ def _certified() -> float:
 
 
 def _ladder(toolpath: Toolpath, task: Task, rods: Any) -> float | None:
-    """What the cheapest ways up the ladders of all beads cost, rad; None without python-fcl."""
+    """Cost of the cheapest ways up the ladders of all beads (rad); None without python-fcl."""
     try:
         import fcl
     except ImportError:
         return None
-    looks, total = _Looks(fcl, task.cell, rods), 0.0
+    looks, total = CollisionChecks(fcl, task.cell, rods), 0.0
     phi = np.arange(TURNS)[:, None] * (TURN / TURNS)
     for _, _, bead in toolpath:
         points = gather([bead], task.cell)
@@ -185,8 +184,9 @@ def _ladder(toolpath: Toolpath, task: Task, rods: Any) -> float | None:
     return total
 
 
-class _Looks:
-    """Links as cylinders of python-fcl, each larger by the clearance, against the wall, and pairs of links of each other."""
+class CollisionChecks:
+    """Links as python-fcl cylinders enlarged by the clearance, checked against the wall and in
+    pairs against each other."""
 
     def __init__(self, fcl: Any, cell: Cell, rods: Any) -> None:
         self.fcl, self.cell = fcl, cell
@@ -195,36 +195,41 @@ class _Looks:
             @ frames.pose(np.eye(3), np.add(WALL_LOW, 0.5 * np.array(WALL)) + STATION)
         )[:3, 3]
         self.wall = fcl.CollisionObject(fcl.Box(*np.add(WALL, CLEARANCE)), fcl.Transform(middle))
-        self.cylinders = [[_cylinder(fcl, rod) for rod in link] for link in rods]
+        self.cylinders = [[_cylinder(fcl, capsule) for capsule in link] for link in rods]
         self.pairs = ArmContact(cell, rods, (), None, CLEARANCE).own_links.pairs
         self.request, self.result = fcl.CollisionRequest(), fcl.CollisionResult
 
     def meet(self, q: np.ndarray) -> bool:
-        """Whether anything is met with joints (axes,)."""
+        """Return whether joint positions (axes,) collide."""
         poses = self.cell.links(q[None])[0]
         for number, link in enumerate(self.cylinders):
-            for one, turned, at in link:
+            for solid, rotation, center in link:
                 pose = poses[number]
-                one.setTransform(
-                    self.fcl.Transform(pose[:3, :3] @ turned, pose[:3, :3] @ at + pose[:3, 3])
+                solid.setTransform(
+                    self.fcl.Transform(pose[:3, :3] @ rotation, pose[:3, :3] @ center + pose[:3, 3])
                 )
-                if number and self.fcl.collide(one, self.wall, self.request, self.result()):
+                if number and self.fcl.collide(solid, self.wall, self.request, self.result()):
                     return True
         return any(
-            self.fcl.collide(one, other, self.request, self.result())
+            self.fcl.collide(solid, peer, self.request, self.result())
             for outer, inner in self.pairs
-            for one, _, _ in self.cylinders[outer]
-            for other, _, _ in self.cylinders[inner]
+            for solid, _, _ in self.cylinders[outer]
+            for peer, _, _ in self.cylinders[inner]
         )
 
 
 def _cylinder(fcl: Any, rod: Any) -> tuple[Any, np.ndarray, np.ndarray]:
-    """A cylinder larger by half the clearance, and how it lies in the frame of its link."""
+    """Return a cylinder enlarged by half the clearance with its rotation and center in the frame of
+    its link."""
     axis = (rod.end - rod.start) / rod.length
-    one = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
-    one /= np.linalg.norm(one)
-    more = 0.5 * CLEARANCE
+    normal = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
+    normal /= np.linalg.norm(normal)
+    margin = 0.5 * CLEARANCE
     cylinder = fcl.CollisionObject(
-        fcl.Cylinder(rod.radius + more, rod.length + 2.0 * more), fcl.Transform()
+        fcl.Cylinder(rod.radius + margin, rod.length + 2.0 * margin), fcl.Transform()
     )
-    return cylinder, np.column_stack([one, np.cross(axis, one), axis]), 0.5 * (rod.start + rod.end)
+    return (
+        cylinder,
+        np.column_stack([normal, np.cross(axis, normal), axis]),
+        0.5 * (rod.start + rod.end),
+    )

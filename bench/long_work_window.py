@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Measures long work inside FreeCAD's window; run by `long_work`, which says by FRAMES_TO where to write what is found."""
+"""Measure long work inside FreeCAD's window; run by `long_work`, which sets FRAMES_TO to the file
+for the results."""
 
 from __future__ import annotations
 
@@ -13,12 +14,12 @@ from sizes import choose
 
 TICK = 10  # ms
 WAIT = 0.3  # s from the dialog to Cancel
-COARSE = {"layer_height": 15.0, "chord_error": 0.5}  # of a joint path at the smallest size
-LOOKED = 60.0  # s that a preview is watched for at most
+COARSE = {"layer_height": 15.0, "chord_error": 0.5}  # for a joint path at the smallest size
+MAX_PREVIEW_S = 60.0  # s, maximum time to watch a preview
 
 
 class Pauses:
-    """The longest time, s, between two turns of a timer that is due all the time."""
+    """The longest time (s) between two ticks of a timer that is always due."""
 
     def __init__(self) -> None:
         from PySide import QtCore
@@ -34,8 +35,8 @@ class Pauses:
         self.longest, self.last = max(self.longest, now - self.last), now
 
 
-def cancelled(job) -> dict[str, float]:
-    """Until Cancel has ended the work, and the longest pause of the window until then; s."""
+def measure_cancel(job) -> dict[str, float]:
+    """Seconds until Cancel has ended the work, and the longest pause of the window until then."""
     import FreeCADGui as Gui
     from PySide import QtCore, QtGui
 
@@ -45,7 +46,7 @@ def cancelled(job) -> dict[str, float]:
 
     pressed: list[float] = []
 
-    def shown():
+    def visible_dialogs():
         return [
             dialog
             for dialog in Gui.getMainWindow().findChildren(QtGui.QDialog, busy.NAME)
@@ -54,10 +55,10 @@ def cancelled(job) -> dict[str, float]:
 
     def press() -> None:
         pressed.append(time.perf_counter())
-        shown()[0].findChild(QtGui.QAbstractButton, "cancel").click()
+        visible_dialogs()[0].findChild(QtGui.QAbstractButton, "cancel").click()
 
     def look() -> None:
-        if shown():
+        if visible_dialogs():
             timer.stop()
             QtCore.QTimer.singleShot(int(1e3 * WAIT), press)
 
@@ -77,21 +78,21 @@ def cancelled(job) -> dict[str, float]:
     return {"cancel": took, "pause": pauses.longest}
 
 
-def previewed(open_panel, words: str) -> float:
-    """The longest pause, s, while a panel that is opened shows what OK would make, until it tells these words, and again
-    after something else is entered."""
+def measure_preview(open_panel, words: str) -> float:
+    """The longest pause (s) while an opened panel computes its preview, until it shows these words,
+    and again after another entry."""
     import FreeCADGui as Gui
     from PySide import QtGui
 
     open_panel()
-    settle(0.1)  # the panel itself is there
+    settle(0.1)  # the panel itself is open
     pauses = Pauses()
     for entered in (False, True):
         state = Gui.getMainWindow().findChild(QtGui.QLabel, "preview")
         if entered:
             enter_another()
             settle(1.0)
-        end = time.perf_counter() + LOOKED
+        end = time.perf_counter() + MAX_PREVIEW_S
         while words not in state.text() and time.perf_counter() < end:
             settle(0.05)
         assert words in state.text(), state.text()
@@ -102,7 +103,7 @@ def previewed(open_panel, words: str) -> float:
 
 
 def enter_another() -> None:
-    """Change a figure in the panel that is open, whichever of those in it is found first."""
+    """Change the first known value in the open panel."""
     import FreeCADGui as Gui
     from PySide import QtGui
 
@@ -113,7 +114,9 @@ def enter_another() -> None:
         ("ProgramName", "OTHER"),
     ):
         fields = [
-            one for one in Gui.getMainWindow().findChildren(QtGui.QWidget, name) if one.isVisible()
+            widget
+            for widget in Gui.getMainWindow().findChildren(QtGui.QWidget, name)
+            if widget.isVisible()
         ]
         if fields:
             line = (
@@ -126,8 +129,9 @@ def enter_another() -> None:
     raise AssertionError("no field is known")
 
 
-def of_panels() -> list[dict[str, object]]:
-    """Of the panels of a cell and of a joint path with 120,000 points, and of a program with 25,000."""
+def measure_panels() -> list[dict[str, object]]:
+    """Measure the panels of a cell and a joint path with 120,000 points, and of a program with
+    25,000."""
     import FreeCAD as App
 
     from freecad_am import api
@@ -139,14 +143,16 @@ def of_panels() -> list[dict[str, object]]:
 
     job = joints(Path(os.environ["FRAMES_OF"]), **choose({}, COARSE))
     settle(1.0)
-    found = [
+    results = [
         {
             "job": "cell",
-            "preview": previewed(lambda: show(CellPanel(job.inputs["cell"])), "nozzle upright"),
+            "preview": measure_preview(
+                lambda: show(CellPanel(job.inputs["cell"])), "nozzle upright"
+            ),
         },
         {
             "job": "joint path",
-            "preview": previewed(lambda: show(JointPathPanel()), "rapids"),
+            "preview": measure_preview(lambda: show(JointPathPanel()), "rapids"),
         },
     ]
     App.closeDocument(job.document.Name)
@@ -157,33 +163,36 @@ def of_panels() -> list[dict[str, object]]:
     )
     api.make_joint_path(document, toolpath, cell)
     settle(1.0)
-    found.append(
-        {"job": "program", "preview": previewed(lambda: show(ProgramPanel()), "Begins with")}
+    results.append(
+        {"job": "program", "preview": measure_preview(lambda: show(ProgramPanel()), "Begins with")}
     )
     App.closeDocument(document.Name)
-    return found
+    return results
 
 
-def all_of_them() -> list[dict[str, object]]:
-    """Of every job."""
+def measure_all() -> list[dict[str, object]]:
+    """Measure every job."""
     import FreeCAD as App
 
     from freecad_am.gui import registry
     from tests.gui.long_jobs import JOBS, PREVIEWED
 
-    found = []
+    results = []
     jobs, previewed_jobs = choose((JOBS, PREVIEWED), (JOBS[:1], PREVIEWED[1:2]))
     for make in dict.fromkeys((*jobs, *previewed_jobs)):
         job = make(Path(os.environ["FRAMES_OF"]))
         settle(1.0)
-        one: dict[str, object] = {"job": make.__name__, **(cancelled(job) if make in jobs else {})}
+        result: dict[str, object] = {
+            "job": make.__name__,
+            **(measure_cancel(job) if make in jobs else {}),
+        }
         if make in previewed_jobs:
-            one["preview"] = previewed(
+            result["preview"] = measure_preview(
                 lambda feature=job.inputs["feature"]: registry.edit(feature), "irst layer"
             )
-        found.append(one)
+        results.append(result)
         App.closeDocument(job.document.Name)
-    return found + of_panels()
+    return results + measure_panels()
 
 
-begin(all_of_them)
+begin(measure_all)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How fast the machine is at a moment: one that is shared may take two or three times as long for minutes, and so does all
-that is held to seconds. Such rows tell what was used, and are judged by what that is on a quiet machine."""
+"""Speed of the machine at a moment: a shared machine may be two or three times slower for minutes,
+and so is every time measured on it. Rows against fixed seconds state the processor time used and
+are judged by the equivalent time on a quiet machine."""
 
 from __future__ import annotations
 
@@ -11,12 +12,13 @@ from typing import Self
 
 import numpy as np
 
-QUIET_MS = 2.24  # of the fixed piece of work, on the machine that the figures in the docs are of, with nothing else on it
+QUIET_MS = 2.24  # of the fixed workload on the machine used for the figures in the docs, without other load
 EVERY_S, ROUNDS = 0.5, 8
 
 
 def pace() -> float:
-    """ms of the processor that a fixed piece of work takes now, the least of some."""
+    """Return the ms of processor time that a fixed workload takes now, the least of several
+    rounds."""
     values, took = np.linspace(0.1, 1.0, 2000), []
     for _ in range(ROUNDS):
         start = time.thread_time()
@@ -27,7 +29,8 @@ def pace() -> float:
 
 
 class Watch:
-    """Takes the pace every half a second while it is entered, on whatever core is free: for work of other processes."""
+    """Sample the pace every half second while entered, on any free core: for work of other
+    processes."""
 
     def __enter__(self) -> Self:
         self._seen = [pace()]
@@ -46,9 +49,9 @@ class Watch:
 
     @property
     def pace(self) -> float:
-        """Its median so far, ms."""
+        """Return the median pace so far (ms)."""
         return median(self._seen)
 
     def quiet(self, seconds: float) -> float:
-        """What took `seconds` while it was watched, on a quiet machine."""
+        """Convert `seconds` measured during the watch to a quiet machine."""
         return seconds * QUIET_MS / self.pace

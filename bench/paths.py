@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The view of a path at 10,000, 100,000 and 300,000 points, and opening a saved job of 100,000 points.
-
-In FreeCAD's window under Xvfb, drawn by the processor (llvmpipe). Peer of the frames: a plain Coin SoLineSet of the same
-points and colours in the same window, in turns; a frame is the camera turned, or the slider moved, until it is drawn. Of
-opening until the path is drawn: the same document without results, in turns.
-A cylinder, whose layers are alike, and a dome, which repeats nothing.
-"""
+"""The view of a path at 10,000, 100,000 and 300,000 points, and opening a saved job of 100,000
+points. It runs in FreeCAD's window under Xvfb, drawn by the processor (llvmpipe). Peer of the
+frames: a plain Coin SoLineSet of the same points and colours in the same window, in turns; a frame
+lasts from turning the camera or moving the slider until it is drawn. Peer of opening until the path
+is drawn: the same document without results, in turns. The shapes are a cylinder with identical
+layers and a dome without repetition."""
 
 from __future__ import annotations
 
@@ -22,9 +21,9 @@ from sizes import choose
 
 ROOT = Path(__file__).resolve().parent.parent
 SCRIPT = Path(__file__).resolve().parent / "path_frames.py"
-LONGEST = 600  # s
-OPENED = 0.5  # of the time with results, that without
-# a frame of ours has the legend too; tubes have some hundred thousand triangles
+TIME_LIMIT_S = 600  # s
+OPENING_RATIO = 0.5  # time to open without results, as a share of the time with results
+# our frame includes the legend; tubes have some hundred thousand triangles
 REQUIRED = {"lines": 0.6, "slider": 0.5, "tubes": 0.12, "slider, tubes": 0.12}
 JOB = """import sys
 sys.path.insert(0, {root!r})
@@ -43,7 +42,7 @@ if joint_path.Status == "up to date":
 document.saveAs({saved!r})
 """
 LAYER_HEIGHT, POINTS_OF_A_TURN = choose((1.0, 1420), (15.0, 60))
-# the dome is past a limit at some points, and has a joint path all the same
+# the dome exceeds a limit at some points but still has a joint path
 SHAPES = {
     "cylinder": "Part.makeCylinder(45, 70)",
     "dome": "Part.makeSphere(45, App.Vector(), App.Vector(0, 0, 1), 0, 90)",
@@ -51,8 +50,8 @@ SHAPES = {
 
 
 def run() -> list[Row]:
-    """Frames for every number of points, then opening."""
-    freecad = in_window.freecad()
+    """Return frames for every number of points, then openings."""
+    freecad = in_window.find_freecad()
     if freecad is None:
         return []
     with tempfile.TemporaryDirectory() as folder:
@@ -79,20 +78,20 @@ def run() -> list[Row]:
                 env=plain,
                 stdin=subprocess.DEVNULL,
             )
-        found = in_window.measured(
-            freecad, SCRIPT, Path(folder), LONGEST, FRAMES_JOBS=json.dumps(jobs)
+        results = in_window.measure_in_window(
+            freecad, SCRIPT, Path(folder), TIME_LIMIT_S, FRAMES_JOBS=json.dumps(jobs)
         )
     rows = [
         Row(
-            f"frame of {one['points']:,} points, {one['what']}; one SoLineSet",
-            one["ours"],
-            one["peer"],
+            f"frame of {frame['points']:,} points, {frame['what']}; one SoLineSet",
+            frame["ours"],
+            frame["peer"],
             "ms",
-            REQUIRED[one["what"]],
+            REQUIRED[frame["what"]],
         )
-        for one in found["frames"]
+        for frame in results["frames"]
     ]
-    for name, took in found["openings"].items():
+    for name, took in results["openings"].items():
         what = f"opening a {name} of {took['points']:,} points until its path is drawn; the same without results"
-        rows.append(Row(what, took["with"], took["without"], "s", OPENED))
+        rows.append(Row(what, took["with"], took["without"], "s", OPENING_RATIO))
     return rows

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The optimisation of the paper's sphere with 5 mm layers, limits of the paper, condition 0.15 or more (1,000 mm).
-
-Peers: the same search done pose by pose with PyKDL's fastest seeded solver, seeded within 2 deg of the answer; and scipy's
-SLSQP per layer from one start, with finite differences, on our own kinematics.
-"""
+"""Optimisation of the paper's sphere with 5 mm layers, the paper's limits and an inverse condition
+number of at least 0.15 (1,000 mm). Peers: the same search pose by pose with PyKDL's fastest seeded
+solver, seeded within 2 deg of the solution; and scipy's SLSQP per layer from one start, with finite
+differences, on our own kinematics."""
 
 from __future__ import annotations
 
 from statistics import median
 
 import numpy as np
-from pose_by_pose import pose_by_pose, took
+from pose_by_pose import pose_by_pose, time_call
 from scipy.optimize import minimize
 
 from freecad_am import kdl
@@ -35,12 +34,12 @@ from whole import EXAMPLE
 
 ROUNDS, LAYER_HEIGHT = choose((5, 5.0), (1, 15.0))
 PARAMETERS = JointParameters(min_condition=0.15, characteristic_length=1000.0)
-# the peer's candidates are taken one in so many, evenly, and the time multiplied
-SAMPLED = choose(8, 640)
+# the peer evaluates every n-th candidate, and its time is multiplied by n
+SAMPLE_STEP = choose(8, 640)
 
 
 def run() -> list[Row]:
-    """Both comparisons; a layer that is not feasible is an error."""
+    """Return both comparisons; an infeasible layer is an error."""
     wall = revolution.find_wall(read.read_shape(str(EXAMPLE)))
     cell_parameters = CellParameters(limits="paper")
     toolpath = strategy.plan(
@@ -62,17 +61,17 @@ def run() -> list[Row]:
     single = _single_start(task, beads)
     peers = {
         "SLSQP": single,
-        **({"PyKDL": pose_by_pose(task, beads, SAMPLED)} if kdl.available() else {}),
+        **({"PyKDL": pose_by_pose(task, beads, SAMPLE_STEP)} if kdl.available() else {}),
     }
     ours()
     times: dict[str, list[float]] = {"ours": [], **{name: [] for name in peers}}
     for number in range(ROUNDS):
-        times["ours"].append(took(ours))
+        times["ours"].append(time_call(ours))
         for name, peer in peers.items():
             if number < 2 or name != "PyKDL":
-                times[name].append(took(peer) * (SAMPLED if name == "PyKDL" else 1))
+                times[name].append(time_call(peer) * (SAMPLE_STEP if name == "PyKDL" else 1))
     middle = {name: median(values) for name, values in times.items()}
-    lost = single()
+    infeasible = single()
     return [
         Row(
             f"optimised sphere, {len(beads)} layers, all feasible; the same search pose by pose with PyKDL's NR",
@@ -82,7 +81,7 @@ def run() -> list[Row]:
             20.0,
         ),
         Row(
-            f"the same; SLSQP from one start per layer, finite differences ({lost} of {len(beads)} layers lost)",
+            f"the same; SLSQP from one start per layer, finite differences ({infeasible} of {len(beads)} layers lost)",
             middle["ours"],
             middle["SLSQP"],
             "s",
@@ -92,7 +91,7 @@ def run() -> list[Row]:
 
 
 def _single_start(task: Task, beads: list):
-    """SLSQP per layer from offset and slope 0; returns how many layers end infeasible."""
+    """SLSQP per layer from offset and slope 0; the returned call counts infeasible layers."""
     layers = [gather([bead], task.cell) for bead in beads]
 
     def constraints(points, x):
@@ -112,16 +111,16 @@ def _single_start(task: Task, beads: list):
         )
 
     def call() -> int:
-        lost = 0
+        infeasible = 0
         for points in layers:
-            found = minimize(
+            optimum = minimize(
                 lambda x, p=points: objective(p, x),
                 np.zeros(2),
                 method="SLSQP",
                 constraints=[{"type": "ineq", "fun": lambda x, p=points: constraints(p, x)}],
                 options={"ftol": PARAMETERS.tolerance, "maxiter": PARAMETERS.max_iterations},
             )
-            lost += int(constraints(points, found.x).min() < -1e-6)
-        return lost
+            infeasible += int(constraints(points, optimum.x).min() < -1e-6)
+        return infeasible
 
     return call

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A peer of planning: the poses of the search over rotations, one after the other through PyKDL."""
+"""A peer of planning: the search over rotations, one pose after the other through PyKDL."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from freecad_am.core.planning.task import Task
 from freecad_am.core.toolpath import Bead
 
 
-def took(function: Callable[[], object]) -> float:
-    """Seconds of the clock."""
+def time_call(function: Callable[[], object]) -> float:
+    """Return the elapsed seconds of a call."""
     start = time.perf_counter()
     function()
     return time.perf_counter() - start
 
 
 def pose_by_pose(task: Task, beads: Sequence[Bead], sampled: int) -> Callable[[], None]:
-    """Inverse kinematics by the fastest seeded solver, limits, Jacobian and singular values of the robot, one candidate in
-    so many; seeded within 2 deg of the answer."""
+    """Inverse kinematics by the fastest seeded solver, limits, Jacobian and singular values of the
+    robot for every `sampled`-th candidate, seeded within 2 deg of the solution."""
     points = gather(beads, task.cell, global_search.POINTS_PER_BEAD)
     grid = [
         (offset, slope)
@@ -43,13 +43,13 @@ def pose_by_pose(task: Task, beads: Sequence[Bead], sampled: int) -> Callable[[]
     lower, upper = task.cell.limits.lower[:6], task.cell.limits.upper[:6]
 
     def call() -> None:
-        found, matrix = arm.kdl.JntArray(6), arm.kdl.Jacobian(6)
+        angles, matrix = arm.kdl.JntArray(6), arm.kdl.Jacobian(6)
         for seed, pose in zip(seeds, flange, strict=True):
-            solver.CartToJnt(arm.angles(seed), arm.frame(pose), found)
-            q = np.array([found[k] for k in range(6)])
+            solver.CartToJnt(arm.angles(seed), arm.frame(pose), angles)
+            q = np.array([angles[k] for k in range(6)])
             if (q < lower).any() or (q > upper).any():
                 continue
-            jacobians.JntToJac(found, matrix)
+            jacobians.JntToJac(angles, matrix)
             scaled = np.array([[matrix[row, column] for column in range(6)] for row in range(6)])
             scaled[:3] /= task.parameters.characteristic_length
             np.linalg.svd(scaled, compute_uv=False)

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The paper's sphere in 71 layers of 1 mm under a torch on a robot: with a positioner of two axes beside its six.
-
-Peers: the paper's cell, six axes that carry the same part; and the same search done pose by pose with
-PyKDL's fastest seeded solver, at the positioner's axes as the rule has them, seeded within 2 deg of the answer.
-"""
+"""The paper's sphere in 71 layers of 1 mm under a torch on a robot with a two-axis positioner.
+Peers: the paper's cell, whose six axes carry the same part; and the same search pose by pose with
+PyKDL's fastest seeded solver, at the positioner's axis values from the rule, seeded within 2 deg of
+the solution."""
 
 from __future__ import annotations
 
@@ -12,7 +11,7 @@ import math
 from collections.abc import Callable
 from statistics import median
 
-from pose_by_pose import pose_by_pose, took
+from pose_by_pose import pose_by_pose, time_call
 
 from freecad_am import kdl
 from freecad_am.brep.files import read
@@ -35,8 +34,8 @@ from sizes import choose
 from whole import EXAMPLE
 
 ROUNDS, LAYER_HEIGHT = choose((3, 1.0), (1, 15.0))
-LEVEL = 10.0  # deg from the vertical at most
-SPEED = 4.0  # mm/s, as fast as the table can turn where the wall closes
+MAX_TILT_DEG = 10.0  # deg from the vertical at most
+SPEED = 4.0  # mm/s, limited by the turn rate of the table where the wall closes
 POSITIONER = CellParameters(
     machine="kuka-kr8-r2100-2-arc-hw",
     setup="tool-on-robot",
@@ -46,13 +45,13 @@ POSITIONER = CellParameters(
     external="motoman-motopos-d500 at 1400 0 0 0 0 0 carries part",
 )
 SIX = CellParameters(limits="paper", branch=("front", "up", "flip"))  # the paper's cell
-SAMPLED = choose(
+SAMPLE_STEP = choose(
     64, 640
-)  # the peer's candidates are taken one in so many, evenly, and the time multiplied
+)  # the peer evaluates every n-th candidate, and its time is multiplied by n
 
 
 def run() -> list[Row]:
-    """Both comparisons; a layer of 6+2 axes that is not feasible is an error."""
+    """Return both comparisons; an infeasible layer with 6+2 axes is an error."""
     wall = revolution.find_wall(read.read_shape(str(EXAMPLE)))
     toolpath = strategy.plan(
         wall,
@@ -63,32 +62,34 @@ def run() -> list[Row]:
         SIX.platform_diameter,
     )
     upright = dataclasses.replace(
-        toolpath, rules=MotionRules(max_from_vertical=math.radians(LEVEL))
+        toolpath, rules=MotionRules(max_from_vertical=math.radians(MAX_TILT_DEG))
     )
-    six, eight = (cells.resolve(one, toolpath.frame) for one in (SIX, POSITIONER))
+    six, eight = (
+        cells.resolve(cell_parameters, toolpath.frame) for cell_parameters in (SIX, POSITIONER)
+    )
     parameters = JointParameters()
 
     def ours() -> None:
-        found = plan_joints(upright, eight, parameters)
-        if not found.feasible:
+        path = plan_joints(upright, eight, parameters)
+        if not path.feasible:
             raise AssertionError("a layer of the sphere is not feasible with the positioner")
 
-    def alone() -> None:
+    def plan_six_axes() -> None:
         if not plan_joints(toolpath, six, parameters).feasible:
             raise AssertionError("a layer of the sphere is not feasible with six axes")
 
     peers = {
-        "six": alone,
+        "six": plan_six_axes,
         **({"PyKDL": _pose_by_pose(eight, upright, parameters)} if kdl.available() else {}),
     }
     ours()
-    alone()
+    plan_six_axes()
     times: dict[str, list[float]] = {"ours": [], **{name: [] for name in peers}}
     for number in range(ROUNDS):
-        times["ours"].append(took(ours))
+        times["ours"].append(time_call(ours))
         for name, peer in peers.items():
             if number == 0 or name != "PyKDL":
-                times[name].append(took(peer) * (SAMPLED if name == "PyKDL" else 1))
+                times[name].append(time_call(peer) * (SAMPLE_STEP if name == "PyKDL" else 1))
     middle = {name: median(values) for name, values in times.items()}
     return [
         Row(
@@ -111,10 +112,11 @@ def run() -> list[Row]:
 def _pose_by_pose(
     cell: cells.Cell, toolpath: Toolpath, parameters: JointParameters
 ) -> Callable[[], None]:
-    """The search of the robot alone, for the branch that the plan ends with, at the axes that the rule gives it."""
+    """The search of the robot for the configuration of the plan, at the axis values from the
+    rule."""
     task = Task(
         cell,
         spherical_wrist.branch_index(plan_joints(toolpath, cell, parameters).branch),
         parameters,
     )
-    return pose_by_pose(task, levelled(cell, toolpath)[0], SAMPLED)
+    return pose_by_pose(task, levelled(cell, toolpath)[0], SAMPLE_STEP)

@@ -27,9 +27,9 @@ import numpy as np
 from infill_judge import Stroke
 
 COMMAND, PACKAGE = "prusa-slicer", "prusa-slicer"
-BED = 500.0  # mm, from the middle of the bed, where the origin is, to its sides
+BED = 500.0  # mm from the middle of the bed, its origin, to its sides
 CONTOURS_ONLY = 99  # perimeters
-ROUNDS = 3  # of slicing and start in turns, of which the median counts
+ROUNDS = 3  # of slicing and start-up in turns; the median counts
 WALLS = 2  # perimeters around zigzags
 WIDTHS = (
     "",
@@ -45,7 +45,8 @@ WORD = re.compile(r"([XYZE])(-?[0-9.]+)")
 
 
 class Sliced(NamedTuple):
-    """Strokes of each layer by number from 0, the number of points, and processor time, s, without the start."""
+    """Strokes of each layer by number from 0, the number of points, and the processor time (s)
+    without start-up."""
 
     layers: dict[int, list[Stroke]]
     points: int
@@ -103,7 +104,7 @@ def slice_mesh(
 def prusa_settings(
     fill: str, width: float, height: float, chord_error: float, narrowest: float
 ) -> dict[str, object]:
-    """The settings for beads with an effective width, mm; see the head of this file."""
+    """Return the settings for beads with an effective width (mm); see the head of this file."""
     bulge = (1.0 - 0.25 * math.pi) * height
     return {
         "printer_technology": "FFF",
@@ -149,39 +150,39 @@ def read_program(text: str, height: float) -> tuple[dict[int, list[Stroke]], int
         mm of a layer; the nozzle is that far above the base of the first one.
     """
     layers: dict[int, list[Stroke]] = {}
-    at = {"X": 0.0, "Y": 0.0, "Z": 0.0, "E": 0.0}
+    position = {"X": 0.0, "Y": 0.0, "Z": 0.0, "E": 0.0}
     points: list[tuple[float, float]] = []
     volumes: list[float] = []
 
     def end_stroke() -> None:
         if volumes:
-            places = np.array(points)
-            long = np.hypot(*np.diff(places, axis=0).T)
-            stroke = Stroke(places, np.array(volumes) / (height * long))
-            layers.setdefault(round(at["Z"] / height) - 1, []).append(stroke)
+            vertices = np.array(points)
+            lengths = np.hypot(*np.diff(vertices, axis=0).T)
+            stroke = Stroke(vertices, np.array(volumes) / (height * lengths))
+            layers.setdefault(round(position["Z"] / height) - 1, []).append(stroke)
         points.clear()
         volumes.clear()
 
     count = 0
     for line in text.splitlines():
         if line.startswith("G92"):
-            at.update({key: float(value) for key, value in WORD.findall(line)})
+            position.update({key: float(value) for key, value in WORD.findall(line)})
         if not MOVE.match(line):
             continue
         words = {key: float(value) for key, value in WORD.findall(line.partition(";")[0])}
-        goal = {**at, **words}
-        moves = (goal["X"], goal["Y"]) != (at["X"], at["Y"])
-        deposit = goal["E"] - at["E"]
+        goal = {**position, **words}
+        moves = (goal["X"], goal["Y"]) != (position["X"], position["Y"])
+        deposit = goal["E"] - position["E"]
         if deposit > 0.0 and moves:
             if not points:
-                points.append((at["X"], at["Y"]))
+                points.append((position["X"], position["Y"]))
                 count += 1
             points.append((goal["X"], goal["Y"]))
             volumes.append(deposit)
             count += 1
-        elif moves or goal["Z"] != at["Z"]:
+        elif moves or goal["Z"] != position["Z"]:
             end_stroke()
-        at = goal
+        position = goal
     end_stroke()
     return layers, count
 

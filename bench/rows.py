@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A line of the benchmark: what we cost, what a named peer costs in the same run, and the ratio asked for."""
+"""A line of the benchmark: our cost, the cost of a named peer in the same run, and the required
+ratio."""
 
 from __future__ import annotations
 
@@ -7,8 +8,8 @@ from typing import NamedTuple
 
 
 class Row(NamedTuple):
-    """`ours` and `peer` in `unit`, medians of rounds in turns; peer None where it is not installed. The peer must cost at
-    least `required` times what we do."""
+    """`ours` and `peer` in `unit`, medians of rounds in turns; `peer` is None where it is not
+    installed. The peer must cost at least `required` times as much as ours."""
 
     name: str
     ours: float
@@ -18,12 +19,12 @@ class Row(NamedTuple):
 
     @property
     def ratio(self) -> float | None:
-        """How many times as much the peer costs."""
+        """Return the cost of the peer divided by ours."""
         return None if self.peer is None else self.peer / self.ours
 
     @property
     def short(self) -> bool:
-        """True when the ratio asked for is not reached."""
+        """Return True when the required ratio is missed."""
         return self.ratio is not None and self.ratio < self.required
 
     def line(self, judged: bool = True) -> str:

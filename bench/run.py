@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Run the benchmarks named, or all of them; exit with status 1 when a ratio is missed.
-
-With `--smallest` each benchmark runs once at its smallest size and no figure is judged: CI proves in this way that
-every benchmark still runs.
-
-Peers that come from the package index alone are installed into an environment of the benchmark's own (.bench-env), which
-sees the distribution's packages; nothing else uses it.
-"""
+"""Run the named benchmarks, or all; exit with status 1 when a ratio is missed. With `--smallest`
+each benchmark runs once at its smallest size and no figure is judged: CI proves in this way that
+every benchmark still runs. Peers from the package index are installed into the benchmark's own
+environment (.bench-env), which sees the distribution's packages; nothing else uses it."""
 
 from __future__ import annotations
 
@@ -16,8 +12,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-HERE = Path(__file__).resolve().parent
-ENVIRONMENT = HERE.parent / ".bench-env"
+BENCH_FOLDER = Path(__file__).resolve().parent
+ENVIRONMENT = BENCH_FOLDER.parent / ".bench-env"
 PEERS = (
     "eaik==1.2.2",
     "trimesh==5.2.0",
@@ -26,8 +22,8 @@ PEERS = (
     "sympy",
     "mpmath",
     "cython",
-)  # the last three are what ssik asks for
-# compas_slicer, and what it imports: it asks for an older numpy, and works with the distribution's
+)  # the last three are dependencies of ssik
+# compas_slicer and its imports: it asks for an older numpy, but works with the distribution's
 SLICER = (
     "compas_slicer==0.7.0",
     "compas<2",
@@ -61,26 +57,27 @@ BENCHMARKS = (
     "walls",
     "whole",
 )
-SMALLEST = "--smallest"
+SMALLEST_OPTION = "--smallest"
 ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 def environment_python() -> Path | None:
-    """The Python of the benchmark's environment, made and filled when it is not there; None when that fails."""
+    """Return the Python of the benchmark's environment, creating and filling it if missing; None
+    when that fails."""
     python = ENVIRONMENT / "bin" / "python"
-    told = ENVIRONMENT / "peers.txt"
+    installed = ENVIRONMENT / "peers.txt"
     if (
         python.exists()
-        and told.exists()
-        and told.read_text(encoding="utf-8").split() == [*PEERS, *SLICER]
+        and installed.exists()
+        and installed.read_text(encoding="utf-8").split() == [*PEERS, *SLICER]
     ):
         return python
     print(f"bench: making {ENVIRONMENT.name} with {', '.join(PEERS)}", file=sys.stderr)
-    made = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-m", "venv", "--system-site-packages", str(ENVIRONMENT)], check=False
     )
-    if made.returncode == 0:
-        # the distribution's numpy and scipy stay as they are: FreeCAD is built against them
+    if process.returncode == 0:
+        # keep the distribution's numpy and scipy: FreeCAD is built against them
         filled = subprocess.run(
             [str(python), "-m", "pip", "install", "-q", "--no-deps", *PEERS], check=False
         )
@@ -92,7 +89,7 @@ def environment_python() -> Path | None:
                     "bench: compas_slicer could not be installed; its row goes without",
                     file=sys.stderr,
                 )
-            told.write_text("\n".join((*PEERS, *SLICER)) + "\n", encoding="utf-8")
+            installed.write_text("\n".join((*PEERS, *SLICER)) + "\n", encoding="utf-8")
             return python
     print("bench: the peers could not be installed; their rows go without", file=sys.stderr)
     return None
@@ -111,9 +108,9 @@ def main(words: list[str]) -> int:
     int
         0, 1 when a ratio is missed or a benchmark fails, 2 for an unknown name.
     """
-    if SMALLEST in words:
+    if SMALLEST_OPTION in words:
         os.environ["BENCH_SMALLEST"] = "1"  # read by bench/sizes.py
-    names = [word for word in words if word != SMALLEST]
+    names = [word for word in words if word != SMALLEST_OPTION]
     for name in names:
         if name not in BENCHMARKS:
             print(
@@ -130,8 +127,9 @@ def main(words: list[str]) -> int:
 
 
 def _run(name: str) -> int:
-    """Print a line per comparison, and before them how busy and how fast the machine is: medians forgive some of that."""
-    sys.path[:0] = [str(HERE.parent), str(HERE)]
+    """Print a line per comparison, and before them the load and speed of the machine, which medians
+    partly compensate."""
+    sys.path[:0] = [str(BENCH_FOLDER.parent), str(BENCH_FOLDER)]
     from freecad_am.batch import host
 
     import sizes

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Measures frames inside FreeCAD's window; run by `simulation`, which says by FRAMES_TO where to write them."""
+"""Measure frames inside FreeCAD's window; run by `simulation`, which sets FRAMES_TO to the file for
+the results."""
 
 from __future__ import annotations
 
@@ -10,12 +11,12 @@ from in_window import Drawn, begin, settle
 from sizes import choose
 
 FRAMES = choose(40, 4)
-# layer height, points of a turn: some 10,000, 100,000, 300,000 in all
+# layer height, points of a turn: about 10,000, 100,000 and 300,000 points in total
 SIZES = choose(((2.4, 140), (1.0, 1420), (1.0, 4280)), ((15.0, 60),))
 
 
 def run_of_points(layer_height: float, points: int, document: str):
-    """A hemisphere of many points as a simulation plays it."""
+    """Return a hemisphere of many points as a simulation plays it."""
     import numpy as np
 
     from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, sample_curve
@@ -37,7 +38,7 @@ def run_of_points(layer_height: float, points: int, document: str):
         return np.c_[45.0 * np.cos(t), 45.0 * np.sin(t)], np.c_[-np.sin(t), np.cos(t)]
 
     wall = RevolvedWall(Meridian.chained([sample_curve(dome, [0, np.pi / 2])]), np.eye(4))
-    process, looks = ProcessParameters(), CellParameters(limits="paper")
+    process, cell_parameters = ProcessParameters(), CellParameters(limits="paper")
     toolpath = revolution.plan(
         wall,
         RevolutionParameters(layer_height=layer_height, min_points=points),
@@ -47,11 +48,11 @@ def run_of_points(layer_height: float, points: int, document: str):
         113.0,
         None,
     )
-    cell = cells.resolve(looks, toolpath.frame)
+    cell = cells.resolve(cell_parameters, toolpath.frame)
     motion, _ = assemble(
         plan_joints(toolpath, cell, JointParameters(method="constant", rz=0.0)), cell, process
     )
-    times, kept = (
+    times, feed = (
         timeline(motion, process),
         achievable_feed(motion, cell.machine.max_speed, cell.machine.max_acceleration),
     )
@@ -61,19 +62,19 @@ def run_of_points(layer_height: float, points: int, document: str):
         title="frames",
         objects=(),
         cell=cell,
-        looks=looks,
+        looks=cell_parameters,
         toolpath=toolpath,
         width=1.0,
         motion=motion,
         times=times,
-        feed=kept,
-        watch=watch(motion, cell, kept, unknown, unknown),
+        feed=feed,
+        watch=watch(motion, cell, feed, unknown, unknown),
         totals=totals(motion, times, process, toolpath),
     )
 
 
-def measured(layer_height: float, points: int) -> dict[str, float]:
-    """Medians, ms of the processor, and the longest of our frames, ms of the clock."""
+def measure_frames(layer_height: float, points: int) -> dict[str, float]:
+    """Return the medians (ms of processor time) and our longest frame (ms by the clock)."""
     import FreeCAD as App
     import FreeCADGui as Gui
     from pivy import coin
@@ -87,21 +88,21 @@ def measured(layer_height: float, points: int) -> dict[str, float]:
     simulation = dock.show(run, view)
     settle(0.5)
     drawn, camera = Drawn(view), view.getCameraNode()
-    little = coin.SbRotation(coin.SbVec3f(0, 0, 1), 0.01)
+    small_turn = coin.SbRotation(coin.SbVec3f(0, 0, 1), 0.01)
 
     def play(frame: int) -> None:
-        # near the end nearly all of the deposit is there
+        # near the end nearly all of the deposit exists
         simulation.player.go((0.9 + 0.1 * frame / FRAMES) * run.times.total)
         simulation.show()
 
     def turn() -> None:
-        camera.orientation = little * camera.orientation.getValue()
+        camera.orientation = small_turn * camera.orientation.getValue()
 
     ours, peer = [], []
     for frame in range(FRAMES):
         ours.append(cost(drawn, lambda frame=frame: play(frame)))
         peer.append(cost(drawn, turn))
-    found = {
+    result = {
         "points": int(run.motion.deposit.sum()),
         "ours": median(processor for processor, _ in ours[3:]),
         "peer": median(processor for processor, _ in peer[3:]),
@@ -109,11 +110,12 @@ def measured(layer_height: float, points: int) -> dict[str, float]:
     }
     simulation.close()
     App.closeDocument(document.Name)
-    return found
+    return result
 
 
 def cost(drawn: Drawn, act) -> tuple[float, float]:
-    """ms of the processor and of the clock from an act until it is drawn, and what it leaves to the turns after that."""
+    """Return ms of processor time and by the clock from an action until it is drawn, including
+    deferred work."""
     import FreeCADGui as Gui
 
     processor, clock = time.process_time(), time.perf_counter()
@@ -123,4 +125,4 @@ def cost(drawn: Drawn, act) -> tuple[float, float]:
     return 1e3 * (time.process_time() - processor), 1e3 * (time.perf_counter() - clock)
 
 
-begin(lambda: [measured(layer_height, points) for layer_height, points in SIZES])
+begin(lambda: [measure_frames(layer_height, points) for layer_height, points in SIZES])

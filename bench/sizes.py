@@ -15,5 +15,5 @@ def is_smallest() -> bool:
 
 
 def choose(full: Value, smallest: Value) -> Value:
-    """Return the value for the size that this run has."""
+    """Return the value for the size of this run."""
     return smallest if is_smallest() else full

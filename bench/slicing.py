@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A mesh of 200,000 triangles cut by 50 equidistant cones, and by 1,000 planes, closed loops included, against trimesh."""
+"""A mesh of 200,000 triangles cut by 50 equidistant cones, and by 1,000 planes with closed loops,
+against trimesh."""
 
 from __future__ import annotations
 
@@ -17,20 +18,21 @@ from freecad_am.core.slicing.solids.plane_sections import PlaneCuts
 from rows import Row
 from sizes import choose
 
-AROUND, UP = choose((400, 250), (40, 24))  # triangles round and up
+AROUND_COUNT, UP_COUNT = choose((400, 250), (40, 24))  # triangles round and up
 CUTS, ROUNDS = choose((50, 5), (3, 1))
 CHORD_ERROR = 0.05
-SECTIONS, FEWER = choose((1000, 3), (5, 1))  # planes, and rounds of them
-SMALL, PLANES = choose(
+SECTIONS, SECTION_ROUNDS = choose((1000, 3), (5, 1))  # planes, and their rounds
+SMALL_ROWS, PLANES = choose(
     (10, 20), (4, 3)
-)  # rows of triangles, and planes, for a slicer that takes minutes for more
+)  # rows of triangles and planes for a slicer that would take minutes for more
 
 
 def run() -> list[Row]:
-    """Against trimesh, and against ourselves with half the triangles and half the layers: the cost is linear in both."""
+    """Compare with trimesh, and with half the triangles and half the layers: the cost is linear in
+    both."""
     vertices, faces = wavy_ball()
-    half = wavy_ball(UP // 2)
-    # CPU time, in turn and the median, so that what else the machine does counts for neither side
+    half = wavy_ball(UP_COUNT // 2)
+    # medians of CPU time in turns, so that other load affects both sides equally
     rounds = [
         (
             _ours(vertices, faces, CUTS),
@@ -40,24 +42,24 @@ def run() -> list[Row]:
         )
         for _ in range(ROUNDS)
     ]
-    whole, _, halved, doubled = (median(times[k] or 0.0 for times in rounds) for k in range(4))
+    full, _, halved, doubled = (median(times[k] or 0.0 for times in rounds) for k in range(4))
     peers = [peer for _, peer, _, _ in rounds if peer is not None]
     name = f"{len(faces):,} triangles cut by {CUTS} cones, loops included, against trimesh and {CUTS} planes"
     halves = f"{len(faces):,} triangles against twice the time of {len(half[1]):,}"
     return [
-        Row(name, whole, median(peers) if peers else None, "s", 1.5),
-        Row(halves, whole, 2.0 * halved, "s", 0.6),
-        Row(f"{2 * CUTS} cones against twice the time of {CUTS}", doubled, 2.0 * whole, "s", 0.6),
+        Row(name, full, median(peers) if peers else None, "s", 1.5),
+        Row(halves, full, 2.0 * halved, "s", 0.6),
+        Row(f"{2 * CUTS} cones against twice the time of {CUTS}", doubled, 2.0 * full, "s", 0.6),
         _sections(vertices, faces),
         _slicer(),
     ]
 
 
 def _sections(vertices: np.ndarray, faces: np.ndarray) -> Row:
-    """Plane sections with their loops, against trimesh's own sections as paths."""
+    """Plane sections with their loops, against trimesh's sections as paths."""
     heights = np.linspace(vertices[:, 2].min(), vertices[:, 2].max(), SECTIONS + 2)[1:-1]
     ours, peers = [], []
-    for _ in range(FEWER):
+    for _ in range(SECTION_ROUNDS):
         start = process_time()
         assert all(PlaneCuts(vertices, faces).loops(heights))
         ours.append(process_time() - start)
@@ -79,8 +81,9 @@ def _peer_sections(vertices: np.ndarray, faces: np.ndarray, heights: np.ndarray)
 
 
 def _slicer() -> Row:
-    """Plane sections with their loops, against the planar slicer of compas_slicer, which is slow: a small mesh, once."""
-    vertices, faces = wavy_ball(SMALL)
+    """Plane sections with their loops, against the planar slicer of compas_slicer on a small mesh,
+    once because it is slow."""
+    vertices, faces = wavy_ball(SMALL_ROWS)
     bottom, height = float(vertices[:, 2].min()), float(np.ptp(vertices[:, 2])) / PLANES
     start = process_time()
     assert all(PlaneCuts(vertices, faces).loops(bottom + height * (np.arange(PLANES) + 0.5)))
@@ -92,7 +95,7 @@ def _slicer() -> Row:
 def _peer_slicer(vertices: np.ndarray, faces: np.ndarray, height: float) -> float | None:
     with contextlib.redirect_stderr(
         io.StringIO()
-    ):  # the bar, which keeps the stream that there is when it is imported
+    ):  # the progress bar keeps the stream that exists at its import
         try:
             from compas.datastructures import Mesh
             from compas_slicer.slicers import PlanarSlicer
@@ -117,9 +120,10 @@ def _ours(vertices: np.ndarray, faces: np.ndarray, cuts: int) -> float:
     return spent
 
 
-def wavy_ball(up: int = UP) -> tuple[np.ndarray, np.ndarray]:
-    """Vertices and outward triangles of a body beside the cone's axis, with waves all over; `up` rings of them."""
-    turn = 2.0 * np.pi * np.arange(AROUND) / AROUND
+def wavy_ball(up: int = UP_COUNT) -> tuple[np.ndarray, np.ndarray]:
+    """Vertices and outward triangles of a wavy body next to the cone's axis; `up` rings of
+    triangles."""
+    turn = 2.0 * np.pi * np.arange(AROUND_COUNT) / AROUND_COUNT
     height = np.pi * (np.arange(up) + 0.5) / up
     height, turn = (grid.ravel() for grid in np.meshgrid(height, turn, indexing="ij"))
     radius = 60.0 + 4.0 * np.sin(7.0 * turn) * np.sin(9.0 * height)
@@ -131,19 +135,21 @@ def wavy_ball(up: int = UP) -> tuple[np.ndarray, np.ndarray]:
         0.0,
         60.0,
     ]
-    number = np.arange(up * AROUND).reshape(up, AROUND)
+    number = np.arange(up * AROUND_COUNT).reshape(up, AROUND_COUNT)
     a, b = number[:-1].ravel(), number[1:].ravel()
     c, d = np.roll(number, -1, axis=1)[1:].ravel(), np.roll(number, -1, axis=1)[:-1].ravel()
-    top = np.stack([np.full(AROUND, up * AROUND), number[0], np.roll(number[0], -1)], axis=1)
+    top = np.stack(
+        [np.full(AROUND_COUNT, up * AROUND_COUNT), number[0], np.roll(number[0], -1)], axis=1
+    )
     bottom = np.stack(
-        [np.full(AROUND, up * AROUND + 1), np.roll(number[-1], -1), number[-1]], axis=1
+        [np.full(AROUND_COUNT, up * AROUND_COUNT + 1), np.roll(number[-1], -1), number[-1]], axis=1
     )
     faces = np.vstack([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1), top, bottom])
     return vertices, faces.astype(np.intp)
 
 
 def _peer(vertices: np.ndarray, faces: np.ndarray) -> float | None:
-    """trimesh's own way to cut with many parallel planes, which leaves the segments as they come."""
+    """trimesh's cut by many parallel planes, which leaves the segments unordered."""
     try:
         import trimesh
     except ImportError:

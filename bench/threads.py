@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A macro that plans a vase on a KUKA, whose joints are optimised, with as many threads of the linear algebra as there are
-processors, against the same with one. Processor time of processes of their own, in turns: waking threads costs time too."""
+"""A macro that plans a vase on a KUKA with optimised joints: linear algebra with one thread per
+processor against one thread. The figures are processor times of separate processes in turns,
+because waking threads costs time too."""
 
 from __future__ import annotations
 
@@ -39,23 +40,23 @@ os._exit(0)
 
 
 def run() -> list[Row]:
-    """One comparison."""
-    rounds = [(_took({}), _took({"OPENBLAS_NUM_THREADS": "1"})) for _ in range(ROUNDS)]
-    many, one = (median(times) for times in zip(*rounds))
+    """Compare both numbers of threads."""
+    rounds = [(time_macro({}), time_macro({"OPENBLAS_NUM_THREADS": "1"})) for _ in range(ROUNDS)]
+    all_threads, one_thread = (median(times) for times in zip(*rounds))
     name = f"joints of a vase in {os.cpu_count()} threads of the linear algebra, against one"
-    return [Row(name, many, one, "s", 0.9)]
+    return [Row(name, all_threads, one_thread, "s", 0.9)]
 
 
-def _took(more: dict[str, str]) -> float:
-    """Processor time of the joint path, s, with no number of threads asked for but in `more`."""
+def time_macro(extra_environment: dict[str, str]) -> float:
+    """Processor time (s) of the joint path; only `more` sets a number of threads."""
     environment = {
         key: value for key, value in os.environ.items() if not key.endswith("_NUM_THREADS")
     }
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", MACRO],
         capture_output=True,
         text=True,
         check=True,
-        env={**environment, **more},
+        env={**environment, **extra_environment},
     )
-    return float(done.stdout.split()[-1])
+    return float(process.stdout.split()[-1])

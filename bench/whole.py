@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The whole of a job: the hemisphere in 71 layers from its STEP file to program files and FCStd, and a bracket in
-plane layers.
-
-Peer: a bare FreeCAD process that starts, imports the same file and saves it. Both as processes of their own, in turns, and
-by how long one waits for them. The time of the processor that both take is named too. The bracket is judged by its time of
-the processor, which other work changes little.
-Ours leaves report.html out. Both find their modules compiled, as they are after a first run, also where the environment asks
-for none to be kept (PYTHONDONTWRITEBYTECODE): compiling them takes as long as all the rest.
-"""
+"""A whole job: the hemisphere in 71 layers from its STEP file to program files and FCStd, and a
+bracket in planar layers. Peer: a bare FreeCAD process that starts, imports the same file and saves
+it. Both run as separate processes in turns and are judged by waiting time; the row states their
+processor times too. The bracket is judged by processor time, which other load changes little. Ours
+omits report.html. Both find their modules compiled, as after a first run, even where
+PYTHONDONTWRITEBYTECODE is set: compiling takes as long as the rest of the job."""
 
 from __future__ import annotations
 
@@ -28,9 +25,9 @@ from sizes import choose
 
 ROOT = Path(__file__).resolve().parent.parent
 EXAMPLE = ROOT / "resources" / "examples" / "hemisphere.step"
-BRACKET, SECONDS, FEWER = EXAMPLE.parent / "bracket.yaml", 10.0, choose(3, 1)
+BRACKET, SECONDS, BRACKET_ROUNDS = EXAMPLE.parent / "bracket.yaml", 10.0, choose(3, 1)
 ROUNDS = choose(9, 1)
-WARMING = choose(1, 0)  # rounds that fill caches and do not count
+WARMUP_ROUNDS = choose(1, 0)  # rounds that fill caches and are not counted
 BARE = """import os, sys
 import FreeCAD, Import
 document = FreeCAD.newDocument("Bare")
@@ -43,7 +40,7 @@ os._exit(0)
 
 
 def run() -> list[Row]:
-    """The hemisphere against FreeCAD alone, and a bracket of 150 mm against the time asked for."""
+    """Compare the hemisphere with FreeCAD, and a bracket of 150 mm with the allowed time."""
     return [_hemisphere(), _bracket()]
 
 
@@ -59,7 +56,7 @@ def _bracket() -> Row:
         ]
         with Watch() as watch:
             took = median(
-                [_took(plan, folder).used for _ in range(FEWER + 1)][1:]
+                [measure_command(plan, folder).used for _ in range(BRACKET_ROUNDS + 1)][1:]
             )  # the first round fills the caches
     used = f"{took:.2f} s used, the fixed piece of work in {watch.pace:.2f} ms"
     name = f"a bracket of 150 mm in layers of 2 mm, STEP to program and FCStd, against {SECONDS:g} s ({used})"
@@ -86,34 +83,36 @@ def _hemisphere() -> Row:
         plan = [str(ROOT / "freecad-am"), "plan", str(job), "-o", str(out), "--no-page"]
         commands = [plan, *([[host, str(script)]] if host else [])]
         rounds = [
-            [_took(command, folder) for command in commands] for _ in range(WARMING + ROUNDS)
-        ][WARMING:]
+            [measure_command(command, folder) for command in commands]
+            for _ in range(WARMUP_ROUNDS + ROUNDS)
+        ][WARMUP_ROUNDS:]
         ours, *bare = zip(*rounds)
-        used = f"{median(one.used for one in ours):.3f} s of the processor"
+        used = f"{median(run.used for run in ours):.3f} s of the processor"
         for peer in bare:
-            used += f" against {median(one.used for one in peer):.3f}"
+            used += f" against {median(run.used for run in peer):.3f}"
         name = f"71 layers, STEP to programs and FCStd; FreeCAD starting, importing and saving that file ({used})"
-        waited = median(one.waited for one in bare[0]) if bare else None
-        return Row(name, median(one.waited for one in ours), waited, "s", 1.0 / 10.0)
+        waited = median(run.waited for run in bare[0]) if bare else None
+        return Row(name, median(run.waited for run in ours), waited, "s", 1.0 / 10.0)
 
 
-class Took(NamedTuple):
-    """Seconds that a command was waited for, and of the processor that it and what it started used."""
+class CommandTimes(NamedTuple):
+    """Seconds waited for a command, and seconds of processor time of the command and its
+    children."""
 
     waited: float
     used: float
 
 
-def _took(command: list[str], folder: str) -> Took:
-    """What a command takes; compiled modules are kept in `folder`."""
-    left = ("BENCH_INSIDE", "VIRTUAL_ENV", "PYTHONDONTWRITEBYTECODE")
-    environment = {key: value for key, value in os.environ.items() if key not in left}
+def measure_command(command: list[str], folder: str) -> CommandTimes:
+    """Measure a command; compiled modules are kept in `folder`."""
+    removed = ("BENCH_INSIDE", "VIRTUAL_ENV", "PYTHONDONTWRITEBYTECODE")
+    environment = {key: value for key, value in os.environ.items() if key not in removed}
     environment["PYTHONPYCACHEPREFIX"] = folder
-    before = resource.getrusage(
+    usage_before = resource.getrusage(
         resource.RUSAGE_CHILDREN
     )  # os.times counts in hundredths of a second
     started = time.perf_counter()
-    done = subprocess.run(
+    process = subprocess.run(
         command,
         capture_output=True,
         text=True,
@@ -122,8 +121,11 @@ def _took(command: list[str], folder: str) -> Took:
         env=environment,
     )
     waited = time.perf_counter() - started
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    if done.returncode:
-        print(done.stderr, file=sys.stderr)
-        raise AssertionError(f"{command[0]} ended with {done.returncode}")
-    return Took(waited, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+    usage_after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if process.returncode:
+        print(process.stderr, file=sys.stderr)
+        raise AssertionError(f"{command[0]} ended with {process.returncode}")
+    return CommandTimes(
+        waited,
+        usage_after.ru_utime + usage_after.ru_stime - usage_before.ru_utime - usage_before.ru_stime,
+    )
