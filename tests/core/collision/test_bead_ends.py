@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ends of beads are worked out once for the same beads and nozzle, and anew for any other."""
+"""Ends of beads are computed once for the same beads and nozzle, and again for any others."""
 
 import numpy as np
 
@@ -21,11 +21,13 @@ def test_same_numbers_are_worked_out_once():
 
 
 def test_other_beads_or_another_nozzle_are_not():
-    known = BeadEnds.of(_beads(), SIZE)
-    assert BeadEnds.of(_beads(rise=0.1), SIZE) is not known
-    assert BeadEnds.of(_beads(), SIZE._replace(slope=0.4)) is not known
+    """A cached result of other beads or another nozzle must not be reused."""
+    ends = BeadEnds.of(_beads(), SIZE)
+    assert BeadEnds.of(_beads(rise=0.1), SIZE) is not ends
+    assert BeadEnds.of(_beads(), SIZE._replace(slope=0.4)) is not ends
 
 
 def test_long_ones_are_not_kept(monkeypatch):
+    """Long beads are not cached, so that the cache stays small."""
     monkeypatch.setattr(bead_ends, "REMEMBERED", 29)
     assert BeadEnds.of(_beads(), SIZE) is not BeadEnds.of(_beads(), SIZE)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Inside closed bodies, by what is known of them; a nozzle wholly inside one touches it."""
+"""Points inside closed bodies against formulas; a nozzle wholly inside a body touches it."""
 
 import numpy as np
 import pytest
@@ -14,19 +14,19 @@ UP = np.array([[0.0, 0.0, 1.0]])
 
 
 def rings(profile, sides=90, name="ring"):
-    """A closed body of revolution about z: a polygon of (radius, height), counter-clockwise, turned around."""
+    """A closed body of revolution about z from a counter-clockwise polygon of (radius, height)."""
     angle = 2 * np.pi * np.arange(sides) / sides
     count = len(profile)
     vertices = np.concatenate(
         [np.c_[r * np.cos(angle), r * np.sin(angle), np.full(sides, z)] for r, z in profile]
     )
-    one, two = np.arange(sides), np.roll(np.arange(sides), -1)
+    current, two = np.arange(sides), np.roll(np.arange(sides), -1)
     faces = []
     for k in range(count):
         a, b = k * sides, (k + 1) % count * sides
         faces += [
-            np.stack([a + one, a + two, b + two], 1),
-            np.stack([a + one, b + two, b + one], 1),
+            np.stack([a + current, a + two, b + two], 1),
+            np.stack([a + current, b + two, b + current], 1),
         ]
     return Body(name, vertices, np.concatenate(faces))
 
@@ -55,7 +55,7 @@ def pipe(inner, outer, half):
     return rings([(inner, -half), (outer, -half), (outer, half), (inner, half)])
 
 
-def touched(body, tip, axis=UP, nozzle=NOZZLE):
+def find_contacts(body, tip, axis=UP, nozzle=NOZZLE):
     tip = np.atleast_2d(np.asarray(tip, dtype=float))
     return build_bodies([body], tip, nozzle.reach).find_touching(
         nozzle, tip, np.broadcast_to(axis, tip.shape)
@@ -76,8 +76,8 @@ def test_points_in_a_thick_pipe_and_in_overlapping_and_nested_cubes():
     big = np.abs(points).max(axis=1) < 50
     shifted = np.abs(points - 20).max(axis=1) < 30
     small = np.abs(points).max(axis=1) < 20
-    both = together(cube(50.0), cube(30.0, (20.0, 20.0, 20.0)))
-    assert (inside_of(both).holds(points) == (big | shifted)).all()
+    overlapping = together(cube(50.0), cube(30.0, (20.0, 20.0, 20.0)))
+    assert (inside_of(overlapping).holds(points) == (big | shifted)).all()
     hollow = together(
         cube(50.0), Body("cavity", cube(20.0).vertices, cube(20.0).triangles[:, ::-1])
     )
@@ -112,7 +112,7 @@ def test_turned_over_triangles_and_bare_triangles_do_not_matter():
     ],
 )
 def test_a_nozzle_inside_a_big_cube_touches_it(place, inside):
-    assert touched(cube(200.0), place).item() == inside
+    assert find_contacts(cube(200.0), place).item() == inside
 
 
 def test_a_nozzle_in_the_bore_of_a_pipe_is_free_and_in_its_wall_is_not():
@@ -126,30 +126,33 @@ def test_a_nozzle_in_the_bore_of_a_pipe_is_free_and_in_its_wall_is_not():
         [0, 0, 170],
         [170, 0, 0],
     ]
-    assert touched(thick, tips).tolist() == [False, False, True, True, True, False, False]
+    assert find_contacts(thick, tips).tolist() == [False, False, True, True, True, False, False]
 
 
 def test_a_body_with_an_opening_has_no_inside():
     solid = cube(200.0)
     opened = Body("open", solid.vertices, solid.triangles[:-1])
     assert inside_of(opened) is None and inside_of(disc(100.0, np.eye(4))) is None
-    assert not touched(opened, [0, 0, -30]).any()
-    assert touched(opened, [0, 0, 170]).all()
+    assert not find_contacts(opened, [0, 0, -30]).any()
+    assert find_contacts(opened, [0, 0, 170]).all()
 
 
 def test_random_nozzles_against_samples_of_them():
+    """Contacts of random nozzles agree with points sampled on their surfaces."""
     rng = np.random.default_rng(6)
     axis = rng.normal(size=(400, 3))
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     tip = rng.uniform(-160, 160, (400, 3))
     nozzle = Frustum(0.5, 0.3, 0.8, 20.0)
-    found = touched(cube(100.0), tip, axis, nozzle)
+    contacts = find_contacts(cube(100.0), tip, axis, nozzle)
     side = np.cross(axis, np.roll(axis, 1, axis=1))
     side /= np.linalg.norm(side, axis=1)[:, None]
-    other = np.cross(axis, side)
+    second_side = np.cross(axis, side)
     height = np.linspace(0.81, 19.99, 40)
     angle = np.linspace(0, 2 * np.pi, 60)
-    round_it = np.cos(angle)[:, None] * side[:, None] + np.sin(angle)[:, None] * other[:, None]
+    round_it = (
+        np.cos(angle)[:, None] * side[:, None] + np.sin(angle)[:, None] * second_side[:, None]
+    )
     skin = (
         tip[:, None, None]
         + height[:, None, None] * axis[:, None, None]
@@ -157,5 +160,5 @@ def test_random_nozzles_against_samples_of_them():
     )
     sampled = (np.abs(skin) < 100).all(axis=3).any(axis=(1, 2))
     inside = (np.abs(skin) < 100).all(axis=(1, 2, 3))
-    assert found[sampled].all() and inside.sum() > 20
-    assert not found[(np.abs(tip + 10 * axis) > 100 + 13).any(axis=1)].any()
+    assert contacts[sampled].all() and inside.sum() > 20
+    assert not contacts[(np.abs(tip + 10 * axis) > 100 + 13).any(axis=1)].any()

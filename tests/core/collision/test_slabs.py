@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Boxes that lie as the pieces of beads do: what they leave out meets nothing, and what is found does not depend on them."""
+"""Boxes aligned with the solids of beads: what they exclude touches nothing, and contacts do not
+depend on them."""
 
 import numpy as np
 import pytest
@@ -11,9 +12,9 @@ from freecad_am.core.collision.tree import BRANCH
 
 
 def bead(random, count, step, width, height, short):
-    """A bead that winds through space, as `build_deposit` cuts it."""
-    way = np.cumsum(random.normal(scale=0.2, size=(count, 3)), axis=0) + [1.0, 0.0, 0.0]
-    points = np.cumsum(step * way / np.linalg.norm(way, axis=1, keepdims=True), axis=0)
+    """A bead that winds through space, cut as by `build_deposit`."""
+    tangents = np.cumsum(random.normal(scale=0.2, size=(count, 3)), axis=0) + [1.0, 0.0, 0.0]
+    points = np.cumsum(step * tangents / np.linalg.norm(tangents, axis=1, keepdims=True), axis=0)
     build = np.cross(np.gradient(points, axis=0), random.normal(size=3))
     build /= np.linalg.norm(build, axis=1, keepdims=True)
     return points, build_deposit(
@@ -22,7 +23,7 @@ def bead(random, count, step, width, height, short):
 
 
 def nozzles(random, points, count):
-    """Tips near to points, and unit axes any way."""
+    """Tips near points and unit axes in any direction."""
     axis = random.normal(size=(count, 3))
     axis /= np.linalg.norm(axis, axis=1, keepdims=True)
     return points[random.integers(len(points), size=count)] + random.normal(
@@ -35,6 +36,7 @@ def nozzles(random, points, count):
     ("width", "height", "step"), [(5.0, 0.2, 0.1), (3.0, 3.0, 1.0), (1.0, 4.0, 0.5)]
 )
 def test_what_is_left_out_meets_no_piece(width, height, step, short):
+    """Pairs that the boxes exclude have no contact."""
     random = np.random.default_rng(7)
     points, beads = bead(random, 403, step, width, height, short)
     boxes = obstacles.build_slabs(beads.corners, beads.radius, BRANCH)
@@ -45,22 +47,22 @@ def test_what_is_left_out_meets_no_piece(width, height, step, short):
     tip, axis = nozzles(random, points, 60)
     solid = Frustum(1.0, 0.4, 0.5, 15.0)
     query, node = (
-        each.ravel()
-        for each in np.meshgrid(np.arange(60), np.arange(len(boxes.centre)), indexing="ij")
+        column.ravel()
+        for column in np.meshgrid(np.arange(60), np.arange(len(boxes.centre)), indexing="ij")
     )
-    near = obstacles.select_close(boxes, solid, node, tip[query], axis[query])
-    far = np.setdiff1d(np.arange(len(query)), near)
-    assert len(far) > 0.3 * len(query)
-    for piece in range(BRANCH):  # of each box
-        own = BRANCH * node[far] + piece
-        real = own < len(beads.corners)
-        rows, own = query[far][real], own[real]
-        apart = beads.corners[own] - tip[rows, None]
-        assert not separation.find_overlaps(solid, axis[rows], apart, beads.radius[own]).any()
+    candidates = obstacles.select_close(boxes, solid, node, tip[query], axis[query])
+    excluded = np.setdiff1d(np.arange(len(query)), candidates)
+    assert len(excluded) > 0.3 * len(query)
+    for member in range(BRANCH):  # of each box
+        indices = BRANCH * node[excluded] + member
+        real = indices < len(beads.corners)
+        rows, indices = query[excluded][real], indices[real]
+        offsets = beads.corners[indices] - tip[rows, None]
+        assert not separation.find_overlaps(solid, axis[rows], offsets, beads.radius[indices]).any()
 
 
 def test_a_box_lies_as_its_pieces_do():
-    """Of a flat straight bead that leans, the box is as flat."""
+    """The box of a flat straight bead that leans is as flat as the bead."""
     along, up = np.array([1.0, 2.0, 2.0]) / 3.0, np.array([2.0, 1.0, -2.0]) / 3.0
     points = np.arange(65)[:, None] * 0.1 * along
     beads = build_deposit(points, np.tile(up, (65, 1)), 6.0, 0.4, np.array([0]), short=True)
@@ -68,24 +70,29 @@ def test_a_box_lies_as_its_pieces_do():
     sizes = np.sort(2.0 * np.linalg.norm(boxes.sides, axis=2), axis=1)
     assert sizes == pytest.approx(
         np.tile([0.0, 0.8, 5.6], (8, 1)), abs=1e-9
-    )  # rounded by 0.2 mm all about
+    )  # rounded by 0.2 mm on all sides
     assert boxes.rounding == pytest.approx(0.2)
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_touches_are_the_same_without(monkeypatch, seed):
+    """Contacts are the same with and without the boxes."""
     random = np.random.default_rng(seed)
     points, beads = bead(random, 2000, 0.2, 4.0, 1.0, bool(seed % 2))
     tip, axis = nozzles(random, points, 700)
     solid, moment = Frustum(0.5, 0.3, 1.2, 25.0), random.integers(2000, size=700)
-    own = np.minimum(moment, random.integers(2000, size=700))
-    asked = []
-    looked = obstacles.select_close
+    layer_start = np.minimum(moment, random.integers(2000, size=700))
+    pair_counts = []
+    select_close = obstacles.select_close
     monkeypatch.setattr(
-        obstacles, "select_close", lambda *args: asked.append(len(args[2])) or looked(*args)
+        obstacles,
+        "select_close",
+        lambda *args: pair_counts.append(len(args[2])) or select_close(*args),
     )
-    found = beads.find_touching(solid, tip, axis, moment, own)
-    assert sum(asked) and 0.1 < found.mean() < 0.95
+    contacts = beads.find_touching(solid, tip, axis, moment, layer_start)
+    assert sum(pair_counts) and 0.1 < contacts.mean() < 0.95
     monkeypatch.setattr(obstacles, "SLABS", 0)
-    asked.clear()
-    assert (beads.find_touching(solid, tip, axis, moment, own) == found).all() and not asked
+    pair_counts.clear()
+    assert (
+        beads.find_touching(solid, tip, axis, moment, layer_start) == contacts
+    ).all() and not pair_counts

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How deep is a touch: upright nozzles beside a wall and a bead whose distances follow from how they were put, a little
-less deep and a little deeper than docs/architecture.md and the file of tolerances promise."""
+"""Penetration depth at which a contact is reported: upright nozzles next to a wall and a bead at
+known distances, slightly below and above the tolerances promised in docs/architecture.md and the
+tolerance module."""
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ WIDTH, HEIGHT = 4.0, 2.0
 
 
 def wall(x):
-    """A block whose face looks along -X at x, and reaches far to all other sides."""
+    """A block with a face at x that faces -X, and large on all other sides."""
     corners = np.array(
         [[x + a, b, c] for a in (0.0, 50.0) for b in (-50.0, 50.0) for c in (-50.0, 50.0)]
     )
@@ -41,7 +42,7 @@ def wall(x):
 
 
 def bead():
-    """Along Y, half of its width on either side of x = 0, from z = 0 up."""
+    """A bead along Y, centred on x = 0, from z = 0 up."""
     points = np.array([[0.0, -20.0, 0.0], [0.0, 20.0, 0.0]])
     return build_deposit(points, np.repeat(UP, 2, axis=0), WIDTH, HEIGHT, [0])
 
@@ -51,7 +52,7 @@ def meets(nozzle, x, bodies=(), deposit=None):
     return bool(scene(bodies, tip, 100.0, deposit).find_touching(nozzle, tip, UP)[0])
 
 
-# mm that two solids are in one another
+# penetration of two solids in mm
 @pytest.mark.parametrize(
     ("deep", "touched"), [(-0.02, False), (0.03, False), (0.07, True), (0.5, True)]
 )
@@ -80,11 +81,12 @@ def test_while_depositing_beads_are_met_exactly_and_halfway_within_a_tenth(deep,
         2.0 * low,
         [0],
     )
-    # the side of the cone is deepest in the bead's round flank, a quarter circle of its half width about its upper edge
+    # the side of the cone is deepest in the bead's round flank, a quarter circle of half the height
+    # about its upper edge
     round_, top = 0.5 * WIDTH, 2.0 * low - 0.5 * WIDTH
     lean = np.hypot(1.0, 0.5)
     x = (RADIUS + 0.5 * top) + lean * (round_ - deep)
-    assert low < top - 0.5 * round_ / lean  # that place is above what is left out
+    assert low < top - 0.5 * round_ / lean  # that point is above the exempt height
     assert (
         meets(nozzle, x, deposit=tall) == let
         and meets(nozzle.halfway(), x, deposit=tall) == halfway
@@ -100,7 +102,8 @@ def test_over_the_bodies_that_a_nozzle_deposits_on_what_both_faces_may_be_off_is
 @pytest.mark.parametrize(("gap", "touched"), [(-1.0, True), (0.15, True), (0.25, False)])
 @pytest.mark.parametrize("clearance", [0.0, 10.0])
 def test_links_are_kept_as_far_as_two_lots_of_triangles_are_off(gap, touched, clearance):
-    """A rod of link 2 along the wall: it touches from a fifth of a millimetre on, and with a clearance so much farther."""
+    """A capsule of link 2 along the wall touches from 0.2 mm on, and with a clearance
+    correspondingly earlier."""
     cell = cells.resolve(
         CellParameters(
             setup="tool-on-robot",
@@ -113,11 +116,11 @@ def test_links_are_kept_as_far_as_two_lots_of_triangles_are_off(gap, touched, cl
     )
     joints = np.radians([[10.0, 20.0, -15.0, 5.0, 40.0, 30.0]])
     ends = np.array([[-5.0 - gap - clearance, y, 0.0, 1.0] for y in (-10.0, 10.0)])
-    part = cell.poses.station @ np.linalg.inv(cell.poses.mount)
-    seen = (np.linalg.inv(cell.links(joints)[0, 2]) @ part @ ends.T).T[:, :3]
-    rods = [()] * 2 + [(Cylinder(*seen, 5.0),)] + [()] * 4
-    found = ArmContact(cell, rods, (wall(0.0),), clearance=clearance).touches(joints)
-    assert bool(found.any[0]) == touched and (not touched or found.link[0] == 2)
+    part_pose = cell.poses.station @ np.linalg.inv(cell.poses.mount)
+    link_ends = (np.linalg.inv(cell.links(joints)[0, 2]) @ part_pose @ ends.T).T[:, :3]
+    rods = [()] * 2 + [(Cylinder(*link_ends, 5.0),)] + [()] * 4
+    contact = ArmContact(cell, rods, (wall(0.0),), clearance=clearance).touches(joints)
+    assert bool(contact.any[0]) == touched and (not touched or contact.link[0] == 2)
 
 
 def test_rounding_is_no_touch_and_a_nanometre_is_one():

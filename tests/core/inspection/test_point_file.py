@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The same points come out of every way in which measuring machines and scanners write them, and how is told."""
+"""Every file format of measuring machines and scanners gives the same points, and a message states
+the interpretation."""
 
 import struct
 
@@ -20,8 +21,8 @@ def table(delimiter, comma=".", head="", running=False):
     return "\n".join(lines) + "\n"
 
 
-def told(measured):
-    return measured.issues[0].message
+def message_of(scan):
+    return scan.issues[0].message
 
 
 @pytest.mark.parametrize("running", [False, True])
@@ -39,10 +40,11 @@ def told(measured):
     ],
 )
 def test_delimiters_and_decimal_signs_are_told_from_the_text(delimiter, comma, running):
-    found = point_file.parse(table(delimiter, comma, running=running).encode(), "scan.csv")
-    assert (found.points == POINTS).all()
-    assert ("decimal commas" in told(found)) == (comma == ",")
-    assert ("running number" in told(found)) == running
+    """Delimiter and decimal sign are detected from the text and reported."""
+    scan = point_file.parse(table(delimiter, comma, running=running).encode(), "scan.csv")
+    assert (scan.points == POINTS).all()
+    assert ("decimal commas" in message_of(scan)) == (comma == ",")
+    assert ("running number" in message_of(scan)) == running
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
@@ -52,12 +54,12 @@ def test_headings_choose_the_columns_and_name_the_unit(encoding):
         for k, (x, y, z) in enumerate(POINTS)
     )
     text = "# Prüfung, Maß\nname;Z [in];dev;X [in];Y [in]\n" + rows
-    found = point_file.parse(text.encode(encoding), "Teil.txt")
-    assert np.abs(found.points - POINTS).max() < 1e-5
+    scan = point_file.parse(text.encode(encoding), "Teil.txt")
+    assert np.abs(scan.points - POINTS).max() < 1e-5
     assert (
-        "by their headings" in told(found)
-        and "2 more columns" in told(found)
-        and "in inch" in told(found)
+        "by their headings" in message_of(scan)
+        and "2 more columns" in message_of(scan)
+        and "in inch" in message_of(scan)
     )
 
 
@@ -75,20 +77,21 @@ def test_headings_choose_the_columns_and_name_the_unit(encoding):
     ],
 )
 def test_units(head, unit, scale):
-    found = point_file.parse(table(",", head=head).encode(), "scan.xyz", unit)
-    assert np.abs(found.points - scale * POINTS).max() < 1e-9
-    assert ("names no unit" in told(found)) == (head == "")
+    scan = point_file.parse(table(",", head=head).encode(), "scan.xyz", unit)
+    assert np.abs(scan.points - scale * POINTS).max() < 1e-9
+    assert ("names no unit" in message_of(scan)) == (head == "")
 
 
 def test_lines_that_are_no_points_are_left_out_and_told():
+    """Lines that are not points are skipped and reported."""
     lines = table(";").splitlines()
     lines[5] = "probe error"
     lines[9] = "1;2"
     lines.append("nan;1;2")
-    found = point_file.parse("\n".join(lines).encode(), "scan.csv")
-    assert len(found.points) == len(POINTS) - 2
-    assert "2 lines that are not points are left out, the first is line 6" in told(found)
-    assert "1 points without finite" in told(found) and found.issues[0].level == "warning"
+    scan = point_file.parse("\n".join(lines).encode(), "scan.csv")
+    assert len(scan.points) == len(POINTS) - 2
+    assert "2 lines that are not points are left out, the first is line 6" in message_of(scan)
+    assert "1 points without finite" in message_of(scan) and scan.issues[0].level == "warning"
 
 
 def binary_stl(corners):
@@ -110,8 +113,8 @@ def ascii_stl(corners):
 def test_vertices_of_stl_come_once(write):
     points = POINTS.astype(np.float32)
     corners = points[np.random.default_rng(0).permutation(np.r_[:40, :38]).reshape(-1, 3)]
-    found = point_file.parse(write(corners), "scan.stl").points
-    assert np.abs(found - np.unique(points.astype(float), axis=0)).max() < 1e-4
+    vertices = point_file.parse(write(corners), "scan.stl").points
+    assert np.abs(vertices - np.unique(points.astype(float), axis=0)).max() < 1e-4
 
 
 def ply(kind):
@@ -146,10 +149,10 @@ def test_vertices_of_obj():
 
 def test_large_scans_are_thinned_evenly(monkeypatch):
     monkeypatch.setattr(point_file, "MAX_POINTS", 10)
-    found = point_file.parse(table(",").encode(), "scan.csv")
+    scan = point_file.parse(table(",").encode(), "scan.csv")
     assert (
-        found.points == POINTS[np.linspace(0, 39, 10).astype(int)]
-    ).all() and "from 40 points 10 are kept" in told(found)
+        scan.points == POINTS[np.linspace(0, 39, 10).astype(int)]
+    ).all() and "from 40 points 10 are kept" in message_of(scan)
 
 
 @pytest.mark.parametrize(

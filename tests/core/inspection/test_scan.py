@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers fitted to scans: judged by the equation of the surface that was scanned, between points too."""
+"""Layers fitted to scans, judged by the equation of the scanned surface at and between points."""
 
 import itertools
 
@@ -27,10 +27,10 @@ UP = np.array([[0.0, 0.0, 1.0]])
 
 
 def hull(points, name):
-    made = ConvexHull(points)
-    faces = made.simplices.copy()
+    convex_hull = ConvexHull(points)
+    faces = convex_hull.simplices.copy()
     a, b, c = (points[faces[:, k]] for k in range(3))
-    inward = (np.cross(b - a, c - a) * made.equations[:, :3]).sum(axis=1) < 0.0
+    inward = (np.cross(b - a, c - a) * convex_hull.equations[:, :3]).sum(axis=1) < 0.0
     faces[inward] = faces[inward][:, ::-1]
     return Body(name, points, faces.astype(np.int64))
 
@@ -43,7 +43,7 @@ PLATE = box((-100, -60, -10), (100, 60, 0), "plate")
 
 
 def bent(x, y):
-    """mm: how high a plate lies that is tilted and bent."""
+    """Height (mm) of a tilted and bent plate."""
     return 0.02 * x - 0.01 * y + 0.8 * (x / 100.0) ** 2 - 0.5 * np.sin(y / 25.0)
 
 
@@ -71,12 +71,18 @@ def laid(block):
 
 
 def fit(toolpath, points, **parameters):
-    of = ScanParameters(**parameters)
-    return fit_layers(toolpath, Scan(points, "scan.csv", of.scan_within), of, 0, np.eye(4))
+    scan_parameters = ScanParameters(**parameters)
+    return fit_layers(
+        toolpath,
+        Scan(points, "scan.csv", scan_parameters.scan_within),
+        scan_parameters,
+        0,
+        np.eye(4),
+    )
 
 
 def between(layer):
-    """Nine places from each point of a layer to the next, on the straight way between them."""
+    """Nine points between each two neighbouring points of a layer, on the straight line."""
     share = np.linspace(0.0, 1.0, 10)[:, None, None]
     return np.vstack(
         [
@@ -87,86 +93,102 @@ def between(layer):
 
 
 def test_the_first_layer_lies_on_what_was_scanned_and_the_others_lead_back(block, laid):
-    made = laid
-    x, y, _ = made.checks.fitted.places.T
-    assert np.abs(made.checks.fitted.off - bent(x, y)).max() < 0.06
-    count = made.checks.fitted.layers
+    """The first layer follows the scanned surface, and the next layers return to the plan."""
+    fitted = laid
+    x, y, _ = fitted.checks.fitted.places.T
+    assert np.abs(fitted.checks.fitted.off - bent(x, y)).max() < 0.06
+    count = fitted.checks.fitted.layers
     assert (
-        count - 1 < np.abs(made.checks.fitted.off).max() / (0.2 * HEIGHT) <= count
-    )  # the fewest that keep heights within a fifth
-    for number, layer in enumerate(made.layers):
+        count - 1 < np.abs(fitted.checks.fitted.off).max() / (0.2 * HEIGHT) <= count
+    )  # the fewest layers that keep heights within a fifth
+    for number, layer in enumerate(fitted.layers):
         x, y, z = between(layer).T
         share = max(0.0, 1.0 - number / count)
         assert (
             np.abs(z - number * HEIGHT - share * bent(x, y)).max() < 0.06
         )  # three times the noise
-    for one, other in zip(block.layers[count:], made.layers[count:], strict=True):
-        assert one is other  # what is back at the plan is the plan
+    for planned_layer, fitted_layer in zip(
+        block.layers[count:], fitted.layers[count:], strict=True
+    ):
+        assert planned_layer is fitted_layer  # a layer back at the plan is the planned object
 
 
 def test_outliers_move_nothing(laid):
-    """Where one point in a hundred is wrong patches are the same as without, but for less than their noise."""
+    """With one point in a hundred wrong, patches differ from the clean ones by less than their
+    noise."""
     points, clean = points_on(bent), points_on(bent, outliers=0.0)
-    places = laid.layers[0].beads[0].points
+    points_of_bead = laid.layers[0].beads[0].points
     wrong, right = (
-        Scan(some, "s", 5.0).heights(places, np.tile(UP, (len(places), 1))).off
-        for some in (points, clean)
+        Scan(cloud, "s", 5.0).heights(points_of_bead, np.tile(UP, (len(points_of_bead), 1))).off
+        for cloud in (points, clean)
     )
     assert (np.abs(points - clean).max(axis=1) > 1.0).mean() > 0.009
     assert np.abs(wrong - right).max() < 0.02
 
 
 def test_thinner_layers_are_laid_faster_by_as_much(laid):
-    made = laid
-    for number in range(made.checks.fitted.layers):
-        low, high = made.checks.uneven[number, 1:]
+    """Thinner layers are printed faster in proportion, so that the deposited volume per mm
+    stays."""
+    fitted = laid
+    for number in range(fitted.checks.fitted.layers):
+        low, high = fitted.checks.uneven[number, 1:]
         assert 0.79 * HEIGHT < low < high < 1.21 * HEIGHT
-        for bead in made.layers[number].beads:
+        for bead in fitted.layers[number].beads:
             middle = 0.5 * (bead.height[1:] + bead.height[:-1])
             assert bead.speed[1:] * middle == pytest.approx(
                 6.0 * HEIGHT, rel=1e-9
-            )  # as much at every place
-    tops = [np.concatenate([bead.points[:, 2] for bead in layer.beads]) for layer in made.layers]
-    assert made.layers[0].beads[0].height[0] == pytest.approx(
-        HEIGHT - bent(*made.layers[0].beads[0].points[0, :2]) / made.checks.fitted.layers, abs=0.02
+            )  # the same flow everywhere
+    tops = [np.concatenate([bead.points[:, 2] for bead in layer.beads]) for layer in fitted.layers]
+    assert fitted.layers[0].beads[0].height[0] == pytest.approx(
+        HEIGHT - bent(*fitted.layers[0].beads[0].points[0, :2]) / fitted.checks.fitted.layers,
+        abs=0.02,
     )
-    assert tops[-1] == pytest.approx((len(made.layers) - 1) * HEIGHT)
+    assert tops[-1] == pytest.approx((len(fitted.layers) - 1) * HEIGHT)
 
 
 def test_after_a_layer_the_next_lies_on_what_has_grown(block):
-    def grown(x, y):
+    """After a measured layer the next one follows the measured surface."""
+
+    def measured_height(x, y):
         return 10.0 - 0.4 + 0.004 * x + 0.2 * (y / 25.0) ** 2
 
-    made = fit(block, points_on(grown, (60.0, 25.0), 15_000), after_layer=4)
-    x, y, z = between(made.layers[5]).T
-    assert np.abs(z - grown(x, y)).max() < 0.06
-    for number in range(5):  # what lies below is spread evenly up to what was measured
-        x, y, z = between(made.layers[number]).T
-        assert np.abs(z - number / 5.0 * grown(x, y)).max() < 0.06
-    assert all(one is other for one, other in zip(made.layers[9:], block.layers[9:], strict=True))
+    fitted = fit(block, points_on(measured_height, (60.0, 25.0), 15_000), after_layer=4)
+    x, y, z = between(fitted.layers[5]).T
+    assert np.abs(z - measured_height(x, y)).max() < 0.06
+    for number in range(5):  # lower layers are spread evenly up to the measured height
+        x, y, z = between(fitted.layers[number]).T
+        assert np.abs(z - number / 5.0 * measured_height(x, y)).max() < 0.06
+    assert all(
+        fitted_layer is planned_layer
+        for fitted_layer, planned_layer in zip(fitted.layers[9:], block.layers[9:], strict=True)
+    )
 
 
 def test_scans_that_do_not_serve_are_refused(block):
+    """Unusable scans are rejected with a code."""
     points = points_on(bent)
-    for code, of, more in (
+    for code, cloud, options in (
         ("SCAN_MISSES", points[points[:, 0] < 0.0], {}),
         ("SCAN_MISSES", points[:5], {}),
         ("SCAN_OFF", points + (0.0, 0.0, 4.0), {}),
         ("NO_LAYER", points, {"after_layer": 14}),
     ):
         with pytest.raises(InputError) as error:
-            fit(block, of, **more)
+            fit(block, cloud, **options)
         assert error.value.code == code
     assert fit(block, points + (0.0, 0.0, 4.0), scan_within=7.0).checks.fitted.off.min() > 2.0
 
 
 def test_a_part_with_few_layers_tells_what_remains(block):
-    few = fit(block, points_on(lambda x, y: 4.5 + 0.0 * x), scan_band=0.1)
-    told = [issue for issue in few.issues if issue.code == "SCAN_REMAINS"]
-    left = np.concatenate([bead.points[:, 2] for bead in few.layers[-1].beads]) - 14 * HEIGHT
-    assert len(told) == 1 and left.max() > 1.0
-    assert f"up to {few.checks.fitted.remains:.3f} mm" in told[0].message
-    assert few.checks.fitted.remains == pytest.approx(left.max(), abs=0.02)
+    """A part with too few layers to compensate reports the remaining deviation."""
+    fitted = fit(block, points_on(lambda x, y: 4.5 + 0.0 * x), scan_band=0.1)
+    warnings = [issue for issue in fitted.issues if issue.code == "SCAN_REMAINS"]
+    remaining = (
+        np.concatenate([bead.points[:, 2] for bead in fitted.layers[-1].beads]) - 14 * HEIGHT
+    )
+    assert len(warnings) == 1 and remaining.max() > 1.0
+    assert f"up to {fitted.checks.fitted.remains:.3f} mm" in warnings[0].message
+    assert fitted.checks.fitted.remains == pytest.approx(remaining.max(), abs=0.02)
 
 
 def test_units_and_other_parts_are_told_from_the_part():
@@ -185,7 +207,8 @@ def test_units_and_other_parts_are_told_from_the_part():
 
 
 def test_a_scan_from_anywhere_is_laid_onto_the_part():
-    """All sides of a wedge, that no turn makes another place of it; one that is alike turned by half a turn is refused."""
+    """All sides of a wedge, which no rotation maps onto itself; a part with half-turn symmetry is
+    rejected."""
     wedge = hull(
         np.array(
             [(0, 0, 0), (90, 0, 0), (0, 50, 0), (90, 50, 0), (0, 0, 40), (0, 30, 40)], dtype=float
@@ -213,17 +236,19 @@ def test_a_scan_from_anywhere_is_laid_onto_the_part():
 
 
 def test_the_body_to_keep_clear_of_is_where_it_was_scanned():
+    """The obstacle follows the scanned surface."""
     points = points_on(bent)
-    found = scanned(PLATE, Scan(points, "s", 5.0), UP)
-    x, y, z = found.vertices[found.vertices[:, 2] > -3.0].T
+    body = scanned(PLATE, Scan(points, "s", 5.0), UP)
+    x, y, z = body.vertices[body.vertices[:, 2] > -3.0].T
     inside = (np.abs(x) < 95.0) & (np.abs(y) < 55.0)
     assert inside.sum() > 100 and np.abs(z - bent(x, y))[inside].max() < 0.06
     assert (
-        found.vertices[:, 2].min() == -10.0 and (found.vertices[:, 2] == -10.0).sum() > 100
+        body.vertices[:, 2].min() == -10.0 and (body.vertices[:, 2] == -10.0).sum() > 100
     )  # its underside stays
-    both = np.vstack([points[:500], points[:500] - (0.0, 0.0, 10.0)])
+    two_sided = np.vstack([points[:500], points[:500] - (0.0, 0.0, 10.0)])
     assert (
-        facing(both, PLATE, UP)[:500].mean() > 0.95 and facing(both, PLATE, UP)[500:].mean() < 0.05
+        facing(two_sided, PLATE, UP)[:500].mean() > 0.95
+        and facing(two_sided, PLATE, UP)[500:].mean() < 0.05
     )
 
 
@@ -237,25 +262,26 @@ def test_the_body_to_keep_clear_of_is_where_it_was_scanned():
     ],
 )
 def test_how_far_layers_are_moved_at_most_is_known_of_each(block, surface, parameters):
-    made = fit(block, points_on(surface), **parameters)
-    known = max_moves(made.checks.fitted, np.arange(len(made.layers)))
-    far = np.array(
+    """The maximum displacement of each layer is known in advance."""
+    fitted = fit(block, points_on(surface), **parameters)
+    max_moves_of_layers = max_moves(fitted.checks.fitted, np.arange(len(fitted.layers)))
+    moves = np.array(
         [
             max(np.abs(bead.points[:, 2] - number * HEIGHT).max() for bead in layer.beads)
-            for number, layer in enumerate(made.layers)
+            for number, layer in enumerate(fitted.layers)
         ]
     )
     assert (
-        far <= known + 0.03
-    ).all()  # patches of neighbours lead on a little beyond the first layer
+        moves <= max_moves_of_layers + 0.03
+    ).all()  # patches of neighbours extend slightly beyond the first layer
     assert (
-        np.abs(far - known).max() < 0.1 * known.max() + 0.03
-        and known[made.checks.fitted.layer] > 0.1
+        np.abs(moves - max_moves_of_layers).max() < 0.1 * max_moves_of_layers.max() + 0.03
+        and max_moves_of_layers[fitted.checks.fitted.layer] > 0.1
     )
 
 
 def test_the_volume_is_that_of_layers_as_high_as_they_were_fitted(block):
-    """A plate that lies 1.2 mm lower takes as much more."""
+    """A plate that lies 1.2 mm lower takes correspondingly more volume."""
     process = ProcessParameters(travel_speed=6.0)
     low = fit(block, points_on(lambda x, y: -1.2 + 0.0 * x))
     planned, laid = (

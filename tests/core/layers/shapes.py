@@ -1,25 +1,26 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids for tests of layers, as closed triangles."""
+"""Solids for tests of layers, as closed triangle meshes."""
 
 from __future__ import annotations
 
 import numpy as np
 
 
-def of_squares(cells, unit, depth):
-    """Squares of the xz plane, by the numbers (x, z) of each, extruded along y: vertices (n, 3) and triangles (m, 3)."""
+def extrude_squares(cells, unit, depth):
+    """Extrude squares of the xz plane, given by their numbers (x, z), along y: vertices (n, 3) and
+    triangles (m, 3)."""
     quads = []
     for x, z in cells:
         front = [(x, 0, z), (x + 1, 0, z), (x + 1, 0, z + 1), (x, 0, z + 1)]
         quads += [front, [(a, depth, c) for a, _, c in front[::-1]]]
-        for (dx, dz), (one, other) in (
+        for (dx, dz), (start, end) in (
             ((1, 0), ((x + 1, z), (x + 1, z + 1))),
             ((-1, 0), ((x, z + 1), (x, z))),
             ((0, 1), ((x + 1, z + 1), (x, z + 1))),
             ((0, -1), ((x, z), (x + 1, z))),
         ):
             if (x + dx, z + dz) not in cells:
-                (a, c), (b, d) = one, other
+                (a, c), (b, d) = start, end
                 quads.append([(a, 0, c), (a, depth, c), (b, depth, d), (b, 0, d)])
     corners = np.array(quads, dtype=float) * [unit, 1.0, unit]
     vertices, number = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
@@ -28,20 +29,20 @@ def of_squares(cells, unit, depth):
 
 
 def tee():
-    """A T: a stem of 10 x 20 x 20 mm under a beam of 45 x 20 x 10 mm; what it stands on is z = 0."""
+    """A T: a stem of 10 x 20 x 20 mm under a beam of 45 x 20 x 10 mm, standing on z = 0."""
     stem = {(x, z) for x in (0, 1) for z in range(6)}
-    return of_squares(stem | {(x, z) for x in range(-3, 6) for z in (4, 5)}, 5.0, 20.0)
+    return extrude_squares(stem | {(x, z) for x in range(-3, 6) for z in (4, 5)}, 5.0, 20.0)
 
 
 def box(size, pose=None):
     """A box from the origin, moved by a pose (4, 4)."""
-    vertices, triangles = of_squares({(0, 0)}, 1.0, 1.0)
+    vertices, triangles = extrude_squares({(0, 0)}, 1.0, 1.0)
     vertices = vertices * size
     return (vertices if pose is None else vertices @ pose[:3, :3].T + pose[:3, 3]), triangles
 
 
 def icosphere(radius, rounds=4):
-    """A ball of triangles about the origin, its vertices on the sphere."""
+    """A triangulated ball about the origin with its vertices on the sphere."""
     g = (1.0 + 5.0**0.5) / 2.0
     vertices = np.array(
         [
@@ -85,13 +86,13 @@ def icosphere(radius, rounds=4):
     )
     for _ in range(rounds):
         n = len(vertices)
-        edges, of = np.unique(
+        edges, edge_index = np.unique(
             np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1),
             axis=0,
             return_inverse=True,
         )
         vertices = np.vstack([vertices, vertices[edges].mean(axis=1)])
-        a, b, c = (np.ravel(of).reshape(-1, 3) + n).T
+        a, b, c = (np.ravel(edge_index).reshape(-1, 3) + n).T
         u, v, w = faces.T
         faces = np.vstack(
             [np.stack(t, axis=1) for t in ((u, a, c), (a, v, b), (c, b, w), (a, b, c))]

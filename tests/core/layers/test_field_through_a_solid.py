@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Distances through a solid on a grid, their levels and these laid flat, against what is known by other ways."""
+"""Distance fields through a solid on a grid, their level surfaces and the flattened levels, against
+other methods."""
 
 from __future__ import annotations
 
@@ -36,11 +37,16 @@ def test_nodes_of_a_turned_box_are_those_between_its_planes(seed):
 
 
 def test_bodies_that_overlap_are_one_and_a_cavity_is_left_out():
-    one, faces = box([10.0, 10.0, 10.0])
-    both = voxels(np.vstack([one, one + 4.0]), np.vstack([faces, faces + len(one)]), 0.5)
-    assert both.solid.sum() * 0.5**3 == pytest.approx(2000.0 - 6.0**3, rel=0.02)
+    """Overlapping bodies are united, and a cavity is excluded."""
+    vertices, faces = box([10.0, 10.0, 10.0])
+    overlapping = voxels(
+        np.vstack([vertices, vertices + 4.0]), np.vstack([faces, faces + len(vertices)]), 0.5
+    )
+    assert overlapping.solid.sum() * 0.5**3 == pytest.approx(2000.0 - 6.0**3, rel=0.02)
     hollow = voxels(
-        np.vstack([one, 0.5 * one + 2.5]), np.vstack([faces, faces[:, ::-1] + len(one)]), 0.5
+        np.vstack([vertices, 0.5 * vertices + 2.5]),
+        np.vstack([faces, faces[:, ::-1] + len(vertices)]),
+        0.5,
     )
     assert hollow.solid.sum() * 0.5**3 == pytest.approx(1000.0 - 125.0, rel=0.02)
 
@@ -52,8 +58,8 @@ def _ball(step=0.5, radius=10.0):
 def test_distance_from_a_point_in_free_space():
     grid = _ball()
     linked = links(grid)
-    places = grid.places(linked.nodes)
-    exact = np.linalg.norm(places - [2.0, 1.0, -1.0], axis=1)
+    nodes = grid.places(linked.nodes)
+    exact = np.linalg.norm(nodes - [2.0, 1.0, -1.0], axis=1)
     seeds = np.flatnonzero(exact < 2.0)
     u = arrival(linked, grid.step, seeds, exact[seeds])
     assert np.abs(u - exact).max() < 0.35 * grid.step
@@ -71,6 +77,8 @@ def _on(grid, linked, u):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_in_a_maze_no_way_is_shorter_than_straight_or_longer_than_from_node_to_node(seed):
+    """In a maze the distance is at least the straight line and at most the path along grid
+    edges."""
     rng = np.random.default_rng(seed)
     solid = np.zeros((24, 20, 22), dtype=bool)
     solid[2:-2, 2:-2, 2:-2] = True
@@ -79,18 +87,18 @@ def test_in_a_maze_no_way_is_shorter_than_straight_or_longer_than_from_node_to_n
         solid[tuple(slice(k, k + n) for k, n in zip(a, rng.permutation([9, 7, 2])))] = False
     grid = Voxels(np.zeros(3), 1.0, solid)
     linked = links(grid)
-    places = grid.places(linked.nodes)
-    start = int(np.argmin(places.sum(axis=1)))
+    nodes = grid.places(linked.nodes)
+    start = int(np.argmin(nodes.sum(axis=1)))
     u = arrival(linked, 1.0, np.array([start]), np.zeros(1))
     pairs = np.vstack(
-        [np.stack([np.arange(len(places)), side], axis=1) for side in linked.neighbours]
+        [np.stack([np.arange(len(nodes)), side], axis=1) for side in linked.neighbours]
     )
-    pairs = pairs[pairs[:, 1] < len(places)]
-    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(places),) * 2)
+    pairs = pairs[pairs[:, 1] < len(nodes)]
+    graph = coo_matrix((np.ones(len(pairs)), pairs.T), shape=(len(nodes),) * 2)
     steps = dijkstra(graph.tocsr(), indices=start)
     assert (np.isfinite(u) == np.isfinite(steps)).all()
     reached = np.isfinite(u)
-    assert (u[reached] >= np.linalg.norm(places - places[start], axis=1)[reached] - 1e-9).all()
+    assert (u[reached] >= np.linalg.norm(nodes - nodes[start], axis=1)[reached] - 1e-9).all()
     assert (u[reached] <= steps[reached] + 1e-9).all()
 
 
@@ -117,14 +125,17 @@ def test_levels_are_closed_surfaces_of_the_right_area(seed):
 @pytest.mark.parametrize("seed", [0, 1, 2])
 @pytest.mark.always("0")
 def test_levels_of_a_rough_field_have_one_side_everywhere(seed):
-    """Where fronts meet, the field has ridges, and its slope says nothing. Neighbours run along their edge opposite ways;
-    the surface goes once round every node above it, against its normals, and round none below."""
+    """Where fronts meet, the field has ridges without a useful gradient. The level must still be
+    oriented consistently: triangles traverse a shared edge in opposite directions, and the winding
+    number is one for nodes above the level and zero below."""
     rng = np.random.default_rng(seed)
     field = ndimage.gaussian_filter(rng.normal(size=(24, 24, 24)), 0.8)
-    field[[0, -1]] = field[:, [0, -1]] = field[:, :, [0, -1]] = -1.0  # closed within the grid
+    field[[0, -1]] = field[:, [0, -1]] = field[
+        :, :, [0, -1]
+    ] = -1.0  # the level closes within the grid
     mesh = Cubes(field, np.zeros(3), 1.0).level(0.1)
-    ways = np.vstack([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
-    assert len(np.unique(ways, axis=0)) == len(ways)
+    half_edges = np.vstack([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
+    assert len(np.unique(half_edges, axis=0)) == len(half_edges)
     for node in rng.integers(0, 24, size=(60, 3)):
         a, b, c = (mesh.vertices[mesh.faces[:, k]] - node for k in range(3))
         la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
@@ -140,17 +151,18 @@ def test_levels_of_a_rough_field_have_one_side_everywhere(seed):
 
 
 def test_a_field_is_carried_on_as_it_goes():
+    """Extrapolation continues a linear field exactly."""
     grid = _ball()
     linked = links(grid)
     slope = np.array([0.3, -0.5, 0.8])
     field = extrapolate(grid, linked, grid.places(linked.nodes) @ slope)
-    known = np.flatnonzero(~np.isnan(field.ravel()))
-    assert len(known) > 1.3 * len(linked.nodes)
-    assert np.abs(field.ravel()[known] - grid.places(known) @ slope).max() < 1e-9
+    extended = np.flatnonzero(~np.isnan(field.ravel()))
+    assert len(extended) > 1.3 * len(linked.nodes)
+    assert np.abs(field.ravel()[extended] - grid.places(extended) @ slope).max() < 1e-9
 
 
 def _sheet(wrap, width=30.0, height=20.0, edge=1.0, seed=0):
-    """A mesh of a rectangle brought onto a surface, and its picture."""
+    """A mesh of a rectangle mapped onto a surface, and its flat image."""
     rng = np.random.default_rng(seed)
     x, y = np.meshgrid(np.arange(0.0, width, edge), np.arange(0.0, height, edge), indexing="ij")
     flat = np.stack([x.ravel(), y.ravel()], axis=1) + rng.uniform(-0.3, 0.3, (x.size, 2)) * edge
@@ -178,22 +190,24 @@ def _sphere(flat, radius=25.0):
 
 
 def test_what_can_be_laid_flat_is_without_distortion():
+    """A developable surface is flattened without distortion."""
     mesh, flat = _sheet(_cylinder)
-    found = flatten(mesh)
-    assert found.min_stretch.min() > 0.99 and found.max_stretch.max() < 1.01
-    away = np.linalg.norm(found.points[:, None] - found.points[::97], axis=2)
+    flattened = flatten(mesh)
+    assert flattened.min_stretch.min() > 0.99 and flattened.max_stretch.max() < 1.01
+    distances = np.linalg.norm(flattened.points[:, None] - flattened.points[::97], axis=2)
     true = np.linalg.norm(flat[:, None] - flat[::97], axis=2)
-    assert np.abs(away - true).max() < 0.05
-    assert (measure_stretch(mesh, found.points)[0] > 0.0).all()  # none turned over
+    assert np.abs(distances - true).max() < 0.05
+    assert (measure_stretch(mesh, flattened.points)[0] > 0.0).all()  # no triangle is flipped
 
 
 def test_what_cannot_is_stretched_no_more_than_it_must():
+    """A sphere is stretched no more than necessary."""
     mesh, _ = _sheet(_sphere)
-    found = flatten(mesh)
+    flattened = flatten(mesh)
     half = 0.5 * np.hypot(30.0, 20.0) / 25.0  # angle from the middle to a corner
-    assert found.min_stretch.min() > np.sin(
+    assert flattened.min_stretch.min() > np.sin(
         half
-    ) / half - 0.05 and found.max_stretch.max() < 1.05 * half / np.sin(half)
+    ) / half - 0.05 and flattened.max_stretch.max() < 1.05 * half / np.sin(half)
 
 
 @pytest.mark.parametrize("surface", [_cylinder, _sphere])

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers by the way through a solid: each within a band of the layer height of the one below, the whole solid in them."""
+"""Geodesic layers: each within a band of one layer height above the layer below, and together the
+whole solid."""
 
 from __future__ import annotations
 
@@ -28,12 +29,12 @@ def _bottom(vertices, triangles):
 
 @pytest.fixture(scope="module")
 def layers(through_tee):
-    """Places (n, 3) spread over each layer, and its area."""
-    found = []
+    """Points (n, 3) spread over each layer, and its area."""
+    sampled = []
     for number in range(int(through_tee.top / HEIGHT + 0.5)):
-        places, area = [], 0.0
-        for piece in through_tee.pieces((number + 0.5) * HEIGHT):
-            for region in piece.regions:
+        points, area = [], 0.0
+        for patch in through_tee.pieces((number + 0.5) * HEIGHT):
+            for region in patch.regions:
                 area += region.area
                 ring = region.borders()[0]
                 axes = [
@@ -41,13 +42,14 @@ def layers(through_tee):
                     for low, high in zip(ring.min(axis=0), ring.max(axis=0))
                 ]
                 flat = np.stack(np.meshgrid(*axes), axis=-1).reshape(-1, 2)
-                places.append(piece.chart.wrap(flat[region.contains(flat)]))
-        found.append((through_tee.onto(np.vstack(places), number * HEIGHT), area))
-    return found
+                points.append(patch.chart.wrap(flat[region.contains(flat)]))
+        sampled.append((through_tee.onto(np.vstack(points), number * HEIGHT), area))
+    return sampled
 
 
 def _way(points):
-    """The length (n,) of the shortest way from z = 0 to points (n, 3) of the tee: up, then round a corner of the stem."""
+    """Length (n,) of the shortest path from z = 0 to points (n, 3) of the tee: up, then around a
+    corner of the stem."""
     x, z = points[:, 0], points[:, 2]
     aside = np.maximum(np.maximum(-x, x - 10.0), 0.0)
     return np.where(aside > 0.0, 20.0 + np.hypot(aside, z - 20.0), z)
@@ -68,12 +70,13 @@ def test_each_layer_lies_on_the_one_below(layers):
 
 
 def test_areas_are_those_of_the_fans(layers):
+    """Areas of the layers agree with the fans around the corners."""
     for number, (_, area) in enumerate(layers):
-        way = (number + 0.5) * HEIGHT
-        if way < 20.0:
+        distance = (number + 0.5) * HEIGHT
+        if distance < 20.0:
             exact = 200.0
-        elif way < 30.0:
-            exact = 200.0 + 2.0 * 20.0 * 0.5 * np.pi * (way - 20.0)
+        elif distance < 30.0:
+            exact = 200.0 + 2.0 * 20.0 * 0.5 * np.pi * (distance - 20.0)
         else:
             continue
         assert area == pytest.approx(exact, rel=0.05), number
@@ -99,13 +102,14 @@ def test_what_no_way_leads_to_is_told():
 
 
 def test_solids_that_touch_are_one():
+    """Solids that touch are united."""
     low, triangles = box([20.0, 10.0, 6.0])
-    found = field(
+    distance_field = field(
         [SolidMesh(low, triangles), SolidMesh(low + [0.0, 0.0, 6.0], triangles)],
         _bottom(low, triangles),
         0.7,
     )
     for distance in (3.0, 6.0, 9.0):
-        pieces = list(found.pieces(distance))
-        assert len(pieces) == 1 and len(pieces[0].regions) == 1
-        assert pieces[0].regions[0].area == pytest.approx(200.0, rel=0.01)
+        patches = list(distance_field.pieces(distance))
+        assert len(patches) == 1 and len(patches[0].regions) == 1
+        assert patches[0].regions[0].area == pytest.approx(200.0, rel=0.01)

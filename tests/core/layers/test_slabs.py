@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Volumes between planes by cutting with half spaces and by equations; leaning facets by their slopes."""
+"""Volumes between planes against half-space clipping and formulas; overhanging facets against their
+slopes."""
 
 import numpy as np
 import pytest
@@ -14,11 +15,12 @@ from freecad_am.core.layers.stacking import find_leaning, prepare_stack
 from freecad_am.core.parameters.filled import SolidParameters
 from tests.core.strategies.test_solids_in_planes import CONE, box, hull, tube
 
-LEVEL = Base("the first layer", Plane(), np.eye(4))
+LEVEL_BASE = Base("the first layer", Plane(), np.eye(4))
 
 
 def clipped(points, height):
-    """The volume of a convex body below a height, by its corners there and where the lines between all others cross it."""
+    """Volume of a convex body below a height, from its corners below and the intersections of all
+    lines between corners."""
     under, over = points[points[:, 2] <= height], points[points[:, 2] > height]
     if not len(under):
         return 0.0
@@ -35,9 +37,9 @@ def test_volumes_below_planes_are_those_of_half_spaces(seed):
     points[:3, 2] = -25.0  # a face that lies in a plane
     body = hull(points)
     heights = np.concatenate([[-26.0, -25.0], np.linspace(-24.0, 28.0, 17), points[4:8, 2]])
-    wanted = [clipped(points, height) for height in heights]
+    expected = [clipped(points, height) for height in heights]
     np.testing.assert_allclose(
-        volumes_below(body.vertices, body.triangles, heights), wanted, rtol=1e-9, atol=1e-8
+        volumes_below(body.vertices, body.triangles, heights), expected, rtol=1e-9, atol=1e-8
     )
 
 
@@ -45,26 +47,26 @@ def test_layers_of_a_cone_and_a_box_have_their_volumes_whichever_way_they_are_st
     cone = tube(CONE)  # by its polygon
     area = 240 / 2 * np.sin(2 * np.pi / 240)
     group = group_of(prepare_stack([cone], SolidParameters(layer_height=4.0), "cone"))
-    found = slabs(group, 4.0, np.zeros((0, 3)), np.zeros(0))
+    slab_volumes = slabs(group, 4.0, np.zeros((0, 3)), np.zeros(0))
     planes = np.minimum(4.0 * np.arange(9), 30.0)
     radius = 40.0 - 0.5 * planes
     inner = area * 100.0 * np.diff(planes)
-    wanted = -area * np.diff(radius**3) * 2.0 / 3.0 - inner
-    np.testing.assert_allclose(found.part_volume, wanted, rtol=1e-9)
-    assert len(found.deposited) == 8 and not found.deposited.any()
+    expected = -area * np.diff(radius**3) * 2.0 / 3.0 - inner
+    np.testing.assert_allclose(slab_volumes.part_volume, expected, rtol=1e-9)
+    assert len(slab_volumes.deposited) == 8 and not slab_volumes.deposited.any()
     bars = [box((0, 0, 0), (30, 7, 5)), box((0, 20, 0), (10, 27, 5))]
     group = group_of(
         prepare_stack(bars, SolidParameters(layer_height=4.0, direction="-1 0 0"), "bars")
     )
-    # 30 mm high along -X, the second box in the first 20 mm above the lowest
+    # 30 mm high along -X, the second box in the lowest 20 mm
     points = np.array([[28.0, 1.0, 1.0], [26.0, 1.0, 1.0], [2.0, 1.0, 1.0]])
     points[:, 0] = 30.0 - 4.0 * np.array([0, 1, 6])
-    found = slabs(group, 4.0, points, np.array([3.0, 0.0, 5.0]))
+    slab_volumes = slabs(group, 4.0, points, np.array([3.0, 0.0, 5.0]))
     second = 35.0 * np.array([0, 0, 0, 0, 0, 4, 4, 2])
     np.testing.assert_allclose(
-        found.part_volume, 35.0 * np.array([4, 4, 4, 4, 4, 4, 4, 2]) + second, rtol=1e-9
+        slab_volumes.part_volume, 35.0 * np.array([4, 4, 4, 4, 4, 4, 4, 2]) + second, rtol=1e-9
     )
-    assert found.deposited.tolist() == [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0, 0.0]
+    assert slab_volumes.deposited.tolist() == [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 5.0, 0.0]
     assert (
         sorted(len(loop) for loop in outline(group, 25.0)) == [7, 7]
         or len(outline(group, 25.0)) == 2
@@ -73,10 +75,11 @@ def test_layers_of_a_cone_and_a_box_have_their_volumes_whichever_way_they_are_st
 
 
 def test_facets_lean_by_their_slope_and_what_stands_does_not():
-    """Roofs of slopes from 10 to 80 deg, upside down."""
+    """Roofs with slopes from 10 to 80 deg, upside down; vertical walls have no overhang."""
     for slope in np.radians([10.0, 35.0, 60.0, 80.0]):
         rise = 20.0 * np.tan(0.5 * np.pi - slope)
-        # widens upwards from 10 to 50: sides lean out by the slope; the base of 10 x 30 stands
+        # widens upwards from 10 to 50: the sides overhang by the slope; the base of 10 x 30 is
+        # supported
         points = np.array(
             [
                 [x, y, z]
@@ -86,30 +89,30 @@ def test_facets_lean_by_their_slope_and_what_stands_does_not():
             ]
         )
         body = hull(points)
-        found = find_leaning([body], LEVEL, 0.1)
+        overhangs = find_leaning([body], LEVEL_BASE, 0.1)
         side = 30.0 * np.hypot(20.0, rise)
-        assert found.steeper_than(slope - 0.01)[1] == pytest.approx(2.0 * side, rel=1e-9)
+        assert overhangs.steeper_than(slope - 0.01)[1] == pytest.approx(2.0 * side, rel=1e-9)
         assert (
-            found.steeper_than(slope + 0.01)[1] == 0.0
-            and len(found.steeper_than(slope + 0.01)[0]) == 0
+            overhangs.steeper_than(slope + 0.01)[1] == 0.0
+            and len(overhangs.steeper_than(slope + 0.01)[0]) == 0
         )
-        assert found.total_area == pytest.approx(ConvexHull(points).area, rel=1e-9)
+        assert overhangs.total_area == pytest.approx(ConvexHull(points).area, rel=1e-9)
         flying = Body("higher", body.vertices + [100.0, 0.0, 50.0], body.triangles)
-        both = find_leaning([body, flying], LEVEL, 0.1)
-        assert both.steeper_than(np.radians(85.0))[1] == pytest.approx(
+        overhangs_of_both = find_leaning([body, flying], LEVEL_BASE, 0.1)
+        assert overhangs_of_both.steeper_than(np.radians(85.0))[1] == pytest.approx(
             300.0, rel=1e-9
         )  # its underside is a ceiling
-        assert (np.diff(both.lean) >= 0.0).all()
+        assert (np.diff(overhangs_of_both.lean) >= 0.0).all()
 
 
 def elbow(widening):
-    """A pipe bent by 90 deg about a radius of 40 mm, 5 mm thick where it stands and wider by a share of the way; a base with
-    the arc as its guide."""
+    """A pipe bent by 90 deg about a radius of 40 mm, 5 mm thick at its base and widening by a share
+    of the arc length; a base with the arc as its guide."""
     turn, round_ = (
         np.linspace(0.0, np.pi / 2.0, 91),
         np.linspace(0.0, 2.0 * np.pi, 72, endpoint=False),
     )
-    way = np.stack([np.sin(turn), np.zeros_like(turn), np.cos(turn)], axis=1)
+    tangents = np.stack([np.sin(turn), np.zeros_like(turn), np.cos(turn)], axis=1)
     out = np.stack([-np.cos(turn), np.zeros_like(turn), np.sin(turn)], axis=1)
     middle = np.array([40.0, 0.0, 0.0]) + 40.0 * out
     radius = 5.0 + widening * 40.0 * turn
@@ -135,23 +138,23 @@ def elbow(widening):
         < 0.0
     ):
         sides = sides[:, ::-1]
-    return Body("elbow", points, sides), Base("the guide", fit_guide(middle, way), np.eye(4))
+    return Body("elbow", points, sides), Base("the guide", fit_guide(middle, tangents), np.eye(4))
 
 
 @pytest.mark.parametrize("widening", [0.0, 0.05])
 def test_facets_lean_from_the_guide_where_they_are(widening):
-    """A bent pipe leans out nowhere from the planes across it; one that widens by as much as it does, more where the bend is
-    narrow: the way is shorter there."""
+    """A bent pipe has no overhang relative to the planes across it. One that widens overhangs by
+    its widening, more on the inside of the bend, where the path is shorter."""
     body, base = elbow(widening)
-    found, upright = find_leaning([body], base, 0.1), find_leaning([body], LEVEL, 0.1)
+    overhangs, upright = find_leaning([body], base, 0.1), find_leaning([body], LEVEL_BASE, 0.1)
     assert upright.steeper_than(np.radians(20.0))[1] > 0.2 * upright.total_area
-    least, most = (
+    min_lean, max_lean = (
         np.arctan(widening * 40.0 / (40.0 + side * (5.0 + widening * 20.0 * np.pi)))
         for side in (1.0, -1.0)
     )
     flat = np.radians(0.5)  # facets are 5 deg wide
-    assert found.steeper_than(most + flat)[1] < 1e-6 * found.total_area
+    assert overhangs.steeper_than(max_lean + flat)[1] < 1e-6 * overhangs.total_area
     if widening:
         assert (
-            found.steeper_than(least - flat)[1] > 0.95 * found.total_area
-        )  # but for what is near the first plane
+            overhangs.steeper_than(min_lean - flat)[1] > 0.95 * overhangs.total_area
+        )  # except near the first plane

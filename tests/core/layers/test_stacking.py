@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which way planes are stacked is a matter of the part, not of the triangles that it comes in."""
+"""The build direction depends on the part, not on its triangles."""
 
 import numpy as np
 import pytest
@@ -17,18 +17,21 @@ PLATE = CORNERS[np.vstack([SIDES[:, [0, 1, 2]], SIDES[:, [0, 2, 3]]])]
 
 
 def quartered(corners, times):
-    """Triangles (m, 3, 3), each in four parts, so many times."""
+    """Triangles (m, 3, 3), each split into four, several times."""
     for _ in range(times):
         a, b, c = np.moveaxis(corners, 1, 0)
         ab, bc, ca = 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)
         corners = np.concatenate(
-            [np.stack(one, axis=1) for one in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
+            [
+                np.stack(corner_points, axis=1)
+                for corner_points in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))
+            ]
         )
     return corners
 
 
 def body(corners, rng):
-    """In another order and with the digits that files of meshes have."""
+    """The corners in random order with the digits of mesh files."""
     points = corners[rng.permutation(len(corners))].astype(np.float32).astype(float)
     points, number = np.unique(points.reshape(-1, 3), axis=0, return_inverse=True)
     return Body("plate", points, np.reshape(number, (-1, 3)))
@@ -36,21 +39,22 @@ def body(corners, rng):
 
 @pytest.mark.parametrize("seed", range(12))
 def test_meshes_of_one_part_are_stacked_alike(seed):
-    """A plate lies on either of its large faces just as well; which one it is stays the same, and it lies."""
+    """A plate fits either of its large faces equally well; the choice must not depend on the mesh,
+    and the plate lies flat."""
     rng = np.random.default_rng(seed)
     turn = Rotation.random(random_state=seed).as_matrix()
-    for part in (PLATE, PLATE @ turn.T):
-        few, many = (
-            rank_directions([body(quartered(part, times), rng)], SolidParameters())[0]
+    for corners in (PLATE, PLATE @ turn.T):
+        coarse, fine = (
+            rank_directions([body(quartered(corners, times), rng)], SolidParameters())[0]
             for times in (0, 3)
         )
-        assert few.direction == pytest.approx(
-            many.direction, abs=2e-4
-        ) and few.height == pytest.approx(10.0, abs=0.02)
+        assert coarse.direction == pytest.approx(
+            fine.direction, abs=2e-4
+        ) and coarse.height == pytest.approx(10.0, abs=0.02)
 
 
 def square_tube(outer, inner, length):
-    """Triangles of a tube along X whose sections are squares that stand on a corner."""
+    """Triangles of a tube along X whose square sections stand on a corner."""
 
     def ring(half):
         turn = np.sqrt(2.0) * half * np.array([[0, 1], [-1, 0], [0, -1], [1, 0]])
@@ -72,20 +76,26 @@ def square_tube(outer, inner, length):
 
 
 def test_a_part_is_not_balanced_on_an_edge():
-    """On an edge nothing of it leans by more than 45 deg and it is lower than on its end, but it falls over."""
+    """On an edge no facet overhangs by more than 45 deg and the part is lower than on its end, but
+    it would fall over."""
     for angle in (0.0, 30.0):
         turn = Rotation.from_euler("z", angle, degrees=True).as_matrix()
-        part = square_tube(40.0, 30.0, 80.0) @ turn.T
-        whole = Body("tube", part.reshape(-1, 3), np.arange(3 * len(part)).reshape(-1, 3))
-        found = rank_directions([whole], SolidParameters())
-        way = found[0].direction
-        assert abs(way @ turn[:, 0]) == pytest.approx(1.0, abs=1e-3) and found[0].area == 0.0
-        # what stands on the platform has an area, and the middle of the part is over it
-        heights = part @ way
-        standing = part[(heights < heights.min() + 0.1).all(axis=1)]
+        corners = square_tube(40.0, 30.0, 80.0) @ turn.T
+        tube = Body("tube", corners.reshape(-1, 3), np.arange(3 * len(corners)).reshape(-1, 3))
+        directions = rank_directions([tube], SolidParameters())
+        direction = directions[0].direction
+        assert (
+            abs(direction @ turn[:, 0]) == pytest.approx(1.0, abs=1e-3)
+            and directions[0].area == 0.0
+        )
+        # the face on the platform has an area, and the centre of the part is above it
+        heights = corners @ direction
+        standing = corners[(heights < heights.min() + 0.1).all(axis=1)]
         area = 0.5 * np.linalg.norm(
             np.cross(standing[:, 1] - standing[:, 0], standing[:, 2] - standing[:, 0]), axis=1
         )
         assert area.sum() == pytest.approx(40.0**2 - 30.0**2, rel=1e-3)
-        on_edge = next(one for one in found if abs(one.direction[2]) > 0.999)
-        assert on_edge.area == 0.0 and on_edge.height < found[0].height and on_edge.stable < 0.05
+        on_edge = next(candidate for candidate in directions if abs(candidate.direction[2]) > 0.999)
+        assert (
+            on_edge.area == 0.0 and on_edge.height < directions[0].height and on_edge.stable < 0.05
+        )

@@ -39,7 +39,7 @@ CASES = [
     pytest.param(TOUCHED, POINTS, id="touched"),
     pytest.param(NOZZLE_SHAPE, NozzleShape("/tmp/torch 1.step"), id="shape"),
 ]
-# as documents and macros of earlier versions have them
+# as in documents and macros of earlier versions
 STRINGS = [
     (EXTERNAL, MECHANISMS[0], "kuka-kl100-2 at 0 0 -3.5 0 0 90 carries robot"),
     (EXTERNAL, MECHANISMS[1], "my table.json at 1500, 0.25, 0, 0, 0.1, 0 carries part"),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Directions and axes are the same from a text, a list and numbers, and come back exactly from their text."""
+"""Directions and axes are the same from a text, a list and numbers, and their text restores them
+exactly."""
 
 import random
 
@@ -11,12 +12,12 @@ from freecad_am.core.parameters.filled import BaseParameters, SolidParameters
 from freecad_am.core.parameters.vectors import Axis, axis_text, direction_text
 from freecad_am.sections import fields
 
-FREE, REQUIRED, AXIS = direction_text("k", "auto"), direction_text("k"), axis_text("k")
+OPTIONAL, REQUIRED, AXIS = direction_text("k", "auto"), direction_text("k"), axis_text("k")
 
 
 @pytest.mark.parametrize("value", ["0 -1 0.5", "0, -1, 0.5", (0.0, -1.0, 0.5), [0, "-1", 0.5]])
 def test_texts_and_numbers_give_the_same_direction(value):
-    assert FREE.read(value) == REQUIRED.read(value) == (0.0, -1.0, 0.5)
+    assert OPTIONAL.read(value) == REQUIRED.read(value) == (0.0, -1.0, 0.5)
 
 
 def test_an_axis_is_a_point_and_a_direction():
@@ -37,7 +38,7 @@ def test_a_text_gives_the_numbers_exactly():
 
 
 def test_auto_is_no_direction_where_it_is_allowed():
-    assert FREE.read("auto") is None and FREE.text(None) == "auto"
+    assert OPTIONAL.read("auto") is None and OPTIONAL.text(None) == "auto"
     assert SolidParameters(direction="auto").direction is None
     assert CellParameters().world_up == (0.0, 0.0, 1.0)
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Poses of a box: what is said feasible by some points is planned whole, what is said not to be is held against rotations
-tried one by one and against the plan of all points; figures against those of that plan."""
+"""Poses of a box: a pose judged feasible by a few points is planned with all points; an infeasible
+one is compared with single rotations and with the full plan; figures are compared with that
+plan."""
 
 import dataclasses
 
@@ -33,8 +34,8 @@ PROCESS = ProcessParameters(
     lead_on=0.3,
     between_layers=dataclasses.replace(ProcessParameters().between_layers, wait=5.0),
 )
-MARGIN, TIME = 0.02, 0.1  # what the docs tell: of a range, and of the time
-MOVED = {  # a cell whose box has both, what is moved in it, and the box
+MARGIN_SHARE, TIME_SHARE = 0.02, 0.1  # promised in the docs: share of the range, and of the time
+MOVABLE_CASES = {  # a cell with feasible and infeasible poses, the moved object, and the box
     "point": (CellParameters(limits="paper"), {"x": 400.0, "y": 400.0, "z": 300.0, "step": 300.0}),
     "platform on the flange": (
         CellParameters(limits="paper"), {"moves": "platform", "x": 300.0, "y": 0.0, "z": 200.0, "ry": np.pi / 3,
@@ -80,8 +81,9 @@ def job_of(toolpath):
     )
 
 
-def whole(toolpath, settings):
-    """The plan of all points, away from what is tested: its motion, joint path and whether it can be carried out."""
+def plan_all_points(toolpath, settings):
+    """Plan all points independently of the tested code; return cell, joint path, motion and
+    feasibility."""
     cell = cells.resolve(settings, toolpath.frame, toolpath.family)
     path = plan_joints(toolpath, cell, JointParameters())
     motion, rapids = assemble(
@@ -90,46 +92,52 @@ def whole(toolpath, settings):
     return cell, path, motion, not has_errors([*path.issues, *rapids])
 
 
-@pytest.mark.parametrize("case", MOVED)
+@pytest.mark.parametrize("case", MOVABLE_CASES)
 @pytest.mark.always("tool on the robot", "point", "table")
 def test_what_is_said_of_a_pose_is_what_its_whole_plan_says(dome, case):
-    settings, box = MOVED[case]
+    """The verdict on a pose agrees with the plan of all points."""
+    settings, box = MOVABLE_CASES[case]
     parameters = PlaceParameters(points=200, **box)
     moves = place.select_movable(settings, parameters.moves)
     poses = parameters.poses(place.pose_of(settings, moves))
-    some, every = (Judge(job_of(dome), most) for most in (parameters.points, None))
-    assert some.points < 0.6 * every.points == 0.6 * dome.point_count
-    said, hidden = [], 0
+    sampled_judge, full_judge = (
+        Judge(job_of(dome), max_points) for max_points in (parameters.points, None)
+    )
+    assert sampled_judge.points < 0.6 * full_judge.points == 0.6 * dome.point_count
+    verdicts, hidden = [], 0
     for pose in poses[np.unique(np.linspace(0, len(poses) - 1, 5).astype(int))]:
-        there = place.replace_pose(settings, moves, pose)
-        one = some.evaluate(there)
-        cell, path, motion, feasible = whole(dome, there)
-        assert one.feasible or not feasible, (pose, one)
-        said.append(feasible)
+        moved_cell = place.replace_pose(settings, moves, pose)
+        verdict = sampled_judge.evaluate(moved_cell)
+        cell, path, motion, feasible = plan_all_points(dome, moved_cell)
+        assert verdict.feasible or not feasible, (pose, verdict)
+        verdicts.append(feasible)
         if (
-            one.feasible and not feasible
-        ):  # between the points looked at; told before it is proposed
+            verdict.feasible and not feasible
+        ):  # infeasible between the sampled points; detected before the pose is proposed
             hidden += 1
-            assert not every.evaluate(there).feasible
+            assert not full_judge.evaluate(moved_cell).feasible
         if feasible:
-            left = cell.limits.smallest_share(motion.joints[motion.role == DEPOSIT]).min()
-            assert one.share == 1.0 and one.branch == path.branch
-            assert one.margin == pytest.approx(left, abs=MARGIN)
-            assert one.time == pytest.approx(timeline(motion, PROCESS).total, rel=TIME)
-    assert {True, False} <= set(said) and hidden <= 1  # both are there, or nothing was tested
+            margin = cell.limits.smallest_share(motion.joints[motion.role == DEPOSIT]).min()
+            assert verdict.share == 1.0 and verdict.branch == path.branch
+            assert verdict.margin == pytest.approx(margin, abs=MARGIN_SHARE)
+            assert verdict.time == pytest.approx(timeline(motion, PROCESS).total, rel=TIME_SHARE)
+    assert {True, False} <= set(
+        verdicts
+    ) and hidden <= 1  # both verdicts occur, otherwise nothing was tested
 
 
 def test_points_that_no_rotation_serves_are_counted_right(dome):
-    """Each point with 1,440 rotations in turn: limits with whole turns, and the condition of a Jacobian by differences."""
+    """Each point with 1,440 rotations in turn: limits with whole turns, and the conditioning of a
+    Jacobian by differences."""
     settings = CellParameters(
         limits="paper", deposition_point=(645.747, -830.155, 453.167, 0.0, 0.0, 0.0)
     )
     judge = Judge(job_of(dome), 40)
-    said = judge.evaluate(settings)
+    verdict = judge.evaluate(settings)
     cell = cells.resolve(settings, dome.frame)
-    parts = [bead for _, _, bead in judge._some.toolpath]
+    beads = [bead for _, _, bead in judge._some.toolpath]
     position, tool = (
-        np.concatenate([getattr(bead, name) for bead in parts]) for name in ("points", "tool")
+        np.concatenate([getattr(bead, name) for bead in beads]) for name in ("points", "tool")
     )
     turns, lower, upper = 2.0 * np.pi * np.arange(-2, 3), cell.limits.lower, cell.limits.upper
     served = np.zeros(len(position), dtype=bool)
@@ -159,41 +167,49 @@ def test_points_that_no_rotation_serves_are_counted_right(dome):
         within = ((turned >= lower[:, None]) & (turned <= upper[:, None])).any(axis=2).all(axis=1)
         served |= reached & within & (condition >= np.maximum(0.25 * at_zero, 0.02))
     assert 0.1 < served.mean() < 0.95
-    assert (said.share, said.code) == (pytest.approx(served.mean(), abs=1e-12), UNREACHED)
+    assert (verdict.share, verdict.code) == (pytest.approx(served.mean(), abs=1e-12), UNREACHED)
 
 
 def test_the_best_is_planned_with_all_points_and_nearest_to_where_the_part_stands(dome):
+    """The best pose is planned with all points and is the nearest to the present position."""
     settings = CellParameters(limits="paper")
     steps = []
-    found = place_part(
+    placement = place_part(
         job_of(dome),
         settings,
         PlaceParameters(points=60, x=300.0, y=0.0, z=300.0, step=300.0),
         lambda share, text: steps.append(share),
     )
-    assert isinstance(found, Placed) and len(found.poses) == 9 and steps == sorted(steps)
-    assert found.best == next(reversed(found.proven))
-    assert whole(dome, dataclasses.replace(settings, **inner(found.entries(found.best))))[3]
-    margins = {number: found.judged[number].margin for number in ranked(found, "margin")}
-    clear = [number for number in margins if found.judged[number].clearance > 0.0]
-    assert found.proven[found.best].margin >= max(margins[number] for number in clear) - MARGIN
-    times = [found.judged[number].time for number in ranked(found, "time") if number in clear]
+    assert isinstance(placement, Placed) and len(placement.poses) == 9 and steps == sorted(steps)
+    assert placement.best == next(reversed(placement.proven))
+    assert plan_all_points(
+        dome, dataclasses.replace(settings, **inner(placement.entries(placement.best)))
+    )[3]
+    margins = {number: placement.judged[number].margin for number in ranked(placement, "margin")}
+    clear = [number for number in margins if placement.judged[number].clearance > 0.0]
+    assert (
+        placement.proven[placement.best].margin
+        >= max(margins[number] for number in clear) - MARGIN_SHARE
+    )
+    times = [
+        placement.judged[number].time for number in ranked(placement, "time") if number in clear
+    ]
     assert times == pytest.approx(sorted(times), abs=0.11)
-    assert set(ranked(found, "clearance")) == set(ranked(found, "time"))
-    lines = list(place.rows(found))
+    assert set(ranked(placement, "clearance")) == set(ranked(placement, "time"))
+    lines = list(place.rows(placement))
     assert (
         len(lines) == 10
         and lines[0].startswith("x_mm,")
         and all(line.count(",") == 13 for line in lines)
     )
     assert [line.split(",")[6] for line in lines[1:]] == [
-        "yes" if one.feasible else "no" for one in found.judged
+        "yes" if pose_verdict.feasible else "no" for pose_verdict in placement.judged
     ]
-    assert place.key(found, found.best).startswith("deposition_point: [")
+    assert place.key(placement, placement.best).startswith("deposition_point: [")
 
 
 def inner(entries):
-    """mm and deg as mm and rad."""
+    """Convert mm and deg to mm and rad."""
     return {name: (*pose[:3], *np.radians(pose[3:])) for name, pose in entries.items()}
 
 
@@ -212,15 +228,17 @@ def test_cancelling_ends_it(dome):
 
 
 def test_no_pose_serves(dome):
-    far = CellParameters(limits="paper", deposition_point=(5000.0, 0.0, 0.0, 0.0, 0.0, 0.0))
-    found = place_part(
+    unreachable = CellParameters(limits="paper", deposition_point=(5000.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    placement = place_part(
         job_of(dome),
-        far,
+        unreachable,
         PlaceParameters(x=100.0, y=0.0, z=0.0, step=100.0),
         lambda share, text: None,
     )
     assert (
-        found.best is None and not found.proven and [one.share for one in found.judged] == [0.0] * 3
+        placement.best is None
+        and not placement.proven
+        and [pose_verdict.share for pose_verdict in placement.judged] == [0.0] * 3
     )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Figures of promises as they are read."""
+"""Figures of promises as text."""
 
 import pytest
 
@@ -22,9 +22,10 @@ from tests.told_in_french import table
     ],
 )
 def test_what_is_counted_is_singular_or_plural_as_the_language_has_it(worst, unit, said, in_french):
+    """Counted units are singular or plural according to the language."""
     figure = Promise("a", "b", False, worst, unit, 0.0).figure
-    known = table()
-    assert (figure, in_language(figure, lambda template: known.get(template, template))) == (
+    translations = table()
+    assert (figure, in_language(figure, lambda template: translations.get(template, template))) == (
         said,
         in_french,
     )
