@@ -22,7 +22,7 @@ from ..geometry.curves.plane_curve import (
     start_at,
 )
 from ..geometry.regions.medial import spine
-from ..geometry.regions.region import Region, along, simplified
+from ..geometry.regions.region import WIDENED, Region, along, simplified
 from ..geometry.regions.several import (
     HAIR_SHARE,
     grow_regions,
@@ -33,7 +33,7 @@ from ..geometry.regions.several import (
 )
 from ..geometry.regions.strip import Period, Strip, Window
 from ..issues import InfeasibleError
-from ..types import Array
+from ..types import Array, Mask
 
 # fractions of a bead's length by which the start moves from contour to contour and from layer to
 # layer (the R2 low-discrepancy sequence)
@@ -480,10 +480,32 @@ def open_regions(
         mm.
     """
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
-    covered = covered_regions(curves, beads.spacing, error)
-    return select_wider(
-        subtract_regions(grow_regions(inner, half, error), covered, beads.gap), beads.gap, error
-    )
+    reachable = grow_regions(inner, half, error)
+    lines, halves = _lines_and_halves(curves, beads.spacing, error)
+    wider = WIDENED * error
+    narrower = beads.gap - 4.0 * wider
+    if narrower > 0.0:
+        covered = along(lines, halves + wider, error)
+        places = select_wider(subtract_regions(reachable, covered, narrower), narrower, error)
+        if not places:
+            return []
+        halves = halves + wider * ~_near(lines, places, halves + 2.0 * wider, half)
+    covered = along(lines, halves, error)
+    return select_wider(subtract_regions(reachable, covered, beads.gap), beads.gap, error)
+
+
+def _near(
+    lines: Sequence[tuple[Array, bool]], regions: Sequence[Region], reach: Array, step: float
+) -> Mask:
+    """Return whether each line (k,) comes within its reach (k,), mm, of regions; so do some lines up to a step farther away."""
+    borders = [dense(border, step) for region in regions for border in region.borders()]
+    samples = [
+        divided_by_step(np.vstack([points, points[:1]]) if closed else points, step)[0]
+        for points, closed in lines
+    ]
+    distances = cKDTree(np.vstack(borders)).query(np.vstack(samples))[0]
+    starts = np.cumsum([0, *map(len, samples[:-1])])
+    return np.asarray(np.minimum.reduceat(distances, starts) <= reach + step)
 
 
 def covered_regions(
@@ -505,6 +527,13 @@ def covered_regions(
     tuple of Region
         Regions, mm, ordered by their leftmost points.
     """
+    return along(*_lines_and_halves(curves, width, chord_error), chord_error)
+
+
+def _lines_and_halves(
+    curves: Sequence[PlaneCurve], width: float, chord_error: float
+) -> tuple[list[tuple[Array, bool]], Array]:
+    """Return beads as lines of constant width, and half the width of each line, mm."""
     lines, halves = [], []
     for curve in curves:
         if curve.share is None:
@@ -516,7 +545,7 @@ def covered_regions(
         stretches, means = split_by_width(points, shares)
         lines += stretches
         halves += [0.5 * width * mean for mean in means]
-    return along(lines, np.array(halves), chord_error)
+    return lines, np.array(halves)
 
 
 def closing_beads(
@@ -699,12 +728,16 @@ def outermost(
     if not inner:
         return (), single_beads((region,), beads)
     reached = grow_regions(inner, beads.inset, beads.chord_error)
-    uncovered, hair = region.without(reached), HAIR_SHARE * beads.chord_error
+    # within a single part, a neck is a protrusion longer than a bead width; among several, any
+    # sliver may join them
+    shortest = beads.inset if len(reached) == 1 else 0.0
+    uncovered = region.without(reached, least_extent=shortest)
+    hair = HAIR_SHARE * beads.chord_error
     if any(piece.extent > beads.inset and len(piece.grown(-hair, hair)) > 1 for piece in uncovered):
         # beads touch the border there; rounding can leave slits that join corners in one section
         # but not in an equal section
         reached = grow_regions(inner, beads.inset + hair, beads.chord_error)
-        uncovered = region.without(reached)
+        uncovered = region.without(reached, least_extent=shortest)
     return inner, single_beads(
         [piece for piece in uncovered if _is_neck(piece, reached, beads)], beads
     )

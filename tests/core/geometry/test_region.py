@@ -5,11 +5,12 @@ import builtins
 
 import numpy as np
 import pytest
-from shapely.geometry import LineString
+from shapely.geometry import LineString, MultiPolygon, Polygon
 from shapely.ops import unary_union
 
 from freecad_am.core.geometry.regions import region as module
-from freecad_am.core.geometry.regions.region import mended, regions
+from freecad_am.core.geometry.regions.region import measure_bands, mended, regions
+from freecad_am.core.geometry.regions.several import intersect_regions, subtract_regions
 from freecad_am.core.issues import InputError
 
 SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
@@ -160,3 +161,99 @@ def test_points_on_straight_borders_are_left_out_at_once(monkeypatch):
     (square,) = regions([np.vstack(sides)])
     assert len(square.borders()[0]) == 4 and square.area == pytest.approx(900.0)
     assert len(looks) < 20
+
+
+def squares(seed, count):
+    """Squares of random sizes and places, as regions that may overlap."""
+    rng = np.random.default_rng(seed)
+    places, sizes = rng.uniform(0.0, 60.0, (count, 2)), rng.uniform(0.02, 0.6, count)
+    return [regions([size * SQUARE + at])[0] for at, size in zip(places, sizes)]
+
+
+def polygons_of(some):
+    return [Polygon(one.borders()[0], one.borders()[1:]) for one in some]
+
+
+def leftmost(polygon):
+    return min(polygon.exterior.coords)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("counts", [(40, 60), (3, 60), (40, 2), (1, 1)])
+def test_many_regions_are_subtracted_and_intersected_as_shapely_does_one_by_one(seed, counts):
+    own, other = (squares(seed + 100 * k, count) for k, count in enumerate(counts))
+    whole = unary_union(polygons_of(other))
+    for found, wanted in (
+        (subtract_regions(own, other), [one.difference(whole) for one in polygons_of(own)]),
+        (intersect_regions(own, other), [one.intersection(whole) for one in polygons_of(own)]),
+    ):
+        parts = [
+            part
+            for each in wanted
+            for part in sorted(
+                (part for part in getattr(each, "geoms", [each]) if part.area > 1e-9),
+                key=leftmost,
+            )
+        ]
+        assert [one.area for one in found] == pytest.approx([part.area for part in parts], rel=1e-9)
+        assert all(
+            one.symmetric_difference(part).area < 1e-9
+            for one, part in zip(polygons_of(found), parts, strict=True)
+        )
+
+
+@pytest.mark.parametrize(
+    ("least_area", "least_extent"), [(0.0, 0.0), (0.5, 0.0), (0.0, 1.0), (0.3, 0.9)]
+)
+def test_small_pieces_are_dropped_by_the_area_and_extent_that_shapely_measures(
+    least_area, least_extent
+):
+    """Bars cut a plate with holes into pieces of all sizes, some of them with holes."""
+    plate = regions([4.0 * SQUARE, *(0.1 * HOLE + at for at in ([3.0, 3.0], [31.0, 12.0]))])[0]
+    rng = np.random.default_rng(4)
+    bars = [
+        regions(
+            [np.array([[at, -1.0], [at + wide, -1.0], [at + wide + 2.0, 41.0], [at + 2.0, 41.0]])]
+        )[0]
+        for at, wide in zip(rng.uniform(0.0, 40.0, 30), rng.uniform(0.01, 0.4, 30))
+    ]
+    left = polygons_of([plate])[0].difference(unary_union(polygons_of(bars)))
+    assert isinstance(left, MultiPolygon)
+    wanted = sorted(
+        part.area
+        for part in left.geoms
+        if part.area > max(least_area, 1e-9)
+        and np.hypot(*np.ptp(np.array(part.exterior.coords), axis=0)) >= least_extent
+    )
+    found = plate.without(bars, least_area=least_area, least_extent=least_extent)
+    assert sorted(one.area for one in found) == pytest.approx(wanted, rel=1e-9)
+    assert len(wanted) > 5
+
+
+def test_bands_along_a_disc_leave_no_slivers_between_their_chords():
+    """Rings a bead apart cover a disc but for the middle, of which no chord leaves a part open."""
+    angle = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
+    circle = np.column_stack([np.cos(angle), np.sin(angle)])
+    (disc,) = regions([20.0 * circle])
+    # with as many points as they need, so that their chords do not face each other
+    rings = [(r * circle[:: max(1, int(20.0 / r))], True) for r in np.arange(19.0, 2.0, -2.0)]
+    inside, area = measure_bands((disc,), rings, 1.0, 0.05)
+    bare = np.pi * 2.0**2
+    assert disc.area - inside == pytest.approx(bare, abs=4.0 * np.pi * 0.05)
+    assert area == pytest.approx(inside, abs=40.0 * np.pi * 0.05)
+    exact = unary_union([LineString([*ring, ring[0]]).buffer(1.0, 64) for ring, _ in rings])
+    holes = [Polygon(hole).area for hole in exact.interiors]
+    assert len(holes) > 10 and sum(holes) - max(holes) > 0.01  # slivers that count for nothing
+
+
+def test_bands_along_curves_are_measured_as_shapely_does_but_for_narrow_gaps():
+    """Two lines cross a plate and a third runs beside one: gaps wider than a few chord errors count."""
+    (plate,) = regions([4.0 * SQUARE])
+    lines = [
+        np.array(points, dtype=float)
+        for points in ([[2, 3], [38, 30]], [[2, 30], [38, 3]], [[2, 8.5], [38, 35.5]])
+    ]
+    inside, area = measure_bands((plate,), [(line, False) for line in lines], 2.0, 0.001)
+    exact = unary_union([LineString(line).buffer(2.0, 64) for line in lines])
+    assert area == pytest.approx(exact.area, rel=1e-4)
+    assert inside == pytest.approx(exact.intersection(polygons_of([plate])[0]).area, rel=1e-4)

@@ -6,10 +6,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import overload
 
+import numpy as np
+
 from ..curves.plane_curve import length
+from ..obstacles import meeting_boxes
 from .region import Region
 from .strip import Strip, Window
 
+MANY = 8  # regions; fewer are compared in pairs
 HAIR_SHARE = 0.01  # of the chord error; half the width of a neck that comes from rounding
 
 
@@ -67,7 +71,11 @@ def subtract_regions(
         Remaining parts of each region in turn.
     """
     return (
-        tuple(result for region in regions for result in region.without(subtracted, wide))
+        tuple(
+            result
+            for region, nearby in zip(regions, _nearby(regions, subtracted))
+            for result in region.without(nearby, wide)
+        )
         if subtracted
         else tuple(regions)
     )
@@ -77,7 +85,26 @@ def intersect_regions(
     regions: Sequence[Region], counterparts: Sequence[Region]
 ) -> tuple[Region, ...]:
     """Intersect regions, as `Region.common`."""
-    return tuple(result for region in regions for result in region.common(counterparts))
+    return tuple(
+        result
+        for region, nearby in zip(regions, _nearby(regions, counterparts))
+        for result in (region.common(nearby) if nearby else ())
+    )
+
+
+def _nearby(
+    regions: Sequence[Region], counterparts: Sequence[Region]
+) -> Sequence[Sequence[Region]]:
+    """Return for each region the counterparts whose bounding boxes meet its own."""
+    if min(len(regions), len(counterparts)) < MANY:
+        return [counterparts] * len(regions)
+    low, high = (
+        np.array([region.bounds[k] for region in (*regions, *counterparts)]) for k in (0, 1)
+    )
+    return [
+        [counterparts[number - len(regions)] for number in met.tolist() if number >= len(regions)]
+        for met in meeting_boxes(low, high)[: len(regions)]
+    ]
 
 
 def halves(strip: Strip) -> list[Region]:
