@@ -484,7 +484,7 @@ def open_regions(
     lines, halves = _lines_and_halves(curves, beads.spacing, error)
     wider = WIDENED * error
     narrower = beads.gap - 4.0 * wider
-    if narrower > 0.0:
+    if lines and narrower > 0.0:
         covered = along(lines, halves + wider, error)
         places = select_wider(subtract_regions(reachable, covered, narrower), narrower, error)
         if not places:
