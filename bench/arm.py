@@ -173,9 +173,9 @@ def least_distance(folder: Path, body: Obstacle) -> float | None:
         for number, rods in links[1:]:
             pose = arm.frame(q, number)
             turn, position = pose[:3, :3], pose[:3, 3]
-            for solid, turned, center in rods:
+            for solid, turned, centre in rods:
                 moving = fcl.CollisionObject(
-                    solid, fcl.Transform(turn @ turned, position + turn @ center)
+                    solid, fcl.Transform(turn @ turned, position + turn @ centre)
                 )
                 distance = min(
                     distance, fcl.distance(moving, box, fcl.DistanceRequest(), fcl.DistanceResult())

@@ -269,8 +269,8 @@ def body_distance(
 
 
 def _rod(fcl: Any, rod: Any) -> Solid:
-    solid, turned, center = cylinder(fcl, rod)
-    return Solid(solid, frames.pose(turned, center), float(np.hypot(0.5 * rod.length, rod.radius)))
+    solid, turned, centre = cylinder(fcl, rod)
+    return Solid(solid, frames.pose(turned, centre), float(np.hypot(0.5 * rod.length, rod.radius)))
 
 
 def _box(fcl: Any, size: Sequence[float], middle: Array) -> Solid:

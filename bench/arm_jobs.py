@@ -59,7 +59,7 @@ def sample_joints(folder: Path) -> Array:
 
 
 def cylinder(fcl: Any, rod: Cylinder) -> tuple[Any, Array, Array]:
-    """Convert a capsule to a cylinder of the library with its rotation and center in the frame of
+    """Convert a capsule to a cylinder of the library with its rotation and centre in the frame of
     its link."""
     axis = (rod.end - rod.start) / rod.length
     normal = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])

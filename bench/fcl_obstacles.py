@@ -34,11 +34,11 @@ class FclObstacles:
             (self._since == ALWAYS).all()
         )
         # the library returns its objects as new wrappers; their origins identify them
-        centers = obstacles.corners.mean(axis=1) + 1e-9 * np.arange(count)[:, None]
-        self._numbers = {center.tobytes(): k for k, center in enumerate(centers)}
+        centres = obstacles.corners.mean(axis=1) + 1e-9 * np.arange(count)[:, None]
+        self._numbers = {centre.tobytes(): k for k, centre in enumerate(centres)}
         self._objects = [
-            fcl.CollisionObject(_geometry(corners - center), fcl.Transform(center))
-            for corners, center in zip(obstacles.corners, centers)
+            fcl.CollisionObject(_geometry(corners - centre), fcl.Transform(centre))
+            for corners, centre in zip(obstacles.corners, centres)
         ]
         self._manager = fcl.DynamicAABBTreeCollisionManager()
         self._manager.registerObjects(self._objects)

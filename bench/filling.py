@@ -28,7 +28,7 @@ MAX_DEPTH_MM, CHORD_ERROR = 20.0, 0.02  # mm
 OFFSET_TIME_RATIO = 1.5  # times the bare library
 FILL_ROUNDS = choose(3, 1)
 BRACKET = Path(__file__).resolve().parent.parent / "resources" / "examples" / "bracket.step"
-# of the bracket; mm; multiple of its bare parallel curves, mostly for the centers that they leave
+# of the bracket; mm; multiple of its bare parallel curves, mostly for the centres that they leave
 # open
 SECTIONS, SPACING, CONTOUR_TIME_RATIO = choose(100, 2), 4.0, 80.0
 # A plate with holes (mm), filled with lines; as a multiple of the bare border with clipped lines,
@@ -113,10 +113,10 @@ def compare_lines() -> Row:
     clipped there."""
     angle = np.linspace(0.0, 2.0 * np.pi, 120, endpoint=False)
     circle = 12.0 * np.stack([np.cos(angle), -np.sin(angle)], axis=1)
-    centers = [(50.0 + 75.0 * (k % 5), 40.0 + 73.0 * (k // 5)) for k in range(HOLES)]
+    centres = [(50.0 + 75.0 * (k % 5), 40.0 + 73.0 * (k // 5)) for k in range(HOLES)]
     loops = [
         np.array([(0.0, 0.0), (PLATE[0], 0.0), PLATE, (0.0, PLATE[1])]),
-        *(circle + center for center in centers),
+        *(circle + centre for centre in centres),
     ]
     (region,) = regions(loops)
     beads = Beads(SPACING, 0.2 * SPACING, 2.0, chord_error=CHORD_ERROR)

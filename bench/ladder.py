@@ -203,10 +203,10 @@ class CollisionChecks:
         """Return whether joint positions (axes,) collide."""
         poses = self.cell.links(q[None])[0]
         for number, link in enumerate(self.cylinders):
-            for solid, rotation, center in link:
+            for solid, rotation, centre in link:
                 pose = poses[number]
                 solid.setTransform(
-                    self.fcl.Transform(pose[:3, :3] @ rotation, pose[:3, :3] @ center + pose[:3, 3])
+                    self.fcl.Transform(pose[:3, :3] @ rotation, pose[:3, :3] @ centre + pose[:3, 3])
                 )
                 if number and self.fcl.collide(solid, self.wall, self.request, self.result()):
                     return True
@@ -219,7 +219,7 @@ class CollisionChecks:
 
 
 def _cylinder(fcl: Any, rod: Any) -> tuple[Any, np.ndarray, np.ndarray]:
-    """Return a cylinder enlarged by half the clearance with its rotation and center in the frame of
+    """Return a cylinder enlarged by half the clearance with its rotation and centre in the frame of
     its link."""
     axis = (rod.end - rod.start) / rod.length
     normal = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])

@@ -57,10 +57,10 @@ def test_as_by_convex_minimisation(kind, seed):
     rng = np.random.default_rng(seed)
     frustum = Frustum(rng.uniform(0, 2), rng.uniform(0, 1.5), rng.uniform(0, 3), rng.uniform(4, 20))
     axis = unit(rng.normal(size=(200, 3)))
-    centers = axis * rng.uniform(0, frustum.high, (200, 1)) + 0.4 * frustum.reach * rng.normal(
+    centres = axis * rng.uniform(0, frustum.high, (200, 1)) + 0.4 * frustum.reach * rng.normal(
         size=(200, 3)
     )
-    corners = centers[:, None] + rng.normal(size=(200, kind, 3)) * frustum.reach * rng.choice(
+    corners = centres[:, None] + rng.normal(size=(200, kind, 3)) * frustum.reach * rng.choice(
         [0.1, 0.7, 4], (200, 1, 1)
     )
     meets = (

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is told of vectors column by column is what numpy tells, to the last bit: the same job has the same bytes."""
+"""Column-wise vector operations agree with numpy to the last bit, so that a job has the same bytes
+everywhere."""
 
 import numpy as np
 import pytest
@@ -24,5 +25,7 @@ def test_lengths_are_those_of_numpy_to_the_last_bit(count):
 
 @pytest.mark.parametrize("count", [0, 1, 3, 20_000])
 def test_cross_products_are_those_of_numpy_to_the_last_bit(count):
-    one, other = np.random.default_rng(count).normal(size=(2, count, 3))
-    assert np.array_equal(crosses(one, other), np.cross(one, other))
+    first_factors, second_factors = np.random.default_rng(count).normal(size=(2, count, 3))
+    assert np.array_equal(
+        crosses(first_factors, second_factors), np.cross(first_factors, second_factors)
+    )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pieces of meridian in any order and sense put together again; walls of closed contours."""
+"""Chaining the segments of a meridian in any order and direction; walls of closed contours."""
 
 from itertools import pairwise
 
@@ -11,40 +11,42 @@ from freecad_am.core.geometry.curves.contour import Piece
 from freecad_am.core.geometry.curves.profile import Meridian, arc, line
 
 
-def pieces(*stretches):
+def name_stretches(*stretches):
     return [Piece(f"Face{i}", *stretch) for i, stretch in enumerate(stretches, start=1)]
 
 
 def corners(*points):
-    return pieces(*(line(a, b) for a, b in pairwise(points)))
+    return name_stretches(*(line(a, b) for a, b in pairwise(points)))
 
 
 def names(chain):
-    return [piece.name for piece in chain]
+    return [segment.name for segment in chain]
 
 
 @pytest.mark.parametrize("seed", range(10))
 def test_order_and_sense_of_the_pieces_do_not_matter(seed):
+    """The order and direction of the segments do not change the meridian."""
     random = np.random.default_rng(seed)
     heights = np.cumsum(random.uniform(1.0, 5.0, 8))
     points = list(zip(random.uniform(5.0, 50.0, 8), heights, strict=True))
-    whole = corners(*points)
+    segments = corners(*points)
     shuffled = [
-        whole[i].reversed() if random.random() < 0.5 else whole[i]
-        for i in random.permutation(len(whole))
+        segments[i].reversed() if random.random() < 0.5 else segments[i]
+        for i in random.permutation(len(segments))
     ]
     chains, gap = contour.chains(shuffled)
     assert len(chains) == 1
     assert gap == 0.0
-    found = contour.meridian_of(contour.upright(chains[0]))
-    truth = contour.meridian_of(whole)
+    meridian = contour.meridian_of(contour.upright(chains[0]))
+    truth = contour.meridian_of(segments)
     s = np.linspace(0.0, truth.length, 501)
-    assert found.length == pytest.approx(truth.length)
-    for have, want in zip(found.at(s), truth.at(s), strict=True):
+    assert meridian.length == pytest.approx(truth.length)
+    for have, want in zip(meridian.at(s), truth.at(s), strict=True):
         assert have == pytest.approx(want, abs=1e-9)
 
 
 def test_gaps_are_told_and_wide_ones_left():
+    """Gaps are reported, and wide ones stay open."""
     chains, gap = contour.chains(
         corners((5, 0), (5, 4)) + corners((5.05, 4), (6, 9)) + corners((8, 9), (8, 12))
     )
@@ -75,7 +77,7 @@ def test_a_full_part_has_one_wall():
 
 def test_round_contours_are_cut_at_their_lowest_and_highest_points():
     # samples that miss both points
-    ring = pieces(
+    ring = name_stretches(
         arc((50, 0), 10, 0.4, 0.4 + np.pi), arc((50, 0), 10, 0.4 + np.pi, 0.4 + 2 * np.pi)
     )
     outer, inner = (contour.meridian_of(wall) for wall in contour.walls(contour.chains(ring)[0][0]))
@@ -87,7 +89,7 @@ def test_round_contours_are_cut_at_their_lowest_and_highest_points():
 
 
 def test_a_dome_with_a_rounded_rim_is_cut_in_its_rim():
-    rim = pieces(
+    rim = name_stretches(
         arc((0, 0), 45, np.pi / 2, 0.0),
         arc((44, 0), 1, 0.0, -np.pi),
         arc((0, 0), 43, 0.0, np.pi / 2),
@@ -120,7 +122,9 @@ def test_sides_of_a_square_on_its_corner_are_walls():
 
 def test_halfway_between_parallel_walls_is_the_parallel_in_the_middle():
     def wall(off):
-        return pieces(line((45 + off, -20), (45 + off, 0)), arc((0, 0), 45 + off, 0.0, np.pi / 2))
+        return name_stretches(
+            line((45 + off, -20), (45 + off, 0)), arc((0, 0), 45 + off, 0.0, np.pi / 2)
+        )
 
     middle = Meridian.chained(contour.halfway(wall(1.0), wall(-1.0)))
     truth = contour.meridian_of(wall(0.0))
@@ -140,8 +144,8 @@ def test_halfway_keeps_kinks_where_they_are(more):
 
 
 def test_halfway_inside_a_torus_is_a_cylinder():
-    outer = pieces(arc((50, 0), 10, -np.pi / 2, np.pi / 2))
-    inner = pieces(arc((50, 0), 10, 1.5 * np.pi, np.pi / 2))
+    outer = name_stretches(arc((50, 0), 10, -np.pi / 2, np.pi / 2))
+    inner = name_stretches(arc((50, 0), 10, 1.5 * np.pi, np.pi / 2))
     middle = Meridian.chained(contour.halfway(outer, inner))
     assert middle.length == pytest.approx(20.0, abs=1e-9)
     r, _, t = middle.at(np.linspace(0.0, 20.0, 101))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cylinders hold all of what they are about, and not much more."""
+"""Bounding cylinders contain their points and are not much larger."""
 
 import numpy as np
 import pytest
@@ -8,15 +8,15 @@ from freecad_am.core.geometry import cylinders
 
 
 def spread_on(points, triangles, random, count=4000):
-    """Points evenly on triangles."""
+    """Points spread evenly over triangles."""
     corners = points[triangles]
     size = np.linalg.norm(
         np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
     )
-    chosen = random.choice(len(triangles), count, p=size / size.sum())
+    indices = random.choice(len(triangles), count, p=size / size.sum())
     a, b = random.uniform(size=(2, count))
     a, b = np.where(a + b > 1.0, 1.0 - a, a), np.where(a + b > 1.0, 1.0 - b, b)
-    c = corners[chosen]
+    c = corners[indices]
     return c[:, 0] + a[:, None] * (c[:, 1] - c[:, 0]) + b[:, None] * (c[:, 2] - c[:, 0])
 
 
@@ -53,16 +53,20 @@ def test_a_rod_about_points_of_a_turned_cylinder_is_that_cylinder(seed):
 
 
 def test_a_row_of_rods_holds_a_bent_shape_between_its_vertices_too():
+    """A row of cylinders contains a bent shape between its vertices too."""
     turn = np.linspace(0, np.pi / 2, 7)
     bend = np.stack([300 - 100 * np.cos(turn), np.zeros(7), 100 * np.sin(turn)], 1)
     path = np.concatenate([[[200.0, 0.0, -400.0]], bend, [[700.0, 0.0, 100.0]]])
     points, triangles = tube(path, 40.0)
-    found = cylinders.enclosing_row(points, triangles)
+    rods = cylinders.enclosing_row(points, triangles)
     surface = spread_on(points, triangles, np.random.default_rng(1))
-    assert np.any([rod.holds(surface) for rod in found], axis=0).all()
-    whole = cylinders.enclosing_cylinder(points)
-    volume = sum(rod.length * rod.radius**2 for rod in found)
-    assert 2 < len(found) <= cylinders.MAX_PIECES and volume < 0.4 * whole.length * whole.radius**2
+    assert np.any([rod.holds(surface) for rod in rods], axis=0).all()
+    single_rod = cylinders.enclosing_cylinder(points)
+    volume = sum(rod.length * rod.radius**2 for rod in rods)
+    assert (
+        2 < len(rods) <= cylinders.MAX_PIECES
+        and volume < 0.4 * single_rod.length * single_rod.radius**2
+    )
 
 
 def test_a_ball_is_one_rod():
@@ -77,9 +81,16 @@ def test_a_ball_is_one_rod():
 
 
 def test_rods_inside_others_are_left_out():
+    """Cylinders inside others are dropped."""
     random = np.random.default_rng(2)
     large, small = random.uniform(-100, 100, (200, 3)), random.uniform(-10, 10, (50, 3))
-    beside = small + [500.0, 0.0, 0.0]
-    sets = [small, large, beside]
-    kept = cylinders.drop_redundant([cylinders.enclosing_cylinder(points) for points in sets], sets)
-    assert len(kept) == 2 and kept[0].holds(large).all() and kept[1].holds(beside).all()
+    distant = small + [500.0, 0.0, 0.0]
+    sets = [small, large, distant]
+    remaining = cylinders.drop_redundant(
+        [cylinders.enclosing_cylinder(points) for points in sets], sets
+    )
+    assert (
+        len(remaining) == 2
+        and remaining[0].holds(large).all()
+        and remaining[1].holds(distant).all()
+    )

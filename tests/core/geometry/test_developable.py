@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cones and cylinders laid flat keep every length; equidistant ones are equidistant; slim cones become cylinders."""
+"""Unrolled cones and cylinders keep every length; offsets are equidistant; slim cones approach
+cylinders."""
 
 import math
 
@@ -18,8 +19,8 @@ BASES = [
 ]
 
 
-def spread(base, n, seed):
-    """Random points (n, 3) of the surface, well below an apex, and their azimuths."""
+def sample_points(base, n, seed):
+    """Random points (n, 3) of the surface well below an apex."""
     rng = np.random.default_rng(seed)
     theta = rng.uniform(-math.pi, math.pi, n)
     z = rng.uniform(-2.0, 0.9, n) * min(base.height, 4.0 * base.radius)
@@ -30,7 +31,7 @@ def spread(base, n, seed):
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize("middle", [0.0, 2.5, -17.0])
 def test_there_and_back(base, middle):
-    points = spread(base, 4000, 1)
+    points = sample_points(base, 4000, 1)
     size = np.abs(points).max()
     np.testing.assert_allclose(
         base.wrap(base.unroll(points, middle), middle), points, atol=1e-12 * size
@@ -39,7 +40,7 @@ def test_there_and_back(base, middle):
 
 @pytest.mark.parametrize("base", BASES)
 def test_lengths_of_curves_stay(base):
-    # a curve on the surface, its length by fine chords in space and on the plane
+    # a curve on the surface, its length by fine chords in space and in the plane
     t = np.linspace(0.0, 1.0, 200001)
     theta, z = -2.0 + 4.0 * t, 0.5 * min(base.height, base.radius) * np.sin(5.0 * t)
     rho = base.radius * (1.0 - z / base.height)
@@ -52,7 +53,8 @@ def test_lengths_of_curves_stay(base):
 
 @pytest.mark.parametrize("base", BASES)
 def test_angles_stay(base):
-    points = spread(base, 500, 2)
+    """Unrolling keeps angles and orientation."""
+    points = sample_points(base, 500, 2)
     points = points[np.abs(base.azimuth(points)) < 3.0]
     normal = base.normals(points)
     around = np.stack([-points[:, 1], points[:, 0], np.zeros(len(points))], axis=1)
@@ -61,12 +63,13 @@ def test_angles_stay(base):
     step = 1e-5 * base.radius
     flat = base.unroll(points)
     moved = [
-        (base.unroll(points + step * way) - base.unroll(points - step * way)) / (2.0 * step)
-        for way in (around, up)
+        (base.unroll(points + step * direction) - base.unroll(points - step * direction))
+        / (2.0 * step)
+        for direction in (around, up)
     ]
-    # derivatives of an isometry turn the tangent plane rigidly, with its outside up
-    for one in moved:
-        np.testing.assert_allclose(np.linalg.norm(one, axis=1), 1.0, atol=1e-6)
+    # derivatives of an isometry rotate the tangent plane rigidly, with its outer side up
+    for tangent in moved:
+        np.testing.assert_allclose(np.linalg.norm(tangent, axis=1), 1.0, atol=1e-6)
     np.testing.assert_allclose((moved[0] * moved[1]).sum(axis=1), 0.0, atol=1e-6)
     assert (moved[0][:, 0] * moved[1][:, 1] - moved[0][:, 1] * moved[1][:, 0] > 0.0).all()
     assert flat.shape == (len(points), 2)
@@ -76,14 +79,12 @@ def test_angles_stay(base):
 def test_offsets_are_equidistant(base):
     for distance in (0.3, 5.0, 40.0):
         further = base.offset(distance)
-        points = spread(further, 1000, 3)
+        points = sample_points(further, 1000, 3)
         np.testing.assert_allclose(
             base.distance(points), distance, atol=1e-12 * np.abs(points).max()
         )
         foot = points - distance * base.normals(points)
-        keep = (
-            foot[:, 2] < base.height
-        )  # the part that lies over the surface itself, not over its apex
+        keep = foot[:, 2] < base.height  # the part above the surface, not above its apex
         keep &= (foot[:, :2] * points[:, :2]).sum(axis=1) > 0.0
         np.testing.assert_allclose(
             base.distance(foot[keep]), 0.0, atol=1e-12 * np.abs(points).max()
@@ -98,7 +99,7 @@ def test_offsets_of_the_paper():
 
 def test_a_slim_cone_is_nearly_a_cylinder():
     cone, cylinder = Developable(60.0, 1e9), Developable(60.0)
-    points = spread(cylinder, 100, 4)
+    points = sample_points(cylinder, 100, 4)
     np.testing.assert_allclose(cone.unroll(points), cylinder.unroll(points), atol=1e-4)
     np.testing.assert_allclose(cone.distance(points), cylinder.distance(points), atol=1e-4)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Files from outside: all of their bytes or a refusal, without the memory that a hostile one asks for."""
+"""Files are read in full or rejected, without allocating the size that a hostile file claims."""
 
 import hashlib
 import os
@@ -22,30 +22,31 @@ def test_all_bytes_and_their_digest(tmp_path, size):
 
 @pytest.mark.parametrize("read", [read_content, digest])
 def test_larger_files_are_refused_unread(tmp_path, read):
+    """Larger files are rejected without reading them."""
     path = tmp_path / "data"
     with path.open("wb") as stream:
-        stream.truncate(100_000 * MB)  # of blocks that take no room
+        stream.truncate(100_000 * MB)  # a sparse file that occupies no disk space
     tracemalloc.start()
-    with pytest.raises(InputError, match="larger than 2 MB") as told:
+    with pytest.raises(InputError, match="larger than 2 MB") as caught:
         read(path, 2, "BAD_FILE", "it")
-    _, most = tracemalloc.get_traced_memory()
+    _, peak_memory = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert (told.value.code, told.value.where) == ("BAD_FILE", "it") and most < MB
+    assert (caught.value.code, caught.value.where) == ("BAD_FILE", "it") and peak_memory < MB
 
 
 @pytest.mark.parametrize("read", [read_content, digest])
 def test_what_tells_no_size_is_read_up_to_the_limit(read, monkeypatch, tmp_path):
-    """As files of the kernel do: what is read counts."""
+    """Kernel files report no size, so the limit applies to the bytes read."""
     path = tmp_path / "data"
     path.write_bytes(b"x" * (3 * MB))
-    known = os.fstat
+    fstat = os.fstat
 
-    def without_size(descriptor):
-        found = list(known(descriptor))
-        found[6] = 0
-        return os.stat_result(found)
+    def stat_without_size(descriptor):
+        fields = list(fstat(descriptor))
+        fields[6] = 0
+        return os.stat_result(fields)
 
-    monkeypatch.setattr(os, "fstat", without_size)
+    monkeypatch.setattr(os, "fstat", stat_without_size)
     with pytest.raises(InputError, match="larger than 2 MB"):
         read(path, 2, "BAD_FILE", "it")
     monkeypatch.undo()

@@ -19,8 +19,8 @@ def rng():
 
 def test_rotation_about_is_that_of_the_rotation_vector(rng):
     axes, angles = unit(rng.standard_normal((200, 3))), rng.uniform(-7, 7, 200)
-    wanted = Rotation.from_rotvec(axes * angles[:, None]).as_matrix()
-    assert np.abs(frames.rotation_about(axes, angles) - wanted).max() < 1e-14
+    expected = Rotation.from_rotvec(axes * angles[:, None]).as_matrix()
+    assert np.abs(frames.rotation_about(axes, angles) - expected).max() < 1e-14
 
 
 def test_bryant_is_rx_ry_rz_and_comes_back(rng):
@@ -66,7 +66,7 @@ def test_smallest_rotation_takes_one_to_the_other_by_the_angle_between(rng, bend
     assert np.abs((rotation @ start[..., None])[..., 0] - end).max() < 1e-14
     assert np.abs(np.linalg.det(rotation) - 1.0).max() < 1e-13
     assert np.abs(Rotation.from_matrix(rotation).magnitude() - bend).max() < 3e-8
-    # no twist: what is normal to both stays
+    # no twist: a vector normal to both stays
     normal = np.cross(start, across)
     if bend < 3.0:
         assert np.abs((rotation @ normal[..., None])[..., 0] - normal).max() < 1e-9

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Level lines of meshes: lines known beforehand, holes, order, sides."""
+"""Level lines of meshes: known lines, holes, order and sides."""
 
 import numpy as np
 import pytest
@@ -68,31 +68,31 @@ def test_only_what_is_linked_is_joined():
 
 def test_chains_of_random_successors():
     rng = np.random.default_rng(1)
-    names, following, wanted = rng.permutation(1000), np.full(1000, -1), {}
-    for part, closed in zip(
+    names, following, expected = rng.permutation(1000), np.full(1000, -1), {}
+    for members, closed in zip(
         np.split(names, [1, 3, 300, 301 + 64, 900]), [False, False, True, False, True, False]
     ):
-        following[part[:-1]] = part[1:]
+        following[members[:-1]] = members[1:]
         if closed:
-            following[part[-1]] = part[0]
-        wanted[int(part.min())] = (part, closed)
+            following[members[-1]] = members[0]
+        expected[int(members.min())] = (members, closed)
     for chain, closed in chains(following):
-        part, want = wanted.pop(int(chain.min()))
+        members, want = expected.pop(int(chain.min()))
         assert closed == want
-        start = int(np.flatnonzero(part == chain[0])[0])
-        assert chain.tolist() == np.roll(part, -start).tolist()
-    assert not wanted
+        start = int(np.flatnonzero(members == chain[0])[0])
+        assert chain.tolist() == np.roll(members, -start).tolist()
+    assert not expected
 
 
 def test_edges_are_each_there_once_in_order_and_borders_have_one_face():
-    """Against rows sorted by numpy, on faces of any numbers."""
+    """Against rows sorted by numpy, on random faces."""
     random = np.random.default_rng(12)
     for count in (3, 40, 70_000):  # products of 70,000 do not fit in 32 bits
         faces = random.integers(0, count, (500, 3), dtype=np.int32)
-        one = Mesh(np.zeros((count, 3)), faces)
+        mesh = Mesh(np.zeros((count, 3)), faces)
         half = faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
-        edges, place, found = np.unique(
+        edges, edge_index, counts = np.unique(
             np.sort(half, axis=1), axis=0, return_inverse=True, return_counts=True
         )
-        assert np.array_equal(one.edges, edges)
-        assert np.array_equal(one.border_edges, half[found[np.ravel(place)] == 1])
+        assert np.array_equal(mesh.edges, edges)
+        assert np.array_equal(mesh.border_edges, half[counts[np.ravel(edge_index)] == 1])

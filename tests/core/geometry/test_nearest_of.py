@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The nearest places on several rings are those of each ring by itself, whichever rings are passed over."""
+"""The nearest points on several rings are those of each ring separately, whichever rings are
+skipped."""
 
 import numpy as np
 import pytest
@@ -10,28 +11,32 @@ from freecad_am.core.geometry.curves.plane_curve import nearest, nearest_on_ring
 @pytest.fixture(scope="module")
 def rings():
     random = np.random.default_rng(5)
-    made = []
-    for place in random.uniform(-100.0, 100.0, (25, 2)):
+    random_rings = []
+    for centre in random.uniform(-100.0, 100.0, (25, 2)):
         angle = np.sort(random.uniform(0.0, 2.0 * np.pi, random.integers(3, 40)))
-        made.append(
-            place + random.uniform(2.0, 30.0, (len(angle), 1)) * np.c_[np.cos(angle), np.sin(angle)]
+        random_rings.append(
+            centre
+            + random.uniform(2.0, 30.0, (len(angle), 1)) * np.c_[np.cos(angle), np.sin(angle)]
         )
-    return made
+    return random_rings
 
 
 @pytest.mark.parametrize("count", [0, 1, 4, 300])
 def test_nothing_is_lost_with_rings_that_are_passed_over(rings, count):
+    """Skipping distant rings loses no nearest point."""
     points = np.random.default_rng(count).uniform(-150.0, 150.0, (count, 2))
     boxes = (
         np.array([ring.min(axis=0) for ring in rings]),
         np.array([ring.max(axis=0) for ring in rings]),
     )
-    places, away = nearest_on_rings(rings, boxes, points)
-    each = [nearest(ring, points, closed=True) for ring in rings]
-    all_away = np.array([one.distance for one in each]).reshape(len(rings), count)
-    best = all_away.argmin(axis=0)
-    assert np.array_equal(away, all_away[best, np.arange(count)])
-    assert np.array_equal(places, np.array([one.points for one in each])[best, np.arange(count)])
+    nearest_points, distances = nearest_on_rings(rings, boxes, points)
+    answers = [nearest(ring, points, closed=True) for ring in rings]
+    all_distances = np.array([answer.distance for answer in answers]).reshape(len(rings), count)
+    best = all_distances.argmin(axis=0)
+    assert np.array_equal(distances, all_distances[best, np.arange(count)])
+    assert np.array_equal(
+        nearest_points, np.array([answer.points for answer in answers])[best, np.arange(count)]
+    )
 
 
 def test_rings_that_no_point_is_near_count_nothing(rings):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls of several exact pieces: projection across joints against the pieces' equations; curves and rims."""
+"""Walls of several exact surfaces: projection across joints against the surfaces' equations; curves
+and rims."""
 
 import numpy as np
 import pytest
@@ -22,33 +23,36 @@ def pose(origin=(0, 0, 0), x=(1, 0, 0), z=(0, 0, 1)):
 
 
 def grid(patch, u, v):
-    """Triangles of a patch over a grid of parameters: corners (m, 3, 3), counter-clockwise from its outer side, and uv."""
+    """Triangles of a patch over a grid of parameters: corners (m, 3, 3), counter-clockwise from its
+    outer side, and uv."""
     uu, vv = np.meshgrid(u, v, indexing="ij")
     uv = np.stack([uu, vv], axis=-1)
     a, b, c, d = uv[:-1, :-1], uv[1:, :-1], uv[1:, 1:], uv[:-1, 1:]
     corners = np.concatenate(
-        [np.stack(each, axis=2).reshape(-1, 3, 2) for each in ((a, b, c), (a, c, d))]
+        [np.stack(corner_uv, axis=2).reshape(-1, 3, 2) for corner_uv in ((a, b, c), (a, c, d))]
     )
     if patch.sign < 0.0:
         corners = corners[:, ::-1]
     return patch.at(corners.reshape(-1, 2))[0].reshape(-1, 3, 3), corners
 
 
-def joined(*pieces):
-    """The wall of (patch, u, v) pieces, equal corners merged."""
-    made = [grid(*piece) for piece in pieces]
-    corners = np.concatenate([one for one, _ in made])
-    _, first, index = np.unique(
+def merge_patches(*patches):
+    """Return the wall of several (patch, u, v) grids with equal corners merged."""
+    grids = [grid(*patch_grid) for patch_grid in patches]
+    corners = np.concatenate([corners_of_patch for corners_of_patch, _ in grids])
+    _, index_of_vertex, index = np.unique(
         np.round(corners.reshape(-1, 3), 7), axis=0, return_index=True, return_inverse=True
     )
-    vertices = corners.reshape(-1, 3)[first]
-    patch = np.repeat(np.arange(len(made)), [len(one) for one, _ in made])
+    vertices = corners.reshape(-1, 3)[index_of_vertex]
+    patch = np.repeat(
+        np.arange(len(grids)), [len(corners_of_patch) for corners_of_patch, _ in grids]
+    )
     return PatchWall(
         vertices,
         np.ravel(index).reshape(-1, 3),
         patch,
-        np.concatenate([uv for _, uv in made]),
-        tuple(piece[0] for piece in pieces),
+        np.concatenate([uv for _, uv in grids]),
+        tuple(patch_grid[0] for patch_grid in patches),
         (),
         np.zeros(len(vertices), dtype=bool),
         (),
@@ -56,14 +60,14 @@ def joined(*pieces):
 
 
 def elbow(count=48):
-    """A tube that goes straight up, bends by a quarter towards -X and goes straight on."""
+    """A tube that runs straight up, bends by a quarter turn towards -X and continues straight."""
     around, along = np.linspace(0.0, TURN, count + 1), np.linspace(0.0, 0.5 * np.pi, 25)
     foot = Patch(CYLINDER, (TUBE,), pose((0, 0, -20)), periods=(TURN, 0.0))
     bend = Patch(TORUS, (BEND, TUBE), pose((-BEND, 0, 0), z=(0, -1, 0)), periods=(TURN, TURN))
     head = Patch(
         CYLINDER, (TUBE,), pose((-BEND, 0, BEND), x=(0, 0, 1), z=(-1, 0, 0)), periods=(TURN, 0.0)
     )
-    return joined(
+    return merge_patches(
         (foot, around, np.linspace(0.0, 20.0, 8)),
         (bend, along, around),
         (head, around, np.linspace(0.0, 30.0, 11)),
@@ -71,7 +75,8 @@ def elbow(count=48):
 
 
 def expected(points):
-    """Nearest points and normals of the elbow by its equations, from the centre line's nearest point."""
+    """Nearest points and normals of the elbow by its equations, from the nearest point of the
+    centre line."""
     x, z = points[:, 0] + BEND, points[:, 2]
     angle = np.clip(np.arctan2(z, x), 0.0, 0.5 * np.pi)
     centre = np.stack([BEND * np.cos(angle) - BEND, 0.0 * x, BEND * np.sin(angle)], axis=1)
@@ -86,19 +91,19 @@ def test_projection_across_tangent_joints_is_exact():
     wall = elbow()
     rng = np.random.default_rng(3)
     spots = wall.vertices[wall.triangles[rng.integers(len(wall.triangles), size=10000)]]
-    near = np.einsum("nk,nkc->nc", rng.dirichlet(np.ones(3), size=10000), spots) + rng.normal(
+    queries = np.einsum("nk,nkc->nc", rng.dirichlet(np.ones(3), size=10000), spots) + rng.normal(
         0.0, 0.1, (10000, 3)
     )
     joint = np.stack(
-        [TUBE * np.cos(near[:, 1]), TUBE * np.sin(near[:, 1]), 0.0 * near[:, 1]], axis=1
+        [TUBE * np.cos(queries[:, 1]), TUBE * np.sin(queries[:, 1]), 0.0 * queries[:, 1]], axis=1
     )
-    near = np.vstack([near, joint + rng.normal(0.0, 1e-3, joint.shape)])
-    near = near[(near[:, 2] > -20.0) & (near[:, 0] > -BEND - 30.0)]
-    points, normals = wall.project(near)
-    foot, out = expected(near)
+    queries = np.vstack([queries, joint + rng.normal(0.0, 1e-3, joint.shape)])
+    queries = queries[(queries[:, 2] > -20.0) & (queries[:, 0] > -BEND - 30.0)]
+    points, normals = wall.project(queries)
+    foot, out = expected(queries)
     assert np.abs(points - foot).max() < 1e-9
     assert np.abs(normals - out).max() < 1e-9
-    assert len({*wall.patch[wall._nearest(near)[0]]}) == 3
+    assert len({*wall.patch[wall._nearest(queries)[0]]}) == 3
 
 
 def test_beyond_the_rim_the_surface_goes_on():
@@ -112,7 +117,7 @@ def test_the_outer_side_may_be_against_the_surface():
     inner = Patch(CYLINDER, (TUBE,), pose(), -1.0, (TURN, 0.0))
     flat = Patch(PLANE, (), pose((TUBE, 0, 0), x=(0, 1, 0), z=(1, 0, 0)), -1.0)
     even = np.linspace(0.0, 9.0, 5)
-    wall = joined((inner, np.linspace(-np.pi, 0.0, 20), even), (flat, even, even))
+    wall = merge_patches((inner, np.linspace(-np.pi, 0.0, 20), even), (flat, even, even))
     points, normals = wall.project(np.array([[TUBE + 0.1, 1e-4, 4.4], [TUBE + 0.1, -1e-4, 4.4]]))
     assert points[0] == pytest.approx([TUBE, 1e-4, 4.4], abs=1e-12) and normals[0] == pytest.approx(
         [-1, 0, 0], abs=1e-12
@@ -154,7 +159,8 @@ def test_closed_forms_return_what_was_moved_along_the_normal(patch, level):
 
 
 def rational_tube():
-    """The cylinder of radius 10 and height 40 as a rational spline of four quarters, linear along u."""
+    """The cylinder of radius 10 and height 40 as a rational spline of four quarters, linear along
+    u."""
     corners = np.array(
         [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)], float
     )
@@ -169,16 +175,21 @@ def rational_tube():
 
 
 def test_a_rational_spline_is_the_cylinder_it_stands_for():
+    """A rational spline that represents a cylinder is projected onto exactly."""
     patch = rational_tube()
-    wall = joined((patch, np.linspace(0, 1, 21), np.linspace(0, 4, 33)))
+    wall = merge_patches((patch, np.linspace(0, 1, 21), np.linspace(0, 4, 33)))
     rng = np.random.default_rng(7)
     angle, height = (
         rng.uniform(0.0, TURN, 5000),
         rng.uniform(-1.0, 41.0, 5000),
-    )  # past the ends it goes on straight
+    )  # beyond the ends the surface continues straight
     out = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
-    near = (10.0 + rng.uniform(-0.3, 0.3, 5000))[:, None] * out + height[:, None] * [0.0, 0.0, 1.0]
-    points, normals = wall.project(near)
+    queries = (10.0 + rng.uniform(-0.3, 0.3, 5000))[:, None] * out + height[:, None] * [
+        0.0,
+        0.0,
+        1.0,
+    ]
+    points, normals = wall.project(queries)
     assert points == pytest.approx(10.0 * out + height[:, None] * [0.0, 0.0, 1.0], abs=1e-9)
     assert normals == pytest.approx(out, abs=1e-9)
 
@@ -194,7 +205,7 @@ def test_nearest_point_of_a_triangle():
         a,
         b,
         c,
-    ):  # the angle at the nearest point is blunt towards every point of the triangle
+    ):  # the angle at the nearest point is obtuse towards every point of the triangle
         assert (np.einsum("ij,ij->i", p - foot, corner - foot) < 1e-9).all()
     assert closest(a, a, b, 0.5 * (a + b))[0] == pytest.approx(0.0, abs=1e-7)
 
@@ -210,15 +221,16 @@ def test_curves_and_rims():
 
 
 def test_runs_part_at_corners_and_meeting_places():
+    """Chains of edges split at corners and junctions."""
     square = np.array(
         [(0, 0, 0), (1, 0, 0), (2, 0, 0), (2, 1, 0), (2, 2, 0), (1, 2, 0), (0, 2, 0), (0, 1, 0)],
         float,
     )
     edges = np.stack([np.arange(8), (np.arange(8) + 1) % 8], axis=1)
     edges[3] = edges[3, ::-1]
-    found = runs(square, edges)
-    assert sorted(len(members) for members, _, _ in found) == [2, 2, 2, 2]
-    assert not any(closed for _, _, closed in found)
+    edge_runs = runs(square, edges)
+    assert sorted(len(members) for members, _, _ in edge_runs) == [2, 2, 2, 2]
+    assert not any(closed for _, _, closed in edge_runs)
     angle = np.linspace(0.0, TURN, 41)[:-1]
     circle = np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
     edges = np.stack([np.arange(40), (np.arange(40) + 1) % 40], axis=1)

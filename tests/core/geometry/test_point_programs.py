@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""G-code of slicers and toolpaths of AdaOne as beads: what is extruded where, told by hand."""
+"""G-code of slicers and AdaOne toolpaths as beads; the expected extrusions are written by hand."""
 
 import struct
 
@@ -33,7 +33,7 @@ G1 X60 Y20 E2.0{relative}
 """
 
 
-def laid(text, chord_error=0.01):
+def read_curves(text, chord_error=0.01):
     return gcode.curves_of(text, "part.gcode", chord_error)
 
 
@@ -45,21 +45,22 @@ def laid(text, chord_error=0.01):
     ],
 )
 def test_moves_that_extrude_are_beads_and_comments_are_layers(values):
-    curves = laid(SQUARE.format(**values))
-    assert [one.layer for one in curves] == [0, 0, 1]
+    """Extruding moves are beads, and comments mark layers."""
+    curves = read_curves(SQUARE.format(**values))
+    assert [curve.layer for curve in curves] == [0, 0, 1]
     np.testing.assert_allclose(
         curves[0].points, [[10, 10, 0.5], [30, 10, 0.5], [30, 30, 0.5], [10, 30, 0.5]], atol=1e-12
     )
     np.testing.assert_allclose(curves[1].points, [[50, 10, 0.5], [60, 10, 0.5]], atol=1e-12)
     np.testing.assert_allclose(curves[2].points, [[60, 10, 1.0], [60, 20, 1.0]], atol=1e-12)
-    assert all(one.directions is None for one in curves)
+    assert all(curve.directions is None for curve in curves)
 
 
 def test_relative_moves_shifted_counts_and_layers_by_z():
-    curves = laid(
+    curves = read_curves(
         "G91\nG1 X5 Y5 Z1\nG1 X10 E1\nG1 Z1\nG92 X0 Y0\nG90\nM83\nG1 X0 Y7 E1\nG1 X0 Y0\nG1 Z1\nG1 X1 E1\n"
     )
-    assert [one.layer for one in curves] == [0, 1, 2]
+    assert [curve.layer for curve in curves] == [0, 1, 2]
     np.testing.assert_allclose(curves[0].points, [[5, 5, 1], [15, 5, 1]])
     np.testing.assert_allclose(curves[1].points, [[15, 5, 2], [15, 12, 2]])
     np.testing.assert_allclose(curves[2].points, [[15, 5, 1], [16, 5, 1]])
@@ -77,7 +78,7 @@ def test_relative_moves_shifted_counts_and_layers_by_z():
     ],
 )
 def test_arcs_are_within_the_chord_error(words, middle, radius, turn):
-    (curve,) = laid(f"G90\nM83\nG0 X10 Y0 Z2\n{words} Z3 E4\n", 0.02)
+    (curve,) = read_curves(f"G90\nM83\nG0 X10 Y0 Z2\n{words} Z3 E4\n", 0.02)
     flat = curve.points[:, :2] - middle
     np.testing.assert_allclose(np.hypot(*flat.T), radius, atol=1e-9)
     angle = np.unwrap(np.arctan2(flat[:, 1], flat[:, 0]))
@@ -90,8 +91,8 @@ def test_arcs_are_within_the_chord_error(words, middle, radius, turn):
 
 @pytest.mark.parametrize("word", ["J-10", "R10"])
 def test_arcs_in_the_plane_of_y_and_z_turn_from_y_to_z(word):
-    """As seen against X, the same as in the plane of X and Y seen against Z."""
-    (curve,) = laid(f"G90\nM83\nG18\nG19\nG0 X5 Y10 Z0\nG3 X6 Y0 Z10 {word} E4\nG17\n", 0.02)
+    """Seen against X, as in the plane of X and Y seen against Z."""
+    (curve,) = read_curves(f"G90\nM83\nG18\nG19\nG0 X5 Y10 Z0\nG3 X6 Y0 Z10 {word} E4\nG17\n", 0.02)
     y, z = curve.points[:, 1:].T
     np.testing.assert_allclose(np.hypot(y, z), 10.0, atol=1e-9)
     angle = np.degrees(np.arctan2(z, y))
@@ -101,19 +102,19 @@ def test_arcs_in_the_plane_of_y_and_z_turn_from_y_to_z(word):
 
 
 def test_inches_are_read_until_millimetres_follow():
-    """Positions, middles of arcs and origins, absolute and relative; angles of axes are not lengths."""
+    """Positions, arc centres and origins, absolute and relative; angles of axes are not lengths."""
     inches = (
         "G20 G90 M83\nG0 X1 Y1 Z0.1\nG1 X2 E1\nG3 X3 Y2 J1 E1\nG92 X0\nG1 X1 E1\nG91\nG1 Y1 E1\n"
         "G90\nG21\nG1 X0 E1\n"
     )
-    (curve,) = laid(inches)
+    (curve,) = read_curves(inches)
     corners = np.array(
         [[1, 1, 0.1], [2, 1, 0.1], [3, 2, 0.1], [4, 2, 0.1], [4, 3, 0.1], [3, 3, 0.1]]
     )
     for corner in corners * 25.4:
         assert np.linalg.norm(curve.points - corner, axis=1).min() < 1e-9
     straight = 25.4 * (1.0 + 1.0 + 1.0 + 1.0)
-    # the chords of a quarter of an inch's radius, within 0.01 mm
+    # the chords of a quarter turn of an inch's radius, within 0.01 mm
     assert 0.0 <= straight + 25.4 * np.pi / 2.0 - length([curve]) < 0.02
     by_rotary = "G20 G90 M83\nG0 X0 Y0 Z1 A0\nG1 X1 A30 E1\n"
     (leaning,) = gcode.curves_of(by_rotary, "a", 0.01, rotary="head-ac")
@@ -148,15 +149,17 @@ def test_inches_are_read_until_millimetres_follow():
     ],
 )
 def test_programs_that_are_not_understood_are_told_with_their_line(text, line, words):
-    with pytest.raises(InputError) as told:
-        laid(text)
+    with pytest.raises(InputError) as caught:
+        read_curves(text)
     assert (
-        told.value.code == "BAD_GCODE" and line in told.value.where and words in told.value.message
-    ), told.value
+        caught.value.code == "BAD_GCODE"
+        and line in caught.value.where
+        and words in caught.value.message
+    ), caught.value
 
 
 def length(curves):
-    return sum(np.linalg.norm(np.diff(one.points, axis=0), axis=1).sum() for one in curves)
+    return sum(np.linalg.norm(np.diff(curve.points, axis=0), axis=1).sum() for curve in curves)
 
 
 HEAD = "G90\nM83\nG0 X0 Y0 Z1\n"
@@ -193,7 +196,7 @@ HEAD = "G90\nM83\nG0 X0 Y0 Z1\n"
     ],
 )
 def test_numbers_modes_and_commands_are_those_of_the_firmware(text, wanted):
-    assert length(laid(text)) == pytest.approx(wanted, abs=1e-9)
+    assert length(read_curves(text)) == pytest.approx(wanted, abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -247,23 +250,26 @@ def test_numbers_modes_and_commands_are_those_of_the_firmware(text, wanted):
     + ["M30\nG1 X5 E1", "M112\nG1 X5 E1", "G28 X\nG1 X5 E1\nG28 Z\nG1 X9 E1"],
 )
 def test_what_is_not_understood_is_rejected_with_its_line(line):
-    with pytest.raises(InputError) as told:
-        laid(HEAD + "G1 X1 E1\n" + line + "\nG1 X2 E1\n")
-    last = 4 + len(line.splitlines())
-    assert told.value.code == "BAD_GCODE" and told.value.where == f"part.gcode line {last}", (
-        told.value
-    )
+    """Unsupported words and commands are rejected with their line, because a skipped one would
+    change the part."""
+    with pytest.raises(InputError) as caught:
+        read_curves(HEAD + "G1 X1 E1\n" + line + "\nG1 X2 E1\n")
+    line_number = 4 + len(line.splitlines())
+    assert (
+        caught.value.code == "BAD_GCODE" and caught.value.where == f"part.gcode line {line_number}"
+    ), caught.value
 
 
 def test_macros_codes_and_tools_are_noted_with_their_lines():
-    read = gcode.read(
+    """Macros, unknown codes and tool changes are reported with their lines."""
+    result = gcode.read(
         HEAD
         + 'START_PRINT T=200\nM98 P"start.g"\nM104 S200 T1\nG1 X5 E1\nM9999\nT1\nG1 X9 E1\nM9999\nM92 E415\nM92 X160\nM486 S0\n',
         "p",
         0.01,
     )
-    assert length(read.curves) == pytest.approx(9.0)
-    told = " / ".join(issue.message for issue in read.issues)
+    assert length(result.curves) == pytest.approx(9.0)
+    notes = " / ".join(issue.message for issue in result.issues)
     for words in (
         "START_PRINT (line 4)",
         'M98 P"start.g" (line 5)',
@@ -271,11 +277,11 @@ def test_macros_codes_and_tools_are_noted_with_their_lines():
         "T0, T1",
         "M92 (line 13)",
     ):
-        assert words in told, told
+        assert words in notes, notes
     assert (
-        "M104" not in told
-        and "M486" not in told
-        and {issue.code for issue in read.issues} == {"GCODE_NOT_READ"}
+        "M104" not in notes
+        and "M486" not in notes
+        and {issue.code for issue in result.issues} == {"GCODE_NOT_READ"}
     )
 
 
@@ -305,32 +311,36 @@ STYLES = {
 
 @pytest.mark.parametrize("style", STYLES)
 def test_moves_that_are_not_part_are_left_out_by_the_comments_of_slicers(style):
+    """Comments of slicers mark moves outside the part, which are skipped."""
     form, purge, *types = STYLES[style]
     purge_mark = "" if purge is None else form.format(purge) + "\n"
     text = HEAD + purge_mark + "G1 X60 E1\n;LAYER:0\n; LAYER_CHANGE\n"
     for k, name in enumerate(types):
         text += f"{form.format(name)}\nG0 X0 Y{10 * k + 10}\nG1 X{10 * k + 10} E1\n"
-    read = gcode.read(text, "p", 0.01)
-    assert length(read.curves) == pytest.approx(40.0)
-    (note,) = read.issues
+    result = gcode.read(text, "p", 0.01)
+    assert length(result.curves) == pytest.approx(40.0)
+    (note,) = result.issues
     assert note.code == "ROLES_LEFT_OUT"
     for name, size in zip([purge or "before the first type", *types[:3]], (60, 10, 20, 30)):
         assert f"{name} {size} mm" in note.message
-    whole = gcode.read(text, "p", 0.01, "all")
-    assert length(whole.curves) == pytest.approx(160.0) and not whole.issues
-    assert {one.layer for one in whole.curves} == {0}  # purge line and first layer at one height
+    all_roles = gcode.read(text, "p", 0.01, "all")
+    assert length(all_roles.curves) == pytest.approx(160.0) and not all_roles.issues
+    assert {curve.layer for curve in all_roles.curves} == {
+        0
+    }  # purge line and first layer at one height
     assert length(gcode.read(text, "p", 0.01, f"support, {types[3]}").curves) == pytest.approx(60.0)
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as caught:
         gcode.read(text, "p", 0.01, "part, suport")
-    assert told.value.code == "BAD_VALUE" and "'suport'" in told.value.message
+    assert caught.value.code == "BAD_VALUE" and "'suport'" in caught.value.message
 
 
 def test_types_that_nobody_knows_are_deposited_with_a_note():
-    read = gcode.read(HEAD + ";TYPE:Zebra\nG1 X10 E1\n", "p", 0.01)
-    assert length(read.curves) == pytest.approx(10.0)
-    assert [issue.code for issue in read.issues] == ["GCODE_NOT_READ"] and "Zebra" in read.issues[
-        0
-    ].message
+    """Unknown types are deposited with a note."""
+    result = gcode.read(HEAD + ";TYPE:Zebra\nG1 X10 E1\n", "p", 0.01)
+    assert length(result.curves) == pytest.approx(10.0)
+    assert [issue.code for issue in result.issues] == [
+        "GCODE_NOT_READ"
+    ] and "Zebra" in result.issues[0].message
 
 
 @pytest.mark.parametrize(
@@ -345,7 +355,8 @@ def test_types_that_nobody_knows_are_deposited_with_a_note():
     ],
 )
 def test_rotary_words_are_directions(rotary, words, wanted):
-    """table: the part point under the tool, turned by the table's own rotations, has its direction upwards again."""
+    """For a table, its own rotations turn the part point under the tool until its direction points
+    up again."""
     (curve,) = gcode.curves_of(HEAD + f"G1 X30 {words} E1\n", "p", 0.01, rotary=rotary)
     np.testing.assert_allclose(curve.directions[0], (0, 0, 1), atol=1e-12)
     np.testing.assert_allclose(curve.directions[-1], wanted, atol=1e-12)
@@ -365,25 +376,26 @@ def test_rotary_words_are_directions(rotary, words, wanted):
             np.array([[co, 0, s], [0, 1, 0], [-s, 0, co]]),
         ][k]
         np.testing.assert_allclose(table @ turned, (0, 0, 1), atol=1e-12)
-    with pytest.raises(InputError) as told:
-        laid(HEAD + f"G1 X30 {words} E1\n")
-    assert "strategy.rotary" in told.value.message
+    with pytest.raises(InputError) as caught:
+        read_curves(HEAD + f"G1 X30 {words} E1\n")
+    assert "strategy.rotary" in caught.value.message
 
 
 def message(*fields):
-    """Fields (number, kind, value) as protocol buffers write them: 0 a number, 1 a double, 2 bytes."""
-    found = b""
+    """Encode fields (number, kind, value) like protocol buffers: 0 a number, 1 a double, 2
+    bytes."""
+    encoded = b""
     for number, kind, value in fields:
-        found += bytes([number << 3 | kind])
+        encoded += bytes([number << 3 | kind])
         if kind == 1:
-            found += struct.pack("<d", value)
+            encoded += struct.pack("<d", value)
             continue
-        rest = value if kind == 0 else len(value)
-        while rest > 127:
-            found += bytes([rest & 127 | 128])
-            rest >>= 7
-        found += bytes([rest]) + (value if kind == 2 else b"")
-    return found
+        remaining = value if kind == 0 else len(value)
+        while remaining > 127:
+            encoded += bytes([remaining & 127 | 128])
+            remaining >>= 7
+        encoded += bytes([remaining]) + (value if kind == 2 else b"")
+    return encoded
 
 
 def vector(row):
@@ -394,37 +406,39 @@ def toolpath(layers):
     """Groups of segments (deposits, points, directions)."""
     groups = []
     for number, segments in layers:
-        parts = []
-        for on, points, ways in segments:
+        encoded_segments = []
+        for deposits, points, directions in segments:
             rows = [
                 message((1, 2, vector(p)), (2, 2, vector(w)), (6, 1, 50.0))
-                for p, w in zip(points, ways)
+                for p, w in zip(points, directions)
             ]
-            parts.append(
+            encoded_segments.append(
                 (
                     2,
                     2,
                     message(
-                        *((1, 2, row) for row in rows), *([(2, 0, 1)] if on else []), (3, 0, 3)
+                        *((1, 2, row) for row in rows),
+                        *([(2, 0, 1)] if deposits else []),
+                        (3, 0, 3),
                     ),
                 )
             )
-        groups.append((1, 2, message((1, 0, number), *parts)))
+        groups.append((1, 2, message((1, 0, number), *encoded_segments)))
     return message(*groups, (2, 2, message((1, 1, 2.0), (7, 1, 4.0))))
 
 
 def test_a_toolpath_of_adaone():
-    line, other = [[0, 0, 2], [30, 0, 2], [30, 0, 2], [30, 20, 2]], [[5, 5, 4], [25, 5, 4]]
+    line, travel = [[0, 0, 2], [30, 0, 2], [30, 0, 2], [30, 20, 2]], [[5, 5, 4], [25, 5, 4]]
     down, leaning = [[0, 0, -1]] * 4, [[0, 0.6, -0.8]] * 2
     data = toolpath(
-        [(3, [(True, line, down), (False, other, leaning)]), (7, [(True, other, leaning)])]
+        [(3, [(True, line, down), (False, travel, leaning)]), (7, [(True, travel, leaning)])]
     )
-    first, second = ada3dp.curves_of(data, "part.ada3dp")
-    np.testing.assert_allclose(first.points, [line[0], line[1], line[3]])
-    np.testing.assert_allclose(first.directions, [[0, 0, 1]] * 3)
-    np.testing.assert_allclose(second.points, other)
-    np.testing.assert_allclose(second.directions, [[0, -0.6, 0.8]] * 2)
-    assert (first.layer, second.layer) == (0, 1)
+    first_curve, second_curve = ada3dp.curves_of(data, "part.ada3dp")
+    np.testing.assert_allclose(first_curve.points, [line[0], line[1], line[3]])
+    np.testing.assert_allclose(first_curve.directions, [[0, 0, 1]] * 3)
+    np.testing.assert_allclose(second_curve.points, travel)
+    np.testing.assert_allclose(second_curve.directions, [[0, -0.6, 0.8]] * 2)
+    assert (first_curve.layer, second_curve.layer) == (0, 1)
     for damaged, words in (
         (data[:40], "damaged"),
         (b"G1 X0", "damaged"),
@@ -432,25 +446,26 @@ def test_a_toolpath_of_adaone():
         (toolpath([(0, [(False, line, down)])]), "none of its segments"),
         (toolpath([(0, [(True, [[0, 0, 1], [float("nan"), 0, 0]], down[:2])])]), "not a number"),
     ):
-        with pytest.raises(InputError) as told:
+        with pytest.raises(InputError) as caught:
             ada3dp.curves_of(damaged, "part.ada3dp")
-        assert told.value.code == "BAD_ADA3DP" and words in told.value.message, told.value
+        assert caught.value.code == "BAD_ADA3DP" and words in caught.value.message, caught.value
 
 
-def typed_toolpath(types, *more):
-    """One segment of 10 mm more than the one before for each type."""
+def typed_toolpath(types, *fields):
+    """A toolpath with one segment for each type, each 10 mm longer than the one before."""
     segments = []
     for k, kind in enumerate(types, 1):
         rows = [(1, 2, message((1, 2, vector([x, k, 0])))) for x in (1.0, 1.0 + 10.0 * k)]
         segments.append((2, 2, message(*rows, (2, 0, 1), (3, 0, kind))))
-    return message((1, 2, message((1, 0, 0), *segments)), *more)
+    return message((1, 2, message((1, 0, 0), *segments)), *fields)
 
 
 def test_segments_of_adaone_that_are_not_part_are_left_out():
+    """AdaOne segments outside the part are skipped."""
     data = typed_toolpath([1, 4, 6, 12, 3])  # wall, brim, raft, purge, infill
-    read = ada3dp.read(data, "p")
-    assert length(read.curves) == pytest.approx(60.0)
-    (note,) = read.issues
+    result = ada3dp.read(data, "p")
+    assert length(result.curves) == pytest.approx(60.0)
+    (note,) = result.issues
     for words in ("BRIM 20 mm", "RAFT 30 mm", "PURGE 40 mm"):
         assert words in note.message
     assert length(ada3dp.curves_of(data, "p", "all")) == pytest.approx(150.0)
@@ -458,23 +473,25 @@ def test_segments_of_adaone_that_are_not_part_are_left_out():
 
 
 def test_what_adaone_may_not_mean_as_a_deposit_is_told():
-    with pytest.raises(InputError) as told:
+    """Content that may not be a deposit is reported or rejected."""
+    with pytest.raises(InputError) as caught:
         ada3dp.read(typed_toolpath([1], (2, 2, message((2, 0, 12)))), "p")
-    assert told.value.code == "BAD_ADA3DP" and "drilling" in told.value.message
-    read = ada3dp.read(typed_toolpath([1], (5, 0, 7), (2, 2, message((5, 0, 1)))), "p")
-    notes = " / ".join(issue.message for issue in read.issues)
+    assert caught.value.code == "BAD_ADA3DP" and "drilling" in caught.value.message
+    result = ada3dp.read(typed_toolpath([1], (5, 0, 7), (2, 2, message((5, 0, 1)))), "p")
+    notes = " / ".join(issue.message for issue in result.issues)
     assert "1 of a toolpath" in notes and "external axes" in notes
 
 
 def test_codes_of_makers_are_noted_and_positions_given_anew():
+    """Codes of printer manufacturers are reported, and a position is required again after them."""
     start = "M290 X40 Y40 Z2.6\nG91\nG380 S2 Z30 F300\nG39.4\nG2814 Z0.32\n"
-    read = gcode.read(start + HEAD + "G1 X5 E1\n", "p", 0.01)
-    assert length(read.curves) == pytest.approx(5.0)
-    (note,) = read.issues
+    result = gcode.read(start + HEAD + "G1 X5 E1\n", "p", 0.01)
+    assert length(result.curves) == pytest.approx(5.0)
+    (note,) = result.issues
     assert all(
         name in note.message
         for name in ("M290 (line 1)", "G380 (line 3)", "G39.4 (line 4)", "G2814 (line 5)")
     )
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as caught:
         gcode.read(HEAD + "G380 S2 Z30\nG1 X5 E1\n", "p", 0.01)
-    assert "before its position is defined" in told.value.message
+    assert "before its position is defined" in caught.value.message

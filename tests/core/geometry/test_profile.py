@@ -66,29 +66,32 @@ def test_gaps_are_bridged_by_a_step_and_roundings_jumped():
 
 def test_heights_are_found_wherever_the_curve_crosses_them():
     crest = Meridian.chained([arc((50.0, 0.0), 10.0, 0.0, np.pi)])
-    found = crest.s_at_height([0.0, 6.0, 10.0, 10.1])
+    arc_lengths = crest.s_at_height([0.0, 6.0, 10.0, 10.1])
     angle = np.arcsin(0.6)
-    assert found[0] == pytest.approx([0.0, 10.0 * np.pi], abs=1e-9)
-    assert found[1] == pytest.approx([10.0 * angle, 10.0 * (np.pi - angle)], abs=1e-8)
-    assert found[2] == pytest.approx(
+    assert arc_lengths[0] == pytest.approx([0.0, 10.0 * np.pi], abs=1e-9)
+    assert arc_lengths[1] == pytest.approx([10.0 * angle, 10.0 * (np.pi - angle)], abs=1e-8)
+    assert arc_lengths[2] == pytest.approx(
         [5.0 * np.pi], abs=1e-3
-    )  # where the curve is level the height says little of s
-    assert len(found[3]) == 0
+    )  # where the curve is level, the height hardly determines s
+    assert len(arc_lengths[3]) == 0
 
 
 def test_a_wall_speaks_part_coordinates():
+    """Walls return points and directions in part coordinates."""
     turn = np.array(
         [[0.0, -1.0, 0.0, 3.0], [0.0, 0.0, -1.0, 4.0], [1.0, 0.0, 0.0, 5.0], [0.0, 0.0, 0.0, 1.0]]
     )
     wall = RevolvedWall(Meridian.chained([line((10.0, 0.0), (10.0, 5.0))]), turn)
-    at = np.array([0.3, 2.0])
-    local = np.stack([10.0 * np.cos(at), 10.0 * np.sin(at), [1.0, 2.0], np.ones(2)], axis=1)
-    assert wall.points(np.full(2, 10.0), np.array([1.0, 2.0]), at) == pytest.approx(
+    azimuth = np.array([0.3, 2.0])
+    local = np.stack(
+        [10.0 * np.cos(azimuth), 10.0 * np.sin(azimuth), [1.0, 2.0], np.ones(2)], axis=1
+    )
+    assert wall.points(np.full(2, 10.0), np.array([1.0, 2.0]), azimuth) == pytest.approx(
         (local @ turn.T)[:, :3]
     )
-    outward = wall.directions(np.array([[1.0, 0.0, 0.0]]), at)
+    outward = wall.directions(np.array([[1.0, 0.0, 0.0]]), azimuth)
     assert outward == pytest.approx(
-        np.stack([np.cos(at), np.sin(at), [0.0, 0.0]], axis=1) @ turn[:3, :3].T
+        np.stack([np.cos(azimuth), np.sin(azimuth), [0.0, 0.0]], axis=1) @ turn[:3, :3].T
     )
 
 

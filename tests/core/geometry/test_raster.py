@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The area that strokes cover on a raster is that of their deposit."""
+"""The area that strokes cover on a raster is the area of their deposit."""
 
 import math
 

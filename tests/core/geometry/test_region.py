@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Regions: nesting, mending, parallel curves against distances of their own."""
+"""Regions: nesting, repair, and parallel curves against independently computed distances."""
 
 import builtins
 
@@ -17,7 +17,7 @@ SQUARE = np.array([[0.0, 0.0], [10.0, 0.0], [10.0, 10.0], [0.0, 10.0]])
 HOLE = np.array([[2.0, 2.0], [2.0, 8.0], [8.0, 8.0], [8.0, 2.0]])
 
 
-def away(rings, points):
+def distance_to_rings(rings, points):
     """Distance of points to rings, edge by edge."""
     best = np.full(len(points), np.inf)
     for ring in rings:
@@ -44,24 +44,26 @@ def test_islands_in_holes_are_regions_of_their_own(scale):
 
 
 def test_order_and_starts_do_not_depend_on_how_loops_come():
+    """Order and start points do not depend on the input order of the loops."""
     loops = [SQUARE, HOLE, SQUARE + [20.0, 0.0], HOLE + [20.0, 0.0]]
-    known = [ring for one in regions(loops) for ring in one.borders()]
+    rings = [ring for region in regions(loops) for ring in region.borders()]
     rng = np.random.default_rng(0)
     for _ in range(10):
         mixed = [np.roll(loops[k], rng.integers(4), axis=0) for k in rng.permutation(4)]
-        again = [ring for one in regions(mixed) for ring in one.borders()]
-        assert all(np.array_equal(a, b) for a, b in zip(known, again, strict=True))
-    assert known[0][0].tolist() == [0.0, 0.0]
+        again = [ring for region in regions(mixed) for ring in region.borders()]
+        assert all(np.array_equal(a, b) for a, b in zip(rings, again, strict=True))
+    assert rings[0][0].tolist() == [0.0, 0.0]
 
 
 def test_crossing_loops_are_mended_and_told():
+    """Intersecting loops are repaired and reported."""
     bow = mended([np.array([[0.0, 0.0], [10.0, 0.0], [0.0, 10.0], [10.0, 10.0]])])
-    assert sum(one.area for one in bow.regions) == pytest.approx(
+    assert sum(region.area for region in bow.regions) == pytest.approx(
         25.0
     ) and bow.changed == pytest.approx(25.0)
     assert "25 mm^2" in bow.issues()[0].message
     across = mended([SQUARE, HOLE + 5.0])
-    assert sum(one.area for one in across.regions) == pytest.approx(
+    assert sum(region.area for region in across.regions) == pytest.approx(
         91.0
     ) and across.changed == pytest.approx(27.0)
     sound = mended([np.repeat(SQUARE, 3, axis=0), HOLE])
@@ -69,8 +71,9 @@ def test_crossing_loops_are_mended_and_told():
 
 
 def test_slivers_are_dropped_and_told():
-    found = mended([SQUARE, 0.01 * SQUARE + 20.0], least_area=0.1)
-    assert len(found.regions) == 1 and found.dropped == pytest.approx(0.01)
+    """Slivers are dropped and reported."""
+    repaired = mended([SQUARE, 0.01 * SQUARE + 20.0], least_area=0.1)
+    assert len(repaired.regions) == 1 and repaired.dropped == pytest.approx(0.01)
     assert mended([]).regions == () and regions([SQUARE[::-1]]) == ()
 
 
@@ -79,19 +82,19 @@ def test_parallel_curves_are_at_the_distance(distance):
     a = 2.0 * np.pi * np.arange(500) / 500
     round_ = np.stack([np.cos(a), np.sin(a)], axis=1)
     loops = [round_ * (60 + 9 * np.sin(5 * a))[:, None], (round_ * 8 + [20, 5])[::-1]]
-    (whole,) = regions(loops)
-    for part in whole.grown(distance, 0.01):
-        for ring in part.borders():
+    (region,) = regions(loops)
+    for offset_region in region.grown(distance, 0.01):
+        for ring in offset_region.borders():
             middles = 0.5 * (ring + np.roll(ring, -1, axis=0))
-            assert np.abs(away(loops, ring) - abs(distance)).max() < 1e-3
-            off = away(loops, middles) - abs(distance)
+            assert np.abs(distance_to_rings(loops, ring) - abs(distance)).max() < 1e-3
+            off = distance_to_rings(loops, middles) - abs(distance)
             assert off.min() > -0.011 and off.max() < 1e-3
-    assert whole.grown(0.0, 0.01) == (whole,)
-    assert whole.grown(-60.0, 0.01) == ()
+    assert region.grown(0.0, 0.01) == (region,)
+    assert region.grown(-60.0, 0.01) == ()
 
 
 def test_short_edges_have_the_bands_that_the_library_makes():
-    """Edges of two points are drawn here, because one call of the library for each takes too long."""
+    """Edges of two points are drawn directly, because a library call for each takes too long."""
     rng = np.random.default_rng(3)
     edges = rng.uniform(-5.0, 5.0, (40, 2, 2))
     edges[7, 1] = edges[7, 0]  # a disc
@@ -113,10 +116,10 @@ def test_short_edges_have_the_bands_that_the_library_makes():
 def test_without_the_library_a_filling_says_what_is_missing(monkeypatch):
     honest = builtins.__import__
 
-    def refuse(name, *rest, **more):
+    def refuse(name, *arguments, **options):
         if name.split(".")[0] == "shapely":
             raise ImportError(name)
-        return honest(name, *rest, **more)
+        return honest(name, *arguments, **options)
 
     module.shapely.cache_clear()
     monkeypatch.setattr(builtins, "__import__", refuse)
@@ -126,30 +129,37 @@ def test_without_the_library_a_filling_says_what_is_missing(monkeypatch):
 
 
 def test_pieces_without_room_for_a_circle_are_left_out_and_no_others():
-    """Of a square with round bites near its border: thousands of slivers, of which shrinking leaves none."""
+    """A square with round bites near its border has thousands of slivers that shrinking removes;
+    only those may be dropped."""
     rng = np.random.default_rng(3)
     square = regions([40.0 * SQUARE])[0]
     discs = regions([SQUARE])[0].grown(1.0, 0.05)
     bites = [
-        one
-        for place in rng.uniform(0.0, 390.0, (900, 2))
-        for one in regions([discs[0].borders()[0] * 1.2 + place])
+        candidate
+        for centre in rng.uniform(0.0, 390.0, (900, 2))
+        for candidate in regions([discs[0].borders()[0] * 1.2 + centre])
     ]
-    whole = square.without(bites)
+    bitten = square.without(bites)
     for wide in (0.5, 2.0, 6.0):
         for error in (0.5, 0.001):
-            room = [one.borders()[0] for one in whole if one.grown(-0.5 * wide, error)]
-            found = [
-                one.borders()[0]
-                for one in square.without(bites, wide)
-                if one.grown(-0.5 * wide, error)
+            wide_borders = [
+                candidate.borders()[0]
+                for candidate in bitten
+                if candidate.grown(-0.5 * wide, error)
             ]
-            assert all(np.array_equal(a, b) for a, b in zip(room, found, strict=True))
-        assert len(room) < len(square.without(bites, wide)) < len(whole)
+            kept_borders = [
+                candidate.borders()[0]
+                for candidate in square.without(bites, wide)
+                if candidate.grown(-0.5 * wide, error)
+            ]
+            assert all(
+                np.array_equal(a, b) for a, b in zip(wide_borders, kept_borders, strict=True)
+            )
+        assert len(wide_borders) < len(square.without(bites, wide)) < len(bitten)
 
 
 def test_points_on_straight_borders_are_left_out_at_once(monkeypatch):
-    """A square with thousands of points on its sides is four corners after a few looks at it."""
+    """A square with thousands of points on its sides is reduced to four corners in a few passes."""
     side = np.stack([np.arange(3000) / 100.0, np.zeros(3000)], axis=1)
     turn, sides = np.array([[0.0, 1.0], [-1.0, 0.0]]), []
     for _ in range(4):

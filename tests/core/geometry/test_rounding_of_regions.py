@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Rounding errors decide nothing about regions: not their points, not where they begin, not into how many they fall."""
+"""Rounding errors do not affect the points, the start or the number of regions."""
 
 import numpy as np
 import pytest
@@ -36,11 +36,12 @@ def test_a_border_begins_at_the_same_corner(lean):
 
 @pytest.mark.parametrize("width", [-1e-12, 0.0, 1e-12])
 def test_pieces_that_hang_together_by_a_hair_are_two(width):
-    (whole,) = regions([SQUARE])
+    """Two parts connected by less than the tolerance are two regions."""
+    (square,) = regions([SQUARE])
     bar = np.array([[10.0, -1.0], [30.0, -1.0], [30.0, 30.0 - width], [10.0, 30.0 - width]])
-    parts = whole.without(regions([bar]), wide=1.0)
-    assert [part.area for part in parts] == pytest.approx([300.0, 300.0])
-    assert [len(part.borders()[0]) for part in parts] == [4, 4]
+    halves = square.without(regions([bar]), wide=1.0)
+    assert [half.area for half in halves] == pytest.approx([300.0, 300.0])
+    assert [len(half.borders()[0]) for half in halves] == [4, 4]
 
 
 @pytest.mark.parametrize("off", [-1e-13, 0.0, 1e-13])

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Curves with corners: nearest points against brute force, interpolation against the curve behind it."""
+"""Curves with corners: nearest points against brute force, interpolation against the sampled
+curve."""
 
 import numpy as np
 import pytest

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Equal lengths have equal numbers of parts, whatever their last bits."""
+"""Equal lengths have equal numbers of steps, whatever their last bits."""
 
 import numpy as np
 import pytest
@@ -12,11 +12,11 @@ from freecad_am.core.geometry.step_count import round_down, round_up, step_count
 @pytest.mark.parametrize("parts", [1, 5, 6, 1000])
 def test_last_bits_add_no_part(step, parts):
     length = parts * step
-    near = [length * (1.0 + k * 2.0**-50) for k in range(-8, 9)]
-    assert {step_count(one, step) for one in near} == {parts}
-    assert set(step_counts(np.array(near), step).tolist()) == {parts}
-    assert {round_up(one / step) for one in near} == {parts}
-    assert {round_down(one / step) for one in near} == {parts}
+    lengths = [length * (1.0 + k * 2.0**-50) for k in range(-8, 9)]
+    assert {step_count(value, step) for value in lengths} == {parts}
+    assert set(step_counts(np.array(lengths), step).tolist()) == {parts}
+    assert {round_up(value / step) for value in lengths} == {parts}
+    assert {round_down(value / step) for value in lengths} == {parts}
 
 
 def test_a_part_more_where_the_length_asks_for_it():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls: derivatives against differences, inverse against points off the wall, tables against their wall."""
+"""Walls: derivatives against differences, inverse against points off the wall, tables against the
+tabulated wall."""
 
 import numpy as np
 import pytest
@@ -41,11 +42,12 @@ def test_derivatives_are_those_of_the_points(wall):
 
 @pytest.mark.parametrize("wall", WALLS, ids=lambda wall: type(wall).__name__)
 def test_the_inverse_finds_the_foot_of_a_point_off_the_wall(wall):
+    """The inverse returns the closest point for a point off the wall."""
     u, v = somewhere()
     off = np.random.default_rng(4).uniform(-2.0, 2.0, len(u))
-    found = wall.inverse(wall.point(u, v) + off[:, None] * normals(wall, u, v))
-    assert found[0] == pytest.approx(u, abs=1e-9)
-    assert found[1] == pytest.approx(v, abs=1e-9)
+    parameters = wall.inverse(wall.point(u, v) + off[:, None] * normals(wall, u, v))
+    assert parameters[0] == pytest.approx(u, abs=1e-9)
+    assert parameters[1] == pytest.approx(v, abs=1e-9)
 
 
 def test_the_torus_turns_about_a_line_parallel_to_y():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tubes are closed bodies of the volume, width and height they say, seen from outside."""
+"""Tubes are closed bodies with the stated volume, width and height and outward triangles."""
 
 import numpy as np
 import pytest
@@ -17,7 +17,7 @@ def area(sides):
     return 0.5 * abs(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
 
 
-def made(points, build, closed, sides, width=3.0, height=2.0):
+def build_tube(points, build, closed, sides, width=3.0, height=2.0):
     starts, n = np.array([0, len(points)]), len(points)
     across = tubes.frames(points, build, starts, np.array([closed]))
     ends = np.zeros(n, dtype=bool)
@@ -30,7 +30,7 @@ def test_a_straight_tube_has_its_volume_and_stands_on_its_points(sides):
     rng = np.random.default_rng(sides)
     turn = np.linalg.qr(rng.normal(size=(3, 3)))[0]
     points = np.outer(np.linspace(0.0, 10.0, 7), turn[0])
-    mesh, _ = made(points, np.tile(turn[2], (7, 1)), False, sides)
+    mesh, _ = build_tube(points, np.tile(turn[2], (7, 1)), False, sides)
     assert volume(mesh) == pytest.approx(10.0 * area(sides) * 3.0 * 2.0 / 4.0, rel=1e-12)
     assert np.ptp(mesh.points @ turn[1]) == pytest.approx(3.0) and np.ptp(
         mesh.points @ turn[0]
@@ -44,21 +44,24 @@ def test_a_straight_tube_has_its_volume_and_stands_on_its_points(sides):
 def test_every_edge_has_two_sides(sides):
     angle = np.linspace(0.0, 5.0, 30)
     points = np.column_stack([20 * np.cos(angle), 20 * np.sin(angle), angle])
-    mesh, _ = made(points, np.tile([0.0, 0.0, 1.0], (30, 1)), False, sides)
+    mesh, _ = build_tube(points, np.tile([0.0, 0.0, 1.0], (30, 1)), False, sides)
     edges = np.concatenate([mesh.triangles[:, [i, (i + 1) % 3]] for i in range(3)])
-    there, back = {tuple(edge) for edge in edges}, {tuple(edge[::-1]) for edge in edges}
-    assert len(there) == len(edges) and there == back
+    directed, reversed_edges = (
+        {tuple(edge) for edge in edges},
+        {tuple(edge[::-1]) for edge in edges},
+    )
+    assert len(directed) == len(edges) and directed == reversed_edges
 
 
 def test_a_ring_has_the_volume_of_its_section_turned():
-    """Pappus: the area of the section times the way of its middle, that of a polygon of chords."""
+    """Pappus: the area of the section times the path of its centre, a polygon of chords."""
     count = 400
     angle = np.linspace(0.0, 2.0 * np.pi, count + 1)
     points = np.column_stack([20 * np.cos(angle), 20 * np.sin(angle), 0 * angle])
     points[-1] = points[0]
-    mesh, across = made(points, np.tile([0.0, 0.0, 1.0], (count + 1, 1)), True, 8)
-    way = 2.0 * 20.0 * count * np.sin(np.pi / count)
-    assert volume(mesh) == pytest.approx(way * area(8) * 1.5, rel=1e-6)
+    mesh, across = build_tube(points, np.tile([0.0, 0.0, 1.0], (count + 1, 1)), True, 8)
+    path_length = 2.0 * 20.0 * count * np.sin(np.pi / count)
+    assert volume(mesh) == pytest.approx(path_length * area(8) * 1.5, rel=1e-6)
     assert np.allclose(across.side[0], across.side[-1]) and np.allclose(
         across.turn, 2.0 * np.pi / count
     )
@@ -66,13 +69,13 @@ def test_a_ring_has_the_volume_of_its_section_turned():
 
 def test_corners_are_mitred_and_sharp_ones_not_without_bound():
     corner = np.array([[0.0, 0, 0], [10, 0, 0], [10, 10, 0]])
-    mesh, across = made(corner, np.tile([0.0, 0.0, 1.0], (3, 1)), False, 4, 2.0, 2.0)
+    mesh, across = build_tube(corner, np.tile([0.0, 0.0, 1.0], (3, 1)), False, 4, 2.0, 2.0)
     assert across.mitre == pytest.approx([1.0, np.sqrt(2.0), 1.0]) and across.turn[
         1
     ] == pytest.approx(np.pi / 2)
     assert volume(mesh) == pytest.approx(20.0 * 4.0)
     back = np.array([[0.0, 0, 0], [10, 0, 0], [0, 0, 0]])
-    mesh, across = made(back, np.tile([0.0, 0.0, 1.0], (3, 1)), False, 4)
+    mesh, across = build_tube(back, np.tile([0.0, 0.0, 1.0], (3, 1)), False, 4)
     assert across.mitre.max() == 2.0 and np.isfinite(mesh.points).all()
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A short planned motion with its program, and motions of random numbers."""
+"""Fixtures: a short planned motion with its program, and random motions."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ def blocks_of():
 
 @pytest.fixture(scope="session")
 def a_motion():
-    """Random beads with rapids between them as `planning.motion` puts them; every number differs."""
+    """Random beads joined by rapids as in `planning.motion`; all values differ."""
 
     def make(seed, layers=4, beads=2, points=7, rapids=3, axes=6):
         random = np.random.default_rng(seed)
@@ -43,10 +43,10 @@ def a_motion():
         n = len(rows)
         position, joints = random.uniform(-50, 50, (n, 3)), random.uniform(-3, 3, (n, axes))
         duration = random.uniform(0.05, 2.0, n)
-        first = np.flatnonzero(deposit & (point == 0))
+        starts = np.flatnonzero(deposit & (point == 0))
         for column in (position, joints):
-            column[first] = column[first - 1]
-        duration[first] = duration[0] = 0.0
+            column[starts] = column[starts - 1]
+        duration[starts] = duration[0] = 0.0
         axis = np.tile([0.0, 0.0, 1.0], (n, 1))
         length = np.linalg.norm(np.diff(position, axis=0, prepend=position[:1]), axis=1)
         speed = length / np.where(duration > 0, duration, 1.0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Links drawn from a chain: every machine has them, closed, turned outwards, where its axes are and moving with them."""
+"""Links drawn from a chain: every machine has closed, outward links that follow its axes."""
 
 import numpy as np
 import pytest
@@ -18,12 +18,12 @@ TABLES = [name for name in NAMES if name not in ROBOTS]
 
 def links_of(name):
     loaded = machine.load(name)
-    made = (robot_links if loaded.free else table_links).solids(loaded.chain)
-    return loaded, made
+    link_solids = (robot_links if loaded.free else table_links).solids(loaded.chain)
+    return loaded, link_solids
 
 
 def volume(solid):
-    """Signed volume by the divergence theorem, with triangles turned as their normals tell."""
+    """Signed volume by the divergence theorem, with triangles oriented by their normals."""
     corners = solid.points[solid.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     outward = np.einsum("ij,ij->i", across, solid.normals[solid.triangles].mean(axis=1))
@@ -48,9 +48,9 @@ def test_primitives_are_closed_and_turned_outwards(name):
     solid, exact = PRIMITIVES[name]
     assert np.abs(np.linalg.norm(solid.normals, axis=1) - 1.0).max() < 1e-9
     assert volume(solid) == pytest.approx(exact, rel=0.02)
-    places = solid.points.round(6)
-    _, which = np.unique(places, axis=0, return_inverse=True)
-    corners = which.reshape(-1)[solid.triangles]
+    rounded = solid.points.round(6)
+    _, vertex_index = np.unique(rounded, axis=0, return_inverse=True)
+    corners = vertex_index.reshape(-1)[solid.triangles]
     corners = corners[
         (corners[:, 0] != corners[:, 1])
         & (corners[:, 1] != corners[:, 2])
@@ -64,11 +64,11 @@ def test_primitives_are_closed_and_turned_outwards(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_machine_is_drawn_where_its_axes_are(name):
-    loaded, made = links_of(name)
+    loaded, link_solids = links_of(name)
     chain = loaded.chain
-    assert len(made) == chain.axes + 1 and sum(map(len, made)) >= 8
-    at = chain.links(np.zeros(chain.axes))
-    for pose, link in zip(at, made):
+    assert len(link_solids) == chain.axes + 1 and sum(map(len, link_solids)) >= 8
+    poses = chain.links(np.zeros(chain.axes))
+    for pose, link in zip(poses, link_solids):
         for solid in link:
             assert (
                 np.isfinite(solid.points).all()
@@ -76,26 +76,27 @@ def test_every_machine_is_drawn_where_its_axes_are(name):
             )
             moved = solid.move(pose)
             assert np.abs(moved.points - (solid.points @ pose[:3, :3].T + pose[:3, 3])).max() < 1e-9
-    # the last link reaches the flange and not past it
-    last = np.concatenate([solid.move(at[-1]).points for solid in made[-1]])
+    # the last link reaches the flange but not beyond
+    last_link_points = np.concatenate([solid.move(poses[-1]).points for solid in link_solids[-1]])
     flange = chain.forward(np.zeros(chain.axes))
-    over = (last - flange[:3, 3]) @ flange[:3, 2]
+    over = (last_link_points - flange[:3, 3]) @ flange[:3, 2]
     assert over.max() <= 1.0 and over.max() > -5.0
 
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_neighbouring_links_of_robots_meet_whatever_the_joints(name):
-    loaded, made = links_of(name)
+    """Neighbouring links of robots touch for all joint positions."""
+    loaded, link_solids = links_of(name)
     bones = robot_links.skeleton(loaded.chain)
     for q in np.random.default_rng(3).uniform(-2, 2, (3, 6)):
-        at = loaded.chain.links(q)
+        poses = loaded.chain.links(q)
         clouds = [
             np.concatenate([solid.move(pose).points for solid in link])
-            for pose, link in zip(at, made)
+            for pose, link in zip(poses, link_solids)
         ]
-        for axis, (before, after) in enumerate(zip(clouds, clouds[1:])):
-            apart = cKDTree(after).query(before)[0].min()
-            assert apart < 1.2 * bones.radius(axis), (axis, apart)
+        for axis, (lower, upper) in enumerate(zip(clouds, clouds[1:])):
+            distance = cKDTree(upper).query(lower)[0].min()
+            assert distance < 1.2 * bones.radius(axis), (axis, distance)
 
 
 def test_the_fanuc_s_bones_are_those_of_its_drawing():
@@ -122,15 +123,16 @@ def test_the_fanuc_s_bones_are_those_of_its_drawing():
 
 @pytest.mark.parametrize("name", TABLES)
 def test_of_tables_the_bearings_stand_still_and_the_last_axis_turns_the_disc_in_itself(name):
-    loaded, made = links_of(name)
+    """The bearings of a table are fixed, and its last axis rotates the disc about itself."""
+    loaded, link_solids = links_of(name)
     chain = loaded.chain
     stands = table_links.standing_link(chain)
     assert chain.sliding[stands - 1] and not chain.sliding[stands:].any()
-    assert made[stands] and all(
-        not link for link in made[int(np.flatnonzero(chain.sliding)[0]) + 1 : stands]
+    assert link_solids[stands] and all(
+        not link for link in link_solids[int(np.flatnonzero(chain.sliding)[0]) + 1 : stands]
     )
     if stands < chain.axes:
-        disc = max(made[-1], key=lambda solid: np.ptp(solid.points, axis=0).max())
+        disc = max(link_solids[-1], key=lambda solid: np.ptp(solid.points, axis=0).max())
         axis = chain.directions[-1]
         radius = np.linalg.norm(disc.points - (disc.points @ axis)[:, None] * axis, axis=1)
         assert radius.max() == pytest.approx(table_links.RADIUS, rel=1e-6)
@@ -138,26 +140,28 @@ def test_of_tables_the_bearings_stand_still_and_the_last_axis_turns_the_disc_in_
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_rods_hold_all_that_is_drawn_of_a_link_and_little_more(name):
-    loaded, made = links_of(name)
-    for link, rods in zip(made, external_links.robot_cylinders(loaded.chain)):
+    """Capsules contain all drawn solids of a link and are not much larger."""
+    loaded, link_solids = links_of(name)
+    for link, rods in zip(link_solids, external_links.robot_cylinders(loaded.chain)):
         for solid in link:
             assert any(rod.holds(solid.points).all() for rod in rods)
-        drawn = sum(volume(solid) for solid in link)
-        held = sum(np.pi * rod.length * rod.radius**2 for rod in rods)
-        # plates count as round, and tapering solids as wide as they are at most
-        assert held < 4.0 * drawn
+        solid_volume = sum(volume(solid) for solid in link)
+        capsule_volume = sum(np.pi * rod.length * rod.radius**2 for rod in rods)
+        # plates are enclosed as round, and tapering solids by their maximum width
+        assert capsule_volume < 4.0 * solid_volume
 
 
 def test_of_links_with_a_shape_of_their_own_that_is_held():
+    """Capsules of a link with its own shape contain that shape."""
     loaded, _ = links_of("kuka-kr16-2")
     block = solids.box([300.0, 0.0, 40.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], (700.0, 160.0, 120.0))
     shapes = [None, None, (block.points, block.triangles), None, None, None, None]
-    plain, made = (
+    plain, capsules = (
         external_links.robot_cylinders(loaded.chain),
         external_links.robot_cylinders(loaded.chain, shapes),
     )
     inside = np.random.default_rng(1).uniform([-50, -80, -20], [650, 80, 100], (2000, 3))
     for points in (block.points, inside):
-        assert np.any([rod.holds(points) for rod in made[2]], axis=0).all()
-    for own, before in list(zip(made, plain))[3:]:
-        assert [rod.radius for rod in own] == [rod.radius for rod in before]
+        assert np.any([rod.holds(points) for rod in capsules[2]], axis=0).all()
+    for custom, default in list(zip(capsules, plain))[3:]:
+        assert [rod.radius for rod in custom] == [rod.radius for rod in default]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shares left to limits and shares used of joint speeds, against plain loops and against motions known in closed form."""
+"""Remaining shares of limits and used shares of joint speeds, against plain loops and closed
+forms."""
 
 import numpy as np
 
@@ -14,6 +15,7 @@ LOWER, UPPER = np.array([-2.0, -np.inf, 0.5, -1.0]), np.array([2.0, np.inf, 1.5,
 
 
 def test_margin_is_one_in_the_middle_none_at_the_limits_and_less_beyond():
+    """The margin is one in the middle of the range, zero at the limits and negative beyond."""
     middle = np.array([0.0, 7e5, 1.0, 1.0])
     rows = np.stack(
         [
@@ -30,14 +32,14 @@ def test_margin_is_one_in_the_middle_none_at_the_limits_and_less_beyond():
 def test_margin_as_a_loop_finds_it():
     rng = np.random.default_rng(5)
     joints = rng.uniform(-3, 3, (200, 4))
-    found = margins(joints, LOWER, UPPER)
+    computed = margins(joints, LOWER, UPPER)
     for i, row in enumerate(joints):
         for axis, angle in enumerate(row):
             low, high = LOWER[axis], UPPER[axis]
-            told = (
+            expected = (
                 1.0 if np.isinf(low) else 1.0 - abs(angle - (low + high) / 2) / ((high - low) / 2)
             )
-            assert abs(found[i, axis] - told) < 1e-12
+            assert abs(computed[i, axis] - expected) < 1e-12
 
 
 def test_unreachable_rows_have_no_numbers():
@@ -52,11 +54,12 @@ def test_unreachable_rows_have_no_numbers():
 
 
 def test_ratio_of_a_steady_turn_is_its_speed():
+    """A constant rotation uses a constant share of its speed limit."""
     rng = np.random.default_rng(6)
     duration = np.concatenate([[0.0], rng.uniform(0.1, 2.0, 50)])
-    speed, most = np.array([0.3, -1.2, 4.0]), np.array([0.6, 0.4, np.inf])
+    speed, max_speed = np.array([0.3, -1.2, 4.0]), np.array([0.6, 0.4, np.inf])
     joints = np.cumsum(duration)[:, None] * speed
-    ratios = speed_ratios(joints, duration, most)
+    ratios = speed_ratios(joints, duration, max_speed)
     assert (ratios[0] == 0.0).all() and np.allclose(ratios[1:], [0.5, 3.0, 0.0])
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where things stand in a cell, against PyKDL and against the motion's own positions."""
+"""Positions of bodies in a cell, against PyKDL and against the positions of the motion."""
 
 import numpy as np
 import pytest
@@ -36,10 +36,10 @@ def test_nozzle_and_part_are_where_pykdl_puts_them(cell):
     tip, axis = cell.tip_in_part(flange)
     for row, joints in enumerate(q):
         placed = placing(cell, joints)
-        seen = frames.inverse(placed.part) @ placed.nozzle
+        nozzle_in_part = frames.inverse(placed.part) @ placed.nozzle
         assert (
-            np.abs(seen[:3, 3] - tip[row]).max() < 1e-9
-            and np.abs(seen[:3, 2] - axis[row]).max() < 1e-12
+            np.abs(nozzle_in_part[:3, 3] - tip[row]).max() < 1e-9
+            and np.abs(nozzle_in_part[:3, 2] - axis[row]).max() < 1e-12
         )
         drawn = placed.links[-1] @ cell.machine.chain.flange
         base = placed.links[0]
@@ -53,9 +53,9 @@ def test_at_rest_the_nozzle_stands_upright_on_the_point(cell):
     joints = at_rest(cell, point)
     assert np.isfinite(joints).all() and (cell.limits.margin(joints) > 0.0).all()
     placed = placing(cell, joints)
-    seen = frames.inverse(placed.part) @ placed.nozzle
-    assert np.abs(seen[:3, 3] - point).max() < 1e-6
-    assert np.abs(seen[:3, 2] - cell.poses.mount[:3, 2]).max() < 1e-9
+    nozzle_in_part = frames.inverse(placed.part) @ placed.nozzle
+    assert np.abs(nozzle_in_part[:3, 3] - point).max() < 1e-6
+    assert np.abs(nozzle_in_part[:3, 2] - cell.poses.mount[:3, 2]).max() < 1e-9
 
 
 def test_out_of_reach_all_axes_are_at_zero():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The timeline against the program that is posted, and against a walk through its blocks; totals against the toolpath."""
+"""The timeline against the posted program and a walk through its blocks; totals against the
+toolpath."""
 
 import dataclasses
 from types import SimpleNamespace
@@ -21,21 +22,22 @@ PROCESS = ProcessParameters(
 )
 
 
-def walked(motion, process, waits, rapids):
-    """[(time, row, deposit on)] at the ends of every move and wait, told by the blocks of a program of this motion."""
-    told, time, on = [], 0.0, False
+def walk_program(motion, process, waits, rapids):
+    """[(time, row, deposit on)] at the ends of every move and wait, from the blocks of a program of
+    this motion."""
+    events, time, is_on = [], 0.0, False
     groups = np.split(np.arange(len(motion)), np.flatnonzero(np.diff(motion.deposit)) + 1)
     layer = motion.layer[0]
     for group in groups:
         if motion.deposit[group[0]]:
             time += process.lead_on
-            told.append((time, group[0], True))
+            events.append((time, group[0], True))
             for row in group[1:]:
                 time += motion.duration[row]
-                told.append((time, row, True))
+                events.append((time, row, True))
             time += process.lead_off
-            told.append((time, group[-1], True))
-            on = False
+            events.append((time, group[-1], True))
+            is_on = False
             continue
         new = motion.layer[group[0]] != layer
         layer = motion.layer[group[0]]
@@ -43,8 +45,8 @@ def walked(motion, process, waits, rapids):
             if new and k == (1 if rapids >= 3 else 0):
                 time += max(process.between_layers.wait, waits[layer])
             time += motion.duration[row]
-            told.append((time, row, on))
-    return told
+            events.append((time, row, is_on))
+    return events
 
 
 @pytest.mark.parametrize("rapids", [2, 3])
@@ -53,7 +55,7 @@ def test_times_are_those_of_a_walk_through_the_program(a_motion, seed, rapids):
     motion = a_motion(seed, rapids=rapids)
     waits = [0.0, 5.0, 1.0, 9.0]
     line = timeline(motion, PROCESS, waits)
-    steps = walked(motion, PROCESS, waits, rapids)
+    steps = walk_program(motion, PROCESS, waits, rapids)
     assert line.total == pytest.approx(steps[-1][0], abs=1e-9)
     assert line.total == pytest.approx(motion.duration.sum() + 8 * 1.1 + 5.0 + 3.0 + 9.0)
     times, rows = np.array([step[0] for step in steps]), np.array([step[1] for step in steps])
@@ -65,6 +67,7 @@ def test_times_are_those_of_a_walk_through_the_program(a_motion, seed, rapids):
 
 
 def test_between_rows_all_runs_straight_and_at_the_speed_asked_for(a_motion):
+    """Between rows the motion is straight and has the programmed speed."""
     motion = a_motion(3)
     line = timeline(motion, PROCESS)
     random = np.random.default_rng(5)
@@ -74,12 +77,14 @@ def test_between_rows_all_runs_straight_and_at_the_speed_asked_for(a_motion):
     assert (state.row == rows).all() and np.abs(state.share - share).max() < 1e-9
     for name in ("joints", "position"):
         column = getattr(motion, name)
-        wanted = column[rows - 1] + share[:, None] * (column[rows] - column[rows - 1])
-        assert np.abs(getattr(state, name) - wanted).max() < 1e-9
+        expected = column[rows - 1] + share[:, None] * (column[rows] - column[rows - 1])
+        assert np.abs(getattr(state, name) - expected).max() < 1e-9
     assert (state.deposit == motion.deposit[rows]).all() and not state.standing.any()
     late = line.state_at(line.arrive[rows] - (1.0 - share - 1e-3) * motion.duration[rows])
-    gone = np.linalg.norm(late.position - state.position, axis=1) / (1e-3 * motion.duration[rows])
-    assert np.allclose(gone, state.speed, rtol=1e-6)
+    measured_speed = np.linalg.norm(late.position - state.position, axis=1) / (
+        1e-3 * motion.duration[rows]
+    )
+    assert np.allclose(measured_speed, state.speed, rtol=1e-6)
 
 
 def test_deposit_is_on_as_long_as_the_moves_of_beads_and_their_leads(a_motion):
@@ -92,13 +97,14 @@ def test_deposit_is_on_as_long_as_the_moves_of_beads_and_their_leads(a_motion):
 
 
 def test_outside_it_stays_at_the_ends_and_unreachable_joints_are_told(a_motion):
+    """Before and after, the state stays at the ends; unreachable joints are NaN."""
     motion = a_motion(6)
     joints = motion.joints.copy()
     joints[10] = np.nan
     motion = dataclasses.replace(motion, joints=joints)
     line = timeline(motion, PROCESS)
-    first, last = line.state_at([-5.0, line.total + 5.0]).row
-    assert (first, last) == (0, len(motion) - 1)
+    first_row, last_row = line.state_at([-5.0, line.total + 5.0]).row
+    assert (first_row, last_row) == (0, len(motion) - 1)
     assert np.isnan(line.state_at(line.arrive[10]).joints).all()
     assert (
         np.isfinite(line.state_at(line.arrive[9]).joints).all()
@@ -140,8 +146,8 @@ def test_totals_are_sums_over_the_segments(a_motion):
     assert sums.fed == pytest.approx(sums.deposit_time * 10.0 * np.pi * 0.6**2)
     assert sums.time == pytest.approx(sums.deposit_time + sums.rapid_time + sums.wait_time)
     assert sums.wait_time == pytest.approx(8 * 1.1 + 3 * 3.0)
-    whole = np.linalg.norm(np.diff(motion.position, axis=0), axis=1).sum()
-    assert sums.rapid_length == pytest.approx(whole - length)
+    total_length = np.linalg.norm(np.diff(motion.position, axis=0), axis=1).sum()
+    assert sums.rapid_length == pytest.approx(total_length - length)
 
 
 def test_a_width_that_varies_counts_by_the_trapezoid(a_motion):
@@ -169,15 +175,15 @@ def test_the_time_is_that_of_the_programs_blocks(blocks_of):
         program.moves[0].duration[0]
     )
     assert line.total == pytest.approx(leads + stands + moves, rel=1e-12)
-    # a wait falls where the program has it: after the move before it
-    row, told = -1, {}
+    # a wait comes after its preceding move, as in the program
+    row, expected_waits = -1, {}
     for block in program.blocks:
         if isinstance(block, Moves):
             row += len(block) + (1 if block.kind == DEPOSIT else 0)
         elif isinstance(block, Wait):
-            told[row] = block.seconds
-    assert told and any(isinstance(block, LayerStart) for block in program.blocks)
+            expected_waits[row] = block.seconds
+    assert expected_waits and any(isinstance(block, LayerStart) for block in program.blocks)
     lit = line.lit
-    for at, seconds in told.items():
-        assert line.waits[at] - lit[at] == pytest.approx(seconds)
-    assert (line.waits - lit).sum() == pytest.approx(sum(told.values()))
+    for wait_row, seconds in expected_waits.items():
+        assert line.waits[wait_row] - lit[wait_row] == pytest.approx(seconds)
+    assert (line.waits - lit).sum() == pytest.approx(sum(expected_waits.values()))

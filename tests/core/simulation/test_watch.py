@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Findings along a motion: each violation that is made is found where it was made, and nothing else."""
+"""Findings along a motion: each violation is reported at its row, and nothing else."""
 
 import dataclasses
 
@@ -23,13 +23,13 @@ def cell():
 
 @pytest.fixture
 def calm(cell, a_motion):
-    """A motion in the middle of the limits and slow."""
+    """A slow motion in the middle of the limits."""
     motion = a_motion(1)
     joints = 0.01 * motion.joints + np.radians([0, 10, 20, 0, 40, 0])
     return dataclasses.replace(motion, joints=joints)
 
 
-def seen(motion, cell, condition=None, issues=()):
+def watch_motion(motion, cell, condition=None, issues=()):
     n = len(motion)
     condition = np.full(n, 0.5) if condition is None else condition
     return watch(
@@ -43,15 +43,16 @@ def seen(motion, cell, condition=None, issues=()):
 
 
 def test_a_calm_motion_has_no_findings(calm, cell):
-    found = seen(calm, cell)
-    assert found.findings == ()
-    assert found.margin.min() > 40.0
+    result = watch_motion(calm, cell)
+    assert result.findings == ()
+    assert result.margin.min() > 40.0
 
 
 def test_what_is_made_wrong_is_found_where_it_was_made(calm, cell):
+    """Each introduced violation is reported at its row."""
     motion = calm
     joints, duration = motion.joints.copy(), motion.duration.copy()
-    joints[5:8, 0] = np.radians([169.8, 171.5, 169.7])  # near, past, near the limit of 170
+    joints[5:8, 0] = np.radians([169.8, 171.5, 169.7])  # near, beyond, near the limit of 170
     joints[20] = np.nan
     joints[30, 3] = joints[29, 3] + 1.0
     duration[30] = 1.0 / (5.0 * cell.machine.max_speed[3])
@@ -60,10 +61,10 @@ def test_what_is_made_wrong_is_found_where_it_was_made(calm, cell):
     condition[60] = np.nan
     motion = dataclasses.replace(motion, joints=joints, duration=duration)
     issues = (Issue(ERROR, "X", "made up", 2, 1, 3), Issue(NOTE, "Y", "only a note", 1))
-    found = seen(motion, cell, condition, issues)
+    result = watch_motion(motion, cell, condition, issues)
     by_kind = {
-        kind: [one for one in found.findings if one.kind == kind]
-        for kind in {one.kind for one in found.findings}
+        kind: [finding for finding in result.findings if finding.kind == kind]
+        for kind in {finding.kind for finding in result.findings}
     }
     assert set(by_kind) == {
         watching.UNREACHABLE,
@@ -73,18 +74,21 @@ def test_what_is_made_wrong_is_found_where_it_was_made(calm, cell):
         watching.SLOWED,
         watching.ISSUE,
     }
-    assert [one.row for one in by_kind[watching.UNREACHABLE]] == [20]
+    assert [finding.row for finding in by_kind[watching.UNREACHABLE]] == [20]
     (limit,) = by_kind[watching.LIMIT]
     assert (limit.row, limit.label) == (6, "q1") and limit.value == pytest.approx(-1.5)
-    assert [(one.row, one.label) for one in by_kind[watching.NEAR_LIMIT]] == [(5, "q1"), (7, "q1")]
+    assert [(finding.row, finding.label) for finding in by_kind[watching.NEAR_LIMIT]] == [
+        (5, "q1"),
+        (7, "q1"),
+    ]
     (singular,) = by_kind[watching.SINGULAR]
-    assert (singular.row, singular.value, singular.than) == (41, 0.04, 0.1)  # where it is worst
-    slowed = {one.row: one for one in by_kind[watching.SLOWED]}
+    assert (singular.row, singular.value, singular.than) == (41, 0.04, 0.1)  # the worst row
+    slowed = {finding.row: finding for finding in by_kind[watching.SLOWED]}
     assert slowed[30].label == "q4" and slowed[30].value == pytest.approx(motion.speed[30] / 5.0)
     (issue,) = by_kind[watching.ISSUE]
     assert (motion.layer[issue.row], motion.bead[issue.row], motion.point[issue.row]) == (2, 1, 3)
     assert motion.deposit[issue.row] and issue.label == "made up"
-    rows = [one.row for one in found.findings]
+    rows = [finding.row for finding in result.findings]
     assert rows == sorted(rows)
 
 
@@ -102,7 +106,7 @@ def test_links_are_marked_for_their_own_axis(cell):
         bad_links(cell, shown_margins(cell, q), ratios, False, True).tolist()
         == [False] * 4 + [True] + [False] * 2
     )
-    q[1], q[2] = np.radians([-80.0, 200.0])  # each within its own limits, q3 - q2 past 273
+    q[1], q[2] = np.radians([-80.0, 200.0])  # each within its own limits, q3 - q2 beyond 273
     assert (
         bad_links(cell, shown_margins(cell, q), none, False, True).tolist()
         == [False, False, True, True] + [False] * 3
@@ -113,6 +117,7 @@ def test_links_are_marked_for_their_own_axis(cell):
 
 
 def test_runs_of_rows_on_which_a_link_touches_one_thing_are_one_finding(calm, cell):
+    """Consecutive rows in which a link touches the same body are one finding."""
     n = len(calm)
     link, what = np.full(n, -1), np.full(n, -1)
     link[4:9], what[4:9] = 5, 1
@@ -120,16 +125,20 @@ def test_runs_of_rows_on_which_a_link_touches_one_thing_are_one_finding(calm, ce
     link[30], what[30] = 0, 2
     arm = ArmTouches(link, what, ("nozzle", "platform", "fixture"), 0.01, LINKS)
     unknown = np.full(n, np.nan)
-    found = watch(
+    result = watch(
         calm, cell, achievable_feed(calm, cell.machine.max_speed), unknown, unknown, arm=arm
     )
-    assert [(one.row, one.kind, one.label, one.other) for one in found.findings] == [
+    assert [
+        (finding.row, finding.kind, finding.label, finding.other) for finding in result.findings
+    ] == [
         (4, watching.TOUCHES, "q5", "platform"),
         (9, watching.TOUCHES, "q5", "nozzle"),
         (30, watching.TOUCHES, "base", "fixture"),
     ]
-    assert found.arm_known and (found.touching == link).all()
-    assert not seen(calm, cell).arm_known and (seen(calm, cell).touching == -1).all()
+    assert result.arm_known and (result.touching == link).all()
+    assert (
+        not watch_motion(calm, cell).arm_known and (watch_motion(calm, cell).touching == -1).all()
+    )
     margins = shown_margins(cell, calm.joints[4])
     assert np.flatnonzero(bad_links(cell, margins, np.zeros(6), False, True, 5)).tolist() == [5]
     assert not bad_links(cell, margins, np.zeros(6), False, True).any()
