@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A page in Chromium without a window, asked and driven through its debugging pipe."""
+"""Drive a page in headless Chromium through its debugging pipe."""
 
 from __future__ import annotations
 
@@ -25,47 +25,47 @@ OPTIONS = (
     "--window-size=1200,1100",
 )
 
-READS, WRITES, FREE = (
+BROWSER_READS, BROWSER_WRITES, FIRST_FREE = (
     3,
     4,
     10,
-)  # what the browser calls its ends of the pipe; from where numbers are neither
+)  # descriptors of the pipe in the browser, and the first number that is free for our ends
 
-PATIENCE = 60  # s
+TIMEOUT_S = 60  # s
 
 
-def found() -> str | None:
-    """The browser of this machine, None without one."""
+def find_browser() -> str | None:
+    """Return the browser of this machine, None if there is none."""
     return next(filter(None, map(shutil.which, NAMES)), None)
 
 
 def _pipe() -> tuple[int, int]:
-    """Both ends of a pipe, with numbers that the browser's are not."""
+    """Return both ends of a pipe, with numbers that the browser does not use for its own."""
     ends = os.pipe()
-    found = tuple(fcntl.fcntl(end, fcntl.F_DUPFD_CLOEXEC, FREE) for end in ends)
+    descriptors = tuple(fcntl.fcntl(end, fcntl.F_DUPFD_CLOEXEC, FIRST_FREE) for end in ends)
     for end in ends:
         os.close(end)
-    return found[0], found[1]
+    return descriptors[0], descriptors[1]
 
 
 class Browser:
-    """One page. `errors`: what it wrote to the console as errors, and exceptions that nobody caught."""
+    """Control one page. `errors` holds the errors on its console and its uncaught exceptions."""
 
     def __init__(self, page: Path, profile: Path) -> None:
-        (read, into), (out, write) = _pipe(), _pipe()
+        (browser_in, into), (out, write) = _pipe(), _pipe()
 
-        def joined() -> None:
-            os.dup2(read, READS)
-            os.dup2(write, WRITES)
+        def connect_pipe() -> None:
+            os.dup2(browser_in, BROWSER_READS)
+            os.dup2(write, BROWSER_WRITES)
 
         self._process = subprocess.Popen(
-            [str(found()), *OPTIONS, f"--user-data-dir={profile}", "about:blank"],
-            preexec_fn=joined,
-            pass_fds=(READS, WRITES),
+            [str(find_browser()), *OPTIONS, f"--user-data-dir={profile}", "about:blank"],
+            preexec_fn=connect_pipe,
+            pass_fds=(BROWSER_READS, BROWSER_WRITES),
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-        os.close(read)
+        os.close(browser_in)
         os.close(write)
         self._into, self._out = into, out
         self._numbers = itertools.count(1)
@@ -92,20 +92,20 @@ class Browser:
         os.close(self._out)
 
     def run(self, script: str) -> Any:
-        """The value of an expression in the page; of a promise what it comes to."""
-        told = self._ask(
+        """Return the value of an expression in the page; wait for it if it is a promise."""
+        reply = self._ask(
             "Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True
         )
-        if "exceptionDetails" in told:
-            raise AssertionError(told["exceptionDetails"])
-        return told["result"].get("value")
+        if "exceptionDetails" in reply:
+            raise AssertionError(reply["exceptionDetails"])
+        return reply["result"].get("value")
 
-    def mouse(self, kind: str, x: float, y: float, **more: Any) -> None:
-        """The mouse is pressed, moved, released or its wheel turned, at a place of the window."""
-        self._ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+    def mouse(self, kind: str, x: float, y: float, **options: Any) -> None:
+        """Press, move or release the mouse, or turn its wheel, at a position in the window."""
+        self._ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **options)
 
     def picture(self) -> str:
-        """The window as PNG, in base64."""
+        """Return the window as PNG, in base64."""
         return str(self._ask("Page.captureScreenshot", format="png")["data"])
 
     def _ask(self, method: str, **parameters: Any) -> dict[str, Any]:
@@ -117,32 +117,32 @@ class Browser:
         while data:
             data = data[os.write(self._into, data) :]
         while True:
-            told = self._next()
-            if told.get("id") == number:
-                if "error" in told:
-                    raise AssertionError(told["error"])
-                answer: dict[str, Any] = told["result"]
+            reply = self._next()
+            if reply.get("id") == number:
+                if "error" in reply:
+                    raise AssertionError(reply["error"])
+                answer: dict[str, Any] = reply["result"]
                 return answer
-            self._heard(told)
+            self._heard(reply)
 
     def _next(self) -> dict[str, Any]:
         while b"\0" not in self._held:
-            if not select.select([self._out], [], [], PATIENCE)[0]:
+            if not select.select([self._out], [], [], TIMEOUT_S)[0]:
                 self._process.kill()
-                raise TimeoutError(f"the browser has said nothing for {PATIENCE} s")
+                raise TimeoutError(f"the browser has said nothing for {TIMEOUT_S} s")
             data = os.read(self._out, 65536)
             if not data:
                 raise EOFError("the browser is gone")
             self._held += data
         message, self._held = self._held.split(b"\0", 1)
-        told: dict[str, Any] = json.loads(message)
-        return told
+        reply: dict[str, Any] = json.loads(message)
+        return reply
 
-    def _heard(self, told: dict[str, Any]) -> None:
-        more = told.get("params", {})
-        if told.get("method") == "Runtime.exceptionThrown":
-            self.errors.append(json.dumps(more["exceptionDetails"]))
-        elif told.get("method") == "Log.entryAdded" and more["entry"]["level"] == "error":
-            self.errors.append(more["entry"]["text"])
-        elif told.get("method") == "Runtime.consoleAPICalled" and more["type"] == "error":
-            self.errors.append(json.dumps(more["args"]))
+    def _heard(self, event: dict[str, Any]) -> None:
+        params = event.get("params", {})
+        if event.get("method") == "Runtime.exceptionThrown":
+            self.errors.append(json.dumps(params["exceptionDetails"]))
+        elif event.get("method") == "Log.entryAdded" and params["entry"]["level"] == "error":
+            self.errors.append(params["entry"]["text"])
+        elif event.get("method") == "Runtime.consoleAPICalled" and params["type"] == "error":
+            self.errors.append(json.dumps(params["args"]))

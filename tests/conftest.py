@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Makes FreeCAD importable in whatever Python runs the tests, and skips GUI tests where there is no window."""
+"""Make FreeCAD importable in the Python that runs the tests, and skip tests of the window without
+one."""
 
 import gc
 import os
@@ -12,10 +13,12 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
-# xdist gives its workers the path of the process that started them, in PYTHONPATH too, which commands would inherit
+# xdist passes the module path of its parent process to the workers in PYTHONPATH too; commands that
+# the tests start must not inherit it
 if "PYTEST_XDIST_WORKER" in os.environ:
     os.environ.pop("PYTHONPATH", None)
-module_path = os.environ.get("FREECAD_MODULE_PATH", "").split(os.pathsep)  # tests/gui_runner.py
+# set by tests/gui_runner.py
+module_path = os.environ.get("FREECAD_MODULE_PATH", "").split(os.pathsep)
 sys.path += [folder for folder in module_path if folder and folder not in sys.path]
 
 from freecad_am.batch import host  # noqa: E402
@@ -26,11 +29,11 @@ import FreeCAD  # noqa: E402
 
 if (
     not FreeCAD.GuiUp
-):  # as commands have it (freecad_am/batch/boot.py): a tenth of the time of what is computed here
+):  # as the commands do (freecad_am/batch/boot.py): collecting less often saves a tenth of the time
     gc.set_threshold(300_000, 50, 50)
 
-REASON_LINES, REASON_WIDTH = 6, 220  # of a failed test in the summary
-SLOWEST_FILES, LONG_RUN_S = 25, 60.0  # files are listed where the tests take longer
+REASON_LINES, REASON_WIDTH = 6, 220  # limits of a failed test's reason in the summary
+SLOWEST_FILES, LONG_RUN_S = 25, 60.0  # a run longer than this lists its slowest files
 
 
 def pytest_addoption(parser):
@@ -40,41 +43,44 @@ def pytest_addoption(parser):
 
 
 def covering(variants):
-    """Names of some variants, in which each value of each parameter is: first those of which every value is new."""
-    seen, chosen = set(), []
-    for ask in (all, any):
+    """Return the names of variants that together cover each value of each parameter. Variants with
+    new values only are chosen first."""
+    covered_values, names = set(), []
+    for quantifier in (all, any):
         for item in variants:
             values = {(name, id(value)) for name, value in item.callspec.params.items()}
-            if item.nodeid not in chosen and ask(value not in seen for value in values):
-                chosen.append(item.nodeid)
-                seen |= values
-    return chosen
+            if item.nodeid not in names and quantifier(
+                value not in covered_values for value in values
+            ):
+                names.append(item.nodeid)
+                covered_values |= values
+    return names
 
 
 def rest_of_variants(items):
-    """Names of the variants of tests marked `always` that count as long: all but the named ones, or, without names, all but
-    as many as have each value of each parameter."""
+    """Return the names of the variants of tests marked `always` that count as long. The mark names
+    the variants that stay short; without names, a covering set of variants stays short."""
     variants, spared = {}, set()
     for item in items:
         if item.get_closest_marker("always"):
             variants.setdefault(item.nodeid.partition("[")[0], []).append(item)
-    for test, of_one in variants.items():
-        names = of_one[0].get_closest_marker("always").args
-        stay = (
-            [item.nodeid for item in of_one if item.callspec.id in names]
+    for test, test_variants in variants.items():
+        names = test_variants[0].get_closest_marker("always").args
+        short_names = (
+            [item.nodeid for item in test_variants if item.callspec.id in names]
             if names
-            else covering(of_one)
+            else covering(test_variants)
         )
-        if names and len(of_one) > 1 and len(stay) < len(names):
+        if names and len(test_variants) > 1 and len(short_names) < len(names):
             raise pytest.UsageError(f"{test} has not all of the variants {names}")
-        spared.update(item.nodeid for item in of_one if item.nodeid not in stay)
+        spared.update(item.nodeid for item in test_variants if item.nodeid not in short_names)
     return spared
 
 
 def pytest_collection_modifyitems(config, items):
     named = tuple(
         word for word in config.args if "::" in word
-    )  # one that is named runs in any case
+    )  # a test named on the command line runs even if it is long
     spared = rest_of_variants(items)
     long = [item for item in items if item.get_closest_marker("long") or item.nodeid in spared]
     long = [item for item in long if not item.nodeid.startswith(named)]
@@ -92,7 +98,8 @@ def pytest_collection_modifyitems(config, items):
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_setupnodes():
-    """Start workers in the locale of the user: importing FreeCAD sets C for processes that are started."""
+    """Start the workers in the user's locale, because importing FreeCAD sets C for child
+    processes."""
     for name in ("LANG", "LC_ALL"):
         if name in os.environ:
             os.putenv(name, os.environ[name])
@@ -102,12 +109,12 @@ def pytest_xdist_setupnodes():
 
 @pytest.hookimpl(optionalhook=True, tryfirst=True)
 def pytest_handlecrashitem():
-    """A crash is a failure: no plugin runs the test once more."""
+    """Count a crash as a failure: no plugin may run the test again."""
     return True
 
 
 def print_slowest_files(terminalreporter):
-    """Print the time of the slowest files of tests, with what they share, where they take long."""
+    """Print the slowest test files and their times if the run is long."""
     seconds = Counter()
     for reports in terminalreporter.stats.values():
         for report in reports:
@@ -121,7 +128,7 @@ def print_slowest_files(terminalreporter):
 
 
 def pytest_terminal_summary(terminalreporter):
-    """Print the slowest files, and the failures and totals that tests/run.py sums up."""
+    """Print the slowest files, then the failures and totals that tests/run.py sums up."""
     print_slowest_files(terminalreporter)
     stats = terminalreporter.stats
     failed = [*stats.get("failed", ()), *stats.get("error", ())]
@@ -138,7 +145,7 @@ def pytest_terminal_summary(terminalreporter):
 
 @pytest.fixture
 def doc():
-    """An empty document, closed afterwards."""
+    """Open an empty document and close it after the test."""
     document = FreeCAD.newDocument("Test")
     name = document.Name
     yield document
@@ -148,12 +155,12 @@ def doc():
 
 @pytest.fixture
 def no_remedies(monkeypatch):
-    """What would make an infeasible job feasible is not looked for: it is planned several times over for that."""
+    """Skip the search for remedies of infeasible jobs, which plans a job several times."""
     monkeypatch.setattr("freecad_am.objects.joint_path.remedies", lambda *_: [])
     monkeypatch.setattr("freecad_am.api.suit", lambda *_: None)
 
 
 @pytest.fixture(scope="session")
 def root():
-    """The top folder of the repository."""
+    """Return the top folder of the repository."""
     return ROOT

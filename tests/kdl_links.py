@@ -1,30 +1,35 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where PyKDL has the links of a machine: a chain of its own, of the joint frames of the machine file alone."""
+"""Compute the poses of a machine's links with PyKDL, from the joint frames of the machine file
+only."""
 
 import numpy as np
 import PyKDL
 
 
 class KdlLinks:
-    """Frames (4, 4) of the links of a machine from where its chain begins, mm."""
+    """Compute the frames (4, 4) of the links of a machine relative to the base of its chain, in
+    mm."""
 
     def __init__(self, machine):
-        own = machine.chain
-        self.order, self.links = own.order, len(own.order)
-        self.chain = PyKDL.Chain()  # the solver does not keep it
-        for origin, direction, value in zip(own.origins, own.directions, own.order, strict=True):
-            kind = PyKDL.Joint.TransAxis if own.sliding[value] else PyKDL.Joint.RotAxis
+        chain = machine.chain
+        self.order, self.links = chain.order, len(chain.order)
+        # a reference must stay, because the solver does not keep the chain
+        self.chain = PyKDL.Chain()
+        for origin, direction, value in zip(
+            chain.origins, chain.directions, chain.order, strict=True
+        ):
+            kind = PyKDL.Joint.TransAxis if chain.sliding[value] else PyKDL.Joint.RotAxis
             turning = PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*direction), kind)
             self.chain.addSegment(PyKDL.Segment(PyKDL.Joint(), _frame(origin)))
             self.chain.addSegment(PyKDL.Segment(turning, PyKDL.Frame()))
-        self.chain.addSegment(PyKDL.Segment(PyKDL.Joint(), _frame(own.flange)))
+        self.chain.addSegment(PyKDL.Segment(PyKDL.Joint(), _frame(chain.flange)))
         self.solver = PyKDL.ChainFkSolverPos_recursive(self.chain)
         self.angles, self.seen = PyKDL.JntArray(self.links), PyKDL.Frame()
 
     def frame(self, q, link=None):
-        """That of a link, 0 the base, or of the flange, with joints q (axes,)."""
-        for place, value in enumerate(self.order):
-            self.angles[place] = float(q[value])
+        """Return the frame of a link (0 is the base) or of the flange at joint values q (axes,)."""
+        for index, value in enumerate(self.order):
+            self.angles[index] = float(q[value])
         self.solver.JntToCart(
             self.angles, self.seen, 2 * self.links + 1 if link is None else 2 * link
         )

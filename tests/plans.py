@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Toolpaths and joint paths planned once: what makes the same as another test of the same process has made, of the same
-inputs, gets a copy of what came out then.
-
-Stages that are alike have the same key, the fingerprint of all that they are made of, by which the product itself tells
-whether a result is to be made anew. What is asked for by force is planned.
-"""
+"""Share planned toolpaths and joint paths between the tests of a process. A test that plans from
+the same inputs as an earlier test gets a copy of its result. The key is the stage's fingerprint,
+by which the product itself decides whether a result is current. A forced recompute is always
+planned."""
 
 import contextlib
 import functools
@@ -19,19 +17,19 @@ _made = {}
 
 
 def _inputs(stage, obj):
-    """What an outcome depends on: the inputs, the names in its messages, and whether remedies are looked for. None where it
-    is to be made anew."""
-    if not hasattr(obj, "OutListRecursive"):  # a draft of a panel
+    """Return all that a result depends on: the inputs, the names in its messages, and whether
+    remedies are searched for. Return None if the stage must be planned."""
+    if not hasattr(obj, "OutListRecursive"):  # a draft of a panel has no inputs to compare
         return None
     key = stage.key(obj)
     if key == obj.Key:
         return None
-    labels = tuple(sorted((one.Name, one.Label) for one in (obj, *obj.OutListRecursive)))
+    labels = tuple(sorted((source.Name, source.Label) for source in (obj, *obj.OutListRecursive)))
     return type(stage).__name__, key, labels, joint_path.remedies
 
 
-def _keeping(prepare):
-    """The method `prepare` of a stage, whose work is done once for the same inputs."""
+def share_results(prepare):
+    """Replace the method `prepare` of a stage by one that plans once for equal inputs."""
 
     @functools.wraps(prepare)
     def prepared(stage, obj):
@@ -39,22 +37,22 @@ def _keeping(prepare):
         if inputs is None:
             return work
 
-        def made():
+        def plan():
             if inputs in _made:
                 return pickle.loads(_made[inputs])
             outcome = work()
             _made[inputs] = pickle.dumps(outcome)
             return outcome
 
-        return made
+        return plan
 
     return prepared
 
 
 @contextlib.contextmanager
-def kept():
-    """Within it they are."""
+def share_plans():
+    """Share results while this context is active."""
     with contextlib.ExitStack() as patches:
         for stage in (Toolpath, JointPath):
-            patches.enter_context(mock.patch.object(stage, "prepare", _keeping(stage.prepare)))
+            patches.enter_context(mock.patch.object(stage, "prepare", share_results(stage.prepare)))
         yield

@@ -25,16 +25,17 @@ from tests.window import freecad, private_home  # noqa: E402
 
 VERSION_SCRIPT = ROOT / "tests" / "versions" / "run.sh"
 CORES = len(os.sched_getaffinity(0))
-WINDOWS = CORES + 1  # a window waits for more than half of its time
-NICENESS = 15  # of headless tests, so that no click in a window comes late
+# one more than the cores, because a window waits for more than half of its time
+WINDOWS = CORES + 1
+NICENESS = 15  # lowers the priority of headless tests, so that no click in a window comes late
 TEST_LIMIT_S, LONG_TEST_LIMIT_S = 600, 4 * 3600
-RETRIED_TESTS = 8  # at most that many failed tests of the window run once more
-EXPLAINED_FAILURES = 10  # failures with their reasons in the summary; the others with their names
-TESTS_FAILED, NO_TESTS, UNABLE = 1, 5, 77  # statuses of pytest, and of tests/versions/run.sh
-CRASH = "crashed while running"  # xdist's words
+RETRIED_TESTS = 8  # if at most this many tests of the window fail, they run again
+EXPLAINED_FAILURES = 10  # the summary explains this many failures and only names the others
+TESTS_FAILED, NO_TESTS, UNABLE = 1, 5, 77  # exit statuses of pytest and of tests/versions/run.sh
+CRASH = "crashed while running"  # xdist's text about a crashed worker
 SUMMARY = "freecad-am: summary"
 PLUGINS = ("-p", "xdist.plugin", "-p", "pytest_timeout")
-# tests that depend on FreeCAD's version; among them those marked `any_version` run with --long only
+# tests that depend on FreeCAD's version; those marked `any_version` run with --long only
 HEADLESS_OF_VERSION = (
     *(f"tests/{name}" for name in ("objects", "brep", "kdl", "posts", "interop")),
     "tests/test_package.py",
@@ -58,7 +59,7 @@ WINDOW_OF_VERSION = (
 
 @dataclass
 class Outcome:
-    """What one run of pytest printed in its summary (tests/conftest.py)."""
+    """Hold what one run of pytest printed in its summary (tests/conftest.py)."""
 
     name: str
     status: int
@@ -73,15 +74,15 @@ class Outcome:
 
     def failures(self) -> dict[str, list[str]]:
         """Return the failed tests, each with the lines of its reason."""
-        found = re.findall(r"^failed: (.+)\n((?:    .*\n)*)", self.text, re.MULTILINE)
-        failures = {name: [line[4:] for line in reason.splitlines()] for name, reason in found}
+        matches = re.findall(r"^failed: (.+)\n((?:    .*\n)*)", self.text, re.MULTILINE)
+        failures = {name: [line[4:] for line in reason.splitlines()] for name, reason in matches}
         if not failures and self.counts()[1]:
             failures[f"ended with status {self.status}"] = self.text.splitlines()[-8:]
         return failures
 
 
 def stream(name: str, command: Sequence[str], env: dict[str, str]) -> Outcome:
-    """Run a command and print its output as it comes, each line after the name of the run."""
+    """Run a command and print its output while it runs, with the run's name before each line."""
     start = time.monotonic()
     process = subprocess.Popen(
         command,
@@ -111,7 +112,8 @@ def run_pytest(name: str, arguments: Sequence[str], workers: Sequence[str], nice
     command = ["nice", "-n", str(nice), sys.executable, "-u", "-m", "pytest", *options]
     with tempfile.TemporaryDirectory() as folder:
         env = private_home(Path(folder))
-        if env.get("FREECAD_AM_VERSION"):  # hundreds of lines about that version's own modules
+        # other versions print hundreds of lines about their own modules
+        if env.get("FREECAD_AM_VERSION"):
             env["PYTEST_ADDOPTS"] = "--disable-warnings"
         return stream(name, [*command, *workers, *arguments], env)
 
@@ -119,7 +121,7 @@ def run_pytest(name: str, arguments: Sequence[str], workers: Sequence[str], nice
 def run_headless(arguments: Sequence[str]) -> Outcome:
     """Run tests in plain Python, one file at a time on each core."""
     if os.environ.get("FREECAD_AM_VERSION"):
-        # the interpreters read programs that golden files hold equal in all versions
+        # golden files already hold the programs equal in all versions
         arguments = [*arguments, "--ignore=tests/posts/test_interpreters.py"]
     elif not paths_of(arguments) or any("posts" in word for word in arguments):
         from tests.posts import interpreters
@@ -130,19 +132,16 @@ def run_headless(arguments: Sequence[str]) -> Outcome:
 
 
 def run_windows(arguments: Sequence[str]) -> Outcome:
-    """Run tests in FreeCAD's main window, and a few that fail once more in a new FreeCAD.
-
-    On a machine that is busy with other work, a click or a key of a test may come too early. A crash is a failure,
-    whatever comes after it.
-    """
+    """Run tests in FreeCAD's main window, and repeat a few failed tests in a new FreeCAD. On a busy
+    machine, a click or a key of a test may come too early. A crash always counts as a failure."""
     if freecad() is None:
         return Outcome("window", TESTS_FAILED, "no freecad or no xvfb-run for the window\n")
     outcome = in_windows(arguments)
     failures = outcome.failures()
     crashed = any(CRASH in " ".join(reason) for reason in failures.values())
-    few = outcome.status == TESTS_FAILED and 0 < len(failures) <= RETRIED_TESTS
+    is_retried = outcome.status == TESTS_FAILED and 0 < len(failures) <= RETRIED_TESTS
     stopped = any(word.startswith(("-x", "--exitfirst", "--maxfail")) for word in arguments)
-    if not few or crashed or stopped or not all(file_of(name).exists() for name in failures):
+    if not is_retried or crashed or stopped or not all(file_of(name).exists() for name in failures):
         return outcome
     return merge_retry(outcome, in_windows([*failures]))
 
@@ -154,15 +153,15 @@ def in_windows(arguments: Sequence[str]) -> Outcome:
     return run_pytest("window", arguments, ["--dist", "loadfile", "--tx", f"{count}*{worker}"], 0)
 
 
-def merge_retry(first: Outcome, second: Outcome) -> Outcome:
-    """Return the outcome of tests of which the failed ones ran once more."""
-    retried, (passed, _, skipped) = first.failures(), first.counts()
-    cured = second.counts()[0]
-    left = {name: retried.get(name, []) for name in retried if name in second.failures()}
-    left = {**left, **second.failures()} if cured < len(retried) else {}
-    text = f"tried twice: {' '.join(retried)}\n" + describe_failures(left)
+def merge_retry(first_run: Outcome, second_run: Outcome) -> Outcome:
+    """Return the combined outcome of a run and the second run of its failed tests."""
+    retried, (passed, _, skipped) = first_run.failures(), first_run.counts()
+    cured = second_run.counts()[0]
+    failures = {name: retried.get(name, []) for name in retried if name in second_run.failures()}
+    failures = {**failures, **second_run.failures()} if cured < len(retried) else {}
+    text = f"tried twice: {' '.join(retried)}\n" + describe_failures(failures)
     text += f"total: {passed + cured} passed, {len(retried) - cured} failed, {skipped} skipped\n"
-    return Outcome(first.name, TESTS_FAILED if cured < len(retried) else 0, text)
+    return Outcome(first_run.name, TESTS_FAILED if cured < len(retried) else 0, text)
 
 
 def run_in_version(version: str, arguments: Sequence[str]) -> Outcome:
@@ -184,7 +183,8 @@ def paths_of(arguments: Sequence[str]) -> list[str]:
 
 
 def split_arguments(arguments: Sequence[str]) -> tuple[list[str] | None, list[str] | None]:
-    """Return pytest's arguments for the headless run and for that of the window, None where there is nothing to run."""
+    """Return pytest's arguments for the headless run and for the window run. None means that this
+    run has no tests."""
     gui = ROOT / "tests" / "gui"
     paths = paths_of(arguments)
     options = [word for word in arguments if word not in paths]
@@ -207,7 +207,7 @@ def describe_failures(failures: dict[str, list[str]]) -> str:
 
 
 def summarize(outcomes: Sequence[Outcome]) -> int:
-    """Print the failures and totals of all runs, and return the exit status."""
+    """Print the failures and totals of all runs and return the exit status."""
     print(SUMMARY)
     explained = 0
     for outcome in outcomes:
@@ -215,36 +215,36 @@ def summarize(outcomes: Sequence[Outcome]) -> int:
             print(f"{line}  [{outcome.name}]")
         for name, reason in outcome.failures().items():
             explained += 1
-            shown = reason if explained <= EXPLAINED_FAILURES else []
-            print(describe_failures({f"{name}  [{outcome.name}]": shown}), end="")
+            reason_lines = reason if explained <= EXPLAINED_FAILURES else []
+            print(describe_failures({f"{name}  [{outcome.name}]": reason_lines}), end="")
     passed, failed, skipped = map(sum, zip(*(outcome.counts() for outcome in outcomes)))
     print(f"total: {passed} passed, {failed} failed, {skipped} skipped", flush=True)
     return 0 if passed and not failed else 1
 
 
 def main(arguments: list[str]) -> int:
-    """Run headless tests and those of the window side by side; return the exit status."""
+    """Run the headless tests and the window tests at the same time and return the exit status."""
     version = ""
     if arguments[:1] == ["--with-freecad"] and len(arguments) > 1:
         version, arguments = arguments[1], arguments[2:]
-        # it takes minutes, and waits for the network mostly
+        # takes minutes, and mostly waits for the network
         subprocess.Popen(
             [str(VERSION_SCRIPT), version, "--make"],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
         )
-    # once for the hundreds of processes of the tests, which write none
+    # compile once: the test processes write no bytecode
     compiling = ["-m", "compileall", "-q", "--invalidation-mode", "checked-hash", "freecad_am"]
     subprocess.run([sys.executable, *compiling], cwd=ROOT, capture_output=True, check=False)
 
     headless, window = split_arguments(arguments)
-    chosen = ["--long"] if "--long" in arguments else ["-m", "not any_version"]
+    selection = ["--long"] if "--long" in arguments else ["-m", "not any_version"]
 
-    def run_chain(own, run_own, places):
-        outcomes = [] if own is None else [run_own(own)]
+    def run_chain(arguments, run_tests, slots):
+        outcomes = [] if arguments is None else [run_tests(arguments)]
         if version:
-            outcomes.append(run_in_version(version, [*chosen, *places]))
+            outcomes.append(run_in_version(version, [*selection, *slots]))
         return outcomes
 
     with ThreadPoolExecutor(2) as pool:

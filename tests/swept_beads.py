@@ -11,37 +11,39 @@ from dataclasses import dataclass
 
 import numpy as np
 
-AROUND = 10  # points of each round end of a section
-ALONG = 9  # points of each flat of it
+ROUND_END_POINTS = 10
+FLAT_SIDE_POINTS = 9
 
 
 @dataclass(frozen=True)
 class Cone:
-    """A flat tip of a radius, opening by a half angle (rad) over a length; mm."""
+    """A cone with a flat tip of a radius, opening by a half angle (rad) over a length in mm."""
 
     radius: float = 0.5
     half_angle: float = np.radians(20.0)
     length: float = 60.0
 
     def depth(self, offset, tool, low):
-        """(n,) mm to the side of the cone of points (n, 3) seen from the tip, less than 0 outside; none below `low`."""
+        """Return how far points (n, 3), relative to the tip, are inside the side of the cone, in
+        mm. Points outside have negative values; points below `low` do not count."""
         x = offset @ tool
         side = np.sqrt(np.maximum(np.einsum("ij,ij->i", offset, offset) - x * x, 0.0))
         inside = (self.radius + np.tan(self.half_angle) * x - side) * np.cos(self.half_angle)
         return np.where((x > low) & (x <= self.length), inside, -np.inf)
 
     def clear_of(self, height, lean):
-        """mm along the axis of a cone that leans, from where on all of it is higher than that over the tip, and than one
-        diameter of the tip is away from it."""
+        """Return the height above the tip of a leaning cone, in mm, from which the whole cone is
+        higher than that over the tip and at least one tip diameter away from it."""
         x = np.linspace(0.0, self.length, 600_001)
         lowest = x * np.cos(lean) - (self.radius + np.tan(self.half_angle) * x) * np.sin(lean)
-        away = np.hypot(x, self.radius + np.tan(self.half_angle) * x)
-        return float(x[np.argmax((lowest >= height) & (away >= 2.0 * self.radius))])
+        radius_mm = np.hypot(x, self.radius + np.tan(self.half_angle) * x)
+        return float(x[np.argmax((lowest >= height) & (radius_mm >= 2.0 * self.radius))])
 
 
 class Swept:
-    """Beads in the order of deposit: points, build directions (n, 3), widths and heights (n,) each, and the number of the
-    layer; `turns` (n,) of a spiral. Points of the sections are `step` mm apart along the beads."""
+    """Beads in the order of deposit, with points and build directions (n, 3), widths and heights
+    (n,), the layer number, and `turns` (n,) of a spiral. Section points are `step` mm apart along
+    the beads."""
 
     def __init__(self, beads, step=0.5):
         base, flat, up, size, number, segment, line, self.begin, self.layer = (
@@ -59,8 +61,8 @@ class Swept:
             along = np.diff(points, axis=0)
             length = np.linalg.norm(along, axis=1)
             along /= np.where(length > 0.0, length, 1.0)[:, None]
-            first = self.begin[-1]
-            self.begin.append(first + len(points))
+            start = self.begin[-1]
+            self.begin.append(start + len(points))
             self.layer.append(layer)
             for k in np.flatnonzero(length > 0.0):
                 count = max(2, int(np.ceil(length[k] / step)) + 1)
@@ -76,7 +78,7 @@ class Swept:
                         [0.5 * (width[k] + width[k + 1]), 0.5 * (height[k] + height[k + 1])],
                     )
                 )
-                number.append(np.full(count, first + k + 1))
+                number.append(np.full(count, start + k + 1))
                 segment.append(np.full(count, len(line)))
                 line.append((points[k], points[k + 1]))
         self.base, self.flat, self.up, self.size = (
@@ -86,11 +88,12 @@ class Swept:
         self.line = np.array(line)
 
     def layer_began(self, bead):
-        """The number of the first point of the layer of a bead."""
+        """Return the number of the first point of the bead's layer."""
         return self.begin[self.layer.index(self.layer[bead])]
 
-    def deepest(self, tip, tool, before, own, cone, low):
-        """mm by which the deposit of the points numbered below `before` is in the nozzle; own: where its layer began."""
+    def deepest(self, tip, tool, before, layer_start, cone, low):
+        """Return how deep the deposit of the points below number `before` reaches into the nozzle,
+        in mm; `layer_start` is where the current layer begins."""
         count = int(np.searchsorted(self.number, before))
         base, size = self.base[:count] - tip, self.size[:count]
         ball = np.hypot(0.5 * size[:, 0], size[:, 1])
@@ -100,16 +103,16 @@ class Swept:
         rows = np.flatnonzero(close & (x > low - ball) & (x < cone.length + ball))
         if not len(rows):
             return -np.inf
-        near = self._beside(tip, rows, 2.0 * (cone.radius + np.tan(cone.half_angle) * low)) & (
-            self.number[rows] > own
+        nearby = self._beside(tip, rows, 2.0 * (cone.radius + np.tan(cone.half_angle) * low)) & (
+            self.number[rows] > layer_start
         )
-        lines = cone.depth(base[rows[near]], tool, low)
-        rows = rows[~near]
+        lines = cone.depth(base[rows[nearby]], tool, low)
+        rows = rows[~nearby]
         wide, tall = (size[rows, i, None, None] for i in (0, 1))
         round_ = 0.5 * np.minimum(wide, tall)
-        angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, AROUND)
-        share = np.linspace(-1.0, 1.0, ALONG)
-        # about the middle of the section: over the two flats, and about their ends
+        angle = np.linspace(-0.5 * np.pi, 0.5 * np.pi, ROUND_END_POINTS)
+        share = np.linspace(-1.0, 1.0, FLAT_SIDE_POINTS)
+        # points around the section: along the two flats and around the round ends
         u = np.concatenate([share, share, 1.0 + 0.0 * angle, -1.0 + 0.0 * angle, share])
         r = np.concatenate([0.0 * share, 0.0 * share, np.cos(angle), -np.cos(angle), 0.0 * share])
         v = np.concatenate(
@@ -122,26 +125,27 @@ class Swept:
             + across * self.flat[rows, None]
             + (0.5 * tall + round_ * v[None, :, None]) * self.up[rows, None]
         )
-        found = cone.depth(points.reshape(-1, 3), tool, low)
-        return float(max(found.max(initial=-np.inf), lines.max(initial=-np.inf)))
+        depths = cone.depth(points.reshape(-1, 3), tool, low)
+        return float(max(depths.max(initial=-np.inf), lines.max(initial=-np.inf)))
 
-    def _beside(self, tip, rows, least):
-        """Whether the segments of some points pass the tip within their width, or `least` mm."""
+    def _beside(self, tip, rows, min_distance):
+        """Return which segments pass the tip within their width or `min_distance` mm."""
         start, end = self.line[self.segment[rows], 0] - tip, self.line[self.segment[rows], 1] - tip
         along = end - start
         share = np.clip(
             -np.einsum("ij,ij->i", start, along) / np.einsum("ij,ij->i", along, along), 0.0, 1.0
         )
         return np.linalg.norm(start + share[:, None] * along, axis=1) < np.maximum(
-            self.size[rows, 0], least
+            self.size[rows, 0], min_distance
         )
 
 
 def in_platform(tip, tool, cone, low, radius, middle=(0.0, 0.0, 0.0), count=60_000):
-    """mm by which a horizontal disc about a point is in the nozzle: points spread evenly on it, and on its rim."""
+    """Return how deep the nozzle reaches into a horizontal disc about a point, in mm, from points
+    spread evenly on the disc and on its rim."""
     turn = np.pi * (3.0 - np.sqrt(5.0)) * np.arange(count)
-    away = radius * np.sqrt((np.arange(count) + 0.5) / count)
-    disc = np.stack([away * np.cos(turn), away * np.sin(turn), 0.0 * turn], axis=1)
+    radii = radius * np.sqrt((np.arange(count) + 0.5) / count)
+    disc = np.stack([radii * np.cos(turn), radii * np.sin(turn), 0.0 * turn], axis=1)
     rim = np.linspace(0.0, 2.0 * np.pi, 2000)
     disc = np.concatenate(
         [disc, np.stack([radius * np.cos(rim), radius * np.sin(rim), 0.0 * rim], axis=1)]

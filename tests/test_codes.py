@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""docs/codes.md lists the codes of all messages, and none that there is not."""
+"""docs/codes.md lists the codes of all messages and no others."""
 
 import ast
 import re
 
 import pytest
 
-# what raises or tells messages, and which argument is their code
-TELLS = {"InputError": 0, "InfeasibleError": 0, "Issue": 1, "issue": 0}
+# calls that raise or report messages, and the position of their code argument
+CODE_POSITIONS = {"InputError": 0, "InfeasibleError": 0, "Issue": 1, "issue": 0}
 CODE = re.compile(r"[A-Z][A-Z0-9]*(_[A-Z0-9]+)*")
 
 
-class Found(ast.NodeVisitor):
-    """All words of the modules; those that names stand for; codes of messages, themselves or by such a name."""
+class CodeCollector(ast.NodeVisitor):
+    """Collect all words of the modules, the values of names, and the codes of messages, given as
+    text or by name."""
 
     def __init__(self):
         self.words, self.names, self.codes, self.named = set(), {}, set(), set()
@@ -36,9 +37,9 @@ class Found(ast.NodeVisitor):
         self.generic_visit(node)
 
     def visit_Call(self, node):
-        place = TELLS.get(getattr(node.func, "id", getattr(node.func, "attr", "")))
-        if place is not None and len(node.args) > place:
-            code = node.args[place]
+        position = CODE_POSITIONS.get(getattr(node.func, "id", getattr(node.func, "attr", "")))
+        if position is not None and len(node.args) > position:
+            code = node.args[position]
             if isinstance(code, ast.Constant) and isinstance(code.value, str):
                 self.codes.add(code.value)
             self.named.add(getattr(code, "id", getattr(code, "attr", "")))
@@ -51,7 +52,7 @@ class Found(ast.NodeVisitor):
 
 @pytest.fixture(scope="module")
 def found(root):
-    every = Found()
+    every = CodeCollector()
     for path in (root / "freecad_am").rglob("*.py"):
         every.visit(ast.parse(path.read_text(encoding="utf-8")))
     return every
@@ -71,6 +72,6 @@ def test_each_code_that_is_told_is_listed(found, listed):
 def test_each_code_that_is_listed_is_told_and_listed_once(found, listed):
     spelled = " ".join(
         word for word in found.words if "[" in word
-    )  # lines that the console writes itself
+    )  # lines that the console itself writes
     assert [code for code in listed if code not in found.words and f"[{code}]" not in spelled] == []
     assert sorted(code for code in set(listed) if listed.count(code) > 1) == []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Public functions document their parameters, in numpydoc sections that agree with their signatures."""
+"""Public functions document their parameters in numpydoc sections that match their signatures."""
 
 import ast
 import re
@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
-# packages whose functions of several parameters, or with arrays as results, all have sections
+# packages in which every function with several parameters or array results has numpydoc sections
 DOCUMENTED = ("api.py", "core", "posts")
 SEVERAL = 3
 SECTIONS = re.compile(r"^(Parameters|Returns|Yields)\n-+$", re.MULTILINE)
@@ -16,23 +16,25 @@ ENTRY = re.compile(r"^([*\w, ]+?)(?: : .*)?$")
 
 
 def functions(path):
-    """Class and node of the public functions and methods of a file."""
+    """Return the class and the node of each public function and method of a file."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    places = [(None, tree)]
-    while places:
-        owner, place = places.pop()
-        for node in place.body:
+    pending = [(None, tree)]
+    while pending:
+        owner, scope = pending.pop()
+        for node in scope.body:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
-                places.append((node.name, node))
+                pending.append((node.name, node))
             elif isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
                 yield owner, node
 
 
 def files(*names):
-    """Files of packages."""
+    """Return the Python files of the packages."""
     paths = [PACKAGE / name for name in names]
-    found = [file for path in paths for file in ([path] if path.suffix else path.rglob("*.py"))]
-    return sorted(found)
+    paths_found = [
+        file for path in paths for file in ([path] if path.suffix else path.rglob("*.py"))
+    ]
+    return sorted(paths_found)
 
 
 def place_of(file):
@@ -40,12 +42,12 @@ def place_of(file):
 
 
 def is_stub(node):
-    """Whether a function only declares itself, as in a protocol of attributes."""
+    """Return whether a function is only a declaration, as in a protocol."""
     return ast.unparse(node.body[-1]) == "..." and len(node.body) == 1
 
 
 def parameters(node):
-    """Names of the parameters in order, and all with `*args` and `**kwargs`."""
+    """Return the parameter names in order, and all names including `*args` and `**kwargs`."""
     arguments = node.args.posonlyargs + node.args.args + node.args.kwonlyargs
     names = [argument.arg for argument in arguments if argument.arg not in ("self", "cls")]
     extra = [argument.arg for argument in (node.args.vararg, node.args.kwarg) if argument]
@@ -53,7 +55,7 @@ def parameters(node):
 
 
 def documented_names(docstring):
-    """Names in the section of parameters; None without one."""
+    """Return the names in the Parameters section, None without a section."""
     section = re.search(r"^Parameters\n-+\n(.*?)(?:\n\n\S|\Z)", docstring, re.DOTALL | re.MULTILINE)
     if section is None:
         return None
@@ -89,7 +91,7 @@ def test_functions_of_several_parameters_document_them():
         for owner, node in functions(path)
         if owner is not None and has_sections(node)
     }
-    modules_alike = {"refuse_setup"}  # `posts.catalogue.Post` documents it for all posts
+    modules_alike = {"refuse_setup"}  # `posts.catalogue.Post` documents this function for all posts
     missing = []
     for path in files(*DOCUMENTED):
         for owner, node in functions(path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Documents of earlier versions name classes where these no longer are, and get those of now."""
+"""Documents of earlier versions name classes at their old locations and get the current ones."""
 
 import ast
 import importlib
@@ -13,7 +13,8 @@ from freecad_am.objects.results import schemas
 from freecad_am.objects.results.earlier_formats import SCHEMA_NAMES
 
 ROOT = Path(__file__).resolve().parent.parent
-SAVED = {  # in `GuiDocument.xml` of documents saved before modules of the window moved into folders
+# names in `GuiDocument.xml` of documents saved before the window's modules moved into folders
+SAVED = {
     "view_cell": {"CellView"},
     "view_cladding": {"CladdingView"},
     "view_curves": {"CurvesView"},
@@ -37,12 +38,12 @@ def test_results_that_documents_name_by_module_have_a_schema(name):
 def test_classes_that_documents_name_are_where_they_are_looked_for(module):
     name = f"freecad_am.gui.{module}"
     path = ROOT / (former_names.MOVED.get(name, name).replace(".", "/") + ".py")
-    there = {
+    locations = {
         node.name
         for node in ast.parse(path.read_text(encoding="utf-8")).body
         if isinstance(node, ast.ClassDef)
     }
-    assert there >= SAVED[module]
+    assert locations >= SAVED[module]
 
 
 def test_a_former_name_has_the_class_itself(monkeypatch):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The table of imports of docs/architecture.md, enforced: data flows one way, hosts stay where they belong."""
+"""Enforce the import table of docs/architecture.md: data flows one way, and host packages stay in
+their folders."""
 
 import ast
 import functools
@@ -10,7 +11,7 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
 
-# folder or module -> what of our own it may import besides itself
+# folder or module -> the package's own folders and modules that it may import
 OURS = {
     "core/types": set(),
     "core/number_texts": set(),
@@ -152,7 +153,7 @@ OURS = {
     },
     "gui": {"core", "api", "objects", "posts", "brep", "plots"},
 }
-# the foreign modules a part of the package may use besides the standard library
+# third-party modules that a folder may use besides the standard library
 FOREIGN = {
     "core": {"numpy", "scipy"},
     "posts": {"numpy"},
@@ -171,7 +172,7 @@ FOREIGN = {
     "gui": {"numpy", "FreeCAD", "FreeCADGui", "PySide", "pivy"},
 }
 # single files that may use more
-ALONE = {
+FILE_EXCEPTIONS = {
     "core/geometry/regions/region": {"shapely"},
     "core/one_thread": {"threadpoolctl"},
     "gui/plots/view": {"matplotlib"},
@@ -183,19 +184,20 @@ def modules():
 
 
 def home(path):
-    """The row of OURS a file belongs to, such as core/slicing or posts."""
-    parts = path.relative_to(PACKAGE).with_suffix("").parts
-    return "/".join(parts[:2]) if parts[0] == "core" else parts[0]
+    """Return the row of OURS that a file belongs to, such as core/slicing or posts."""
+    folders = path.relative_to(PACKAGE).with_suffix("").parts
+    return "/".join(folders[:2]) if folders[0] == "core" else folders[0]
 
 
 @functools.cache
 def tree(path):
-    """The syntax tree of a file."""
+    """Return the syntax tree of a file."""
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
 def statements(tree, typing=True):
-    """The import statements of a syntax tree, those in functions too; without `typing` none that only type checkers see."""
+    """Return the import statements of a syntax tree, including those in functions. Without
+    `typing`, imports for type checkers only are left out."""
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, (ast.Import, ast.ImportFrom)):
             yield node
@@ -205,16 +207,17 @@ def statements(tree, typing=True):
             and ast.unparse(node.test).endswith("TYPE_CHECKING")
         ):
             yield from (
-                found
-                for other in node.orelse
-                for found in statements(ast.Module([other], []), typing)
+                statement
+                for branch in node.orelse
+                for statement in statements(ast.Module([branch], []), typing)
             )
         elif isinstance(node, (ast.stmt, ast.ExceptHandler, ast.match_case)):
             yield from statements(node, typing)
 
 
 def imported(path, typing=True):
-    """(module, names) of every import statement of a file, ours as dotted paths below the package."""
+    """Return (module, names) of every import statement of a file; the package's own modules are
+    dotted paths below the package."""
     package = ["freecad_am", *path.relative_to(PACKAGE).parts[:-1]]
     for node in statements(tree(path), typing):
         if isinstance(node, ast.Import):
@@ -229,26 +232,32 @@ def imported(path, typing=True):
 
 
 def named(path):
-    """(module, names) of the imports of ours in a file that is not of the package: read as text, which is quick."""
+    """Return (module, names) of the package imports in a file outside the package. It is read as
+    text, which is fast."""
     text = path.read_text(encoding="utf-8")
-    for module, many, one in re.findall(
+    for module, listed_names, single_name in re.findall(
         r"^ *from (freecad_am[\w.]*) import (?:\(([^)]*)\)|([^\n#]*))", text, re.MULTILINE
     ):
-        yield module, tuple(name.split()[0] for name in (many or one).split(",") if name.strip())
+        yield (
+            module,
+            tuple(
+                name.split()[0] for name in (listed_names or single_name).split(",") if name.strip()
+            ),
+        )
 
 
 def ours(module, names):
-    """The rows of OURS an import of ours touches."""
-    parts = module.split(".")[1:]
-    if not parts:
+    """Return the rows of OURS that a package import touches."""
+    folders = module.split(".")[1:]
+    if not folders:
         return set(names)
-    if parts[0] != "core":
-        return {parts[0]}
-    return {"/".join(parts[:2])} if len(parts) > 1 else {f"core/{name}" for name in names}
+    if folders[0] != "core":
+        return {folders[0]}
+    return {"/".join(folders[:2])} if len(folders) > 1 else {f"core/{name}" for name in names}
 
 
 def broken(path):
-    """What a file imports that its row does not allow."""
+    """Return what a file imports that its row does not allow."""
     row = home(path)
     if path.name == "__init__.py":
         return [
@@ -257,100 +266,105 @@ def broken(path):
         ]
     allowed = OURS[row] | {row, "core/types"}
     file = path.relative_to(PACKAGE).with_suffix("").as_posix()
-    foreign = FOREIGN[row.split("/")[0]] | ALONE.get(file, set()) | sys.stdlib_module_names
-    found = []
+    foreign = (
+        FOREIGN[row.split("/")[0]] | FILE_EXCEPTIONS.get(file, set()) | sys.stdlib_module_names
+    )
+    violations = []
     for module, names in imported(path):
         top = module.split(".")[0]
         if top == "freecad_am":
-            found += [
+            violations += [
                 used for used in ours(module, names) if not allowed & {used, used.split("/")[0]}
             ]
         elif top not in foreign:
-            found.append(top)
-    return [f"{file} imports {used}" for used in found]
+            violations.append(top)
+    return [f"{file} imports {used}" for used in violations]
 
 
 def test_imports_run_one_way():
     assert len(modules()) > 300
-    assert [told for path in modules() for told in broken(path)] == []
+    assert [violation for path in modules() for violation in broken(path)] == []
 
 
 def graph():
-    """Every module of ours with those of ours that it imports, at its top or within a function."""
+    """Return each module of the package with the package modules that it imports, at its top or in
+    a function."""
     files = {
         ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts): path for path in modules()
     }
-    found = {}
+    imports = {}
     for file, path in files.items():
         named = {
             f"{module}.{name}"
             for module, names in imported(path, typing=False)
             for name in ("", *names)
         }
-        found[file] = files.keys() & {name.rstrip(".") for name in named}
-    return found
+        imports[file] = files.keys() & {name.rstrip(".") for name in named}
+    return imports
 
 
-def on_circles(found):
-    """The modules of a graph that are left over when those that import none of what is left over are taken away, and then
-    those that none of these imports: modules on circles, or between two circles."""
+def find_cycles(imports):
+    """Return the modules on import cycles, or between two cycles: remove modules that import no
+    remaining module, then modules that no remaining module imports, until nothing changes."""
     while True:
-        left = {name: used & found.keys() for name, used in found.items()}
-        needed = set().union(*left.values())
-        kept = {name: used for name, used in left.items() if used and name in needed}
-        if kept.keys() == found.keys():
-            return kept
-        found = kept
+        remaining = {name: used & imports.keys() for name, used in imports.items()}
+        needed = set().union(*remaining.values())
+        needed_modules = {name: used for name, used in remaining.items() if used and name in needed}
+        if needed_modules.keys() == imports.keys():
+            return needed_modules
+        imports = needed_modules
 
 
 def test_no_imports_run_in_a_circle():
-    """Not by imports within functions either: these are for what takes long to import and is not always needed."""
-    found = graph()
-    assert len(found) > 600 and sum(map(len, found.values())) > 3000
-    assert on_circles(found) == {}
+    """Imports in functions may not form cycles either: they exist for slow modules that are not
+    always needed."""
+    imports = graph()
+    assert len(imports) > 600 and sum(map(len, imports.values())) > 3000
+    assert find_cycles(imports) == {}
 
 
 def test_circles_are_found():
     text = "if TYPE_CHECKING:\n import a\nelse:\n import b\ndef f():\n try:\n  from . import c\n except E:\n  import d"
-    seen = [node.names[0].name for node in statements(ast.parse(text), typing=False)]
-    assert seen == ["b", "c", "d"]
-    assert on_circles({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set()}) == {
+    imported_names = [node.names[0].name for node in statements(ast.parse(text), typing=False)]
+    assert imported_names == ["b", "c", "d"]
+    assert find_cycles({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set()}) == {
         "b": {"c"},
         "c": {"b"},
     }
-    assert on_circles({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == {}
+    assert find_cycles({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == {}
 
 
 def test_imports_lead_somewhere():
-    """Those of tests and benchmarks too, which the window alone or nobody runs."""
+    """Imports in tests and benchmarks must resolve too, including those that only the window
+    runs."""
     root = PACKAGE.parent
     files = {
         ".".join(path.relative_to(root).with_suffix("").parts) for path in PACKAGE.rglob("*.py")
     }
     folders = {name.removesuffix(".__init__") for name in files if name.endswith(".__init__")}
-    others = [
+    other_files = [
         *root.glob("tests/**/*.py"),
         *root.glob("bench/**/*.py"),
         root / "InitGui.py",
         root / "Init.py",
     ]
-    found = [(path, *one) for path in modules() for one in imported(path)]
-    found += [(path, *one) for path in others for one in named(path)]
+    imports = [(path, *statement) for path in modules() for statement in imported(path)]
+    imports += [(path, *statement) for path in other_files for statement in named(path)]
     wrong = []
-    for path, module, names in found:
+    for path, module, names in imports:
         if module.split(".")[0] == "freecad_am":
-            asked = [f"{module}.{name}" for name in names] if module in folders else [module]
+            targets = [f"{module}.{name}" for name in names] if module in folders else [module]
             wrong += [
                 f"{path.relative_to(root)} imports {name}"
-                for name in asked
+                for name in targets
                 if name not in files | folders
             ]
-    assert len(found) > 5000 and wrong == []
+    assert len(imports) > 5000 and wrong == []
 
 
 @functools.cache
 def names_bound(path):
-    """The names that a file defines, assigns or imports anywhere."""
+    """Return the names that a file defines, assigns or imports."""
     names = set()
     for node in ast.walk(tree(path)):
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
@@ -363,7 +377,7 @@ def names_bound(path):
 
 
 def test_imported_names_exist():
-    """Those of the window too, which mypy does not read."""
+    """Imported names must exist, also in the window's modules, which mypy does not check."""
     root = PACKAGE.parent
     missing, count = [], 0
     for path in modules():
@@ -382,12 +396,15 @@ def test_imported_names_exist():
 
 
 def test_files_that_use_more_need_it():
-    for file, more in ALONE.items():
-        assert more <= {module.split(".")[0] for module, _ in imported(PACKAGE / f"{file}.py")}
+    for file, exceptions in FILE_EXCEPTIONS.items():
+        assert exceptions <= {
+            module.split(".")[0] for module, _ in imported(PACKAGE / f"{file}.py")
+        }
 
 
 def test_parts_of_revolution_wait_for_no_splines_and_no_optimiser():
-    """What planning them imports, in a process of its own: these parts of scipy take as long to import as all of ours."""
+    """Planning parts of revolution must not import scipy's splines and optimiser, which take as
+    long to load as the whole package. A new process checks the imports."""
     used = (
         "strategies.estimated_size",
         "strategies.revolution.plan",
@@ -405,14 +422,14 @@ def test_parts_of_revolution_wait_for_no_splines_and_no_optimiser():
         *(f"import freecad_am.core.{module}" for module in used),
         "print([name for name in ('scipy.interpolate', 'scipy.optimize', 'shapely') if name in sys.modules])",
     ]
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", "\n".join(lines)],
         cwd=PACKAGE.parent,
         capture_output=True,
         text=True,
         check=True,
     )
-    assert done.stdout.strip() == "[]"
+    assert process.stdout.strip() == "[]"
 
 
 def test_every_row_of_the_table_exists():
@@ -420,7 +437,7 @@ def test_every_row_of_the_table_exists():
 
 
 def test_types_of_arrays_have_one_name_each():
-    """The names of core/types, which nothing that runs loads numpy.typing for."""
+    """Use the array types of core/types, so that running code never loads numpy.typing."""
     named = re.compile(r"NDArray\[np\.(float64|bool_|intp|int64)\]|numpy\.typing")
     again = {
         path.relative_to(PACKAGE).as_posix()
@@ -429,7 +446,7 @@ def test_types_of_arrays_have_one_name_each():
     }
     assert again == {"core/types.py"}
     look = "import sys, freecad_am.core.planning.plan; print('numpy.typing' in sys.modules)"
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", look], cwd=PACKAGE.parent, capture_output=True, text=True, check=True
     )
-    assert done.stdout.strip() == "False"
+    assert process.stdout.strip() == "False"

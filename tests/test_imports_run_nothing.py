@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A document may name any module to be imported: importing one of ours does nothing but define what is in it."""
+"""A document may name any module to import, so importing a module of the package must only define
+names."""
 
 import subprocess
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-# imports each module named, then tells what happened meanwhile; what a module needs of FreeCAD's window, or of what is
-# optional, may be missing
+# imports each named module and reports side effects; modules of FreeCAD's window and optional ones
+# may be missing
 CHILD = """
 import importlib, os, sys, threading
 sys.path.insert(0, sys.argv[1])
@@ -52,7 +53,7 @@ def names():
 
 
 def test_importing_a_module_runs_prints_and_ends_nothing(tmp_path):
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-B", "-c", CHILD, str(ROOT), *names()],
         cwd=tmp_path,
         capture_output=True,
@@ -61,7 +62,7 @@ def test_importing_a_module_runs_prints_and_ends_nothing(tmp_path):
         timeout=120,
         stdin=subprocess.DEVNULL,
     )
-    assert done.returncode == 7, (done.returncode, done.stdout, done.stderr[-3000:])
-    assert done.stdout.startswith("DONE [] MISSING "), (done.stdout, done.stderr)
-    assert done.stderr == ""
+    assert process.returncode == 7, (process.returncode, process.stdout, process.stderr[-3000:])
+    assert process.stdout.startswith("DONE [] MISSING "), (process.stdout, process.stderr)
+    assert process.stderr == ""
     assert not list(tmp_path.iterdir())

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which kind a machine or a cell is, is asked nowhere: `core/kinematics/arrangement.py` says what follows from it."""
+"""Code never asks for the kind of a machine or a cell: `core/kinematics/arrangement.py` states its
+consequences."""
 
 import ast
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent / "freecad_am"
-# where the values are: the records, the parameter, the words of the window, what a program is for
-TOLD_IN = {
+# files that hold the values: the records, the parameter, the texts of the window, the purpose of a
+# program
+VALUE_FILES = {
     "core/kinematics/arrangement.py",
     "core/parameters/cell.py",
     "core/program.py",
@@ -15,35 +17,35 @@ TOLD_IN = {
 SETUPS = {"part-on-robot", "tool-on-robot", "rotary-table", "tool-on-robot+positioner"}
 
 
-def _of_kind(tree):
+def find_kind_checks(tree):
     for node in ast.walk(tree):
         if isinstance(node, ast.Constant) and node.value in SETUPS:
             yield f"line {node.lineno}: {node.value!r}"
         if isinstance(node, ast.Compare) and isinstance(
             node.ops[0], (ast.Eq, ast.NotEq, ast.In, ast.NotIn)
         ):
-            asked = [
+            checks = [
                 side for side in (node.left, *node.comparators) if isinstance(side, ast.Attribute)
             ]
             yield from (
-                f"line {node.lineno}: {side.attr}" for side in asked if side.attr == "setup"
+                f"line {node.lineno}: {side.attr}" for side in checks if side.attr == "setup"
             )
 
 
 def test_no_file_asks_which_kind_of_cell_it_is():
-    asked = {}
+    checks_by_file = {}
     for path in sorted(PACKAGE.rglob("*.py")):
         name = path.relative_to(PACKAGE).as_posix()
-        if name in TOLD_IN:
+        if name in VALUE_FILES:
             continue
-        found = list(_of_kind(ast.parse(path.read_text(encoding="utf-8"))))
+        checks = list(find_kind_checks(ast.parse(path.read_text(encoding="utf-8"))))
         if name.startswith(
             "posts/"
-        ):  # which refuse set-ups by their names, and ask programs what follows
-            found = [one for one in found if one.endswith(": setup")]
-        if found:
-            asked[name] = found
-    assert asked == {}
+        ):  # posts reject set-ups by name, and ask the program for the consequences
+            checks = [check for check in checks if check.endswith(": setup")]
+        if checks:
+            checks_by_file[name] = checks
+    assert checks_by_file == {}
 
 
 def test_the_question_is_recognised():
@@ -52,5 +54,5 @@ def test_the_question_is_recognised():
         'setup in ("rotary-table",)',
         'if settings.setup != "x": pass',
     ):
-        assert list(_of_kind(ast.parse(text))), text
-    assert not list(_of_kind(ast.parse("cell.arrangement.free and f(setup=cell.setup)")))
+        assert list(find_kind_checks(ast.parse(text))), text
+    assert not list(find_kind_checks(ast.parse("cell.arrangement.free and f(setup=cell.setup)")))

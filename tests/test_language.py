@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How plainly the code and its prose are written, measured.
-
-The ceilings stand where the project is, and only go down: whoever writes plainer text lowers them in the same commit. The
-last column of LIMITS is the aim.
-"""
+"""Measure how plainly the code and its prose are written. The limits equal the current values and
+may only go down: a commit that writes plainer text lowers them. The last column of LIMITS is the
+aim."""
 
 import ast
 import io
@@ -104,7 +102,7 @@ ODD_TURNS = re.compile(
     re.IGNORECASE | re.MULTILINE,
 )
 MESSAGES = {"InputError", "InfeasibleError", "AmError", "Issue", "Text", "Word", "tr", "parameter"}
-LIMITS = {  # name: (ceiling of today, aim)
+LIMITS = {  # name: (current limit, aim)
     "generic names, %": (1.0, 2.0),
     "functions named by a participle or preposition, %": (0.5, 1.0),
     "constants that are bare adjectives": (2, 10),
@@ -118,17 +116,17 @@ LIMITS = {  # name: (ceiling of today, aim)
 
 
 def plain(text):
-    """A page without its code."""
+    """Return a page without its code."""
     return re.sub(r"`[^`]*`", "X", re.sub(r"```.*?```", "", text, flags=re.DOTALL))
 
 
 def odd_turns(text):
-    """Odd turns of phrase in 1,000 words."""
+    """Return the number of odd turns of phrase in 1,000 words."""
     return 1000.0 * len(ODD_TURNS.findall(text)) / max(len(re.findall(r"[A-Za-z']+", text)), 1)
 
 
 class Measured:
-    """Names, tokens and texts of the package."""
+    """Collect the names, tokens and texts of the package."""
 
     def __init__(self):
         self.names, self.functions, self.constants = Counter(), Counter(), []
@@ -156,7 +154,7 @@ class Measured:
         for node in tree.body:
             if isinstance(node, (ast.Assign, ast.AnnAssign)):
                 targets = node.targets if isinstance(node, ast.Assign) else [node.target]
-                names = [part.id for part in ast.walk(targets[0]) if isinstance(part, ast.Name)]
+                names = [node.id for node in ast.walk(targets[0]) if isinstance(node, ast.Name)]
                 self.constants += filter(BARE_ADJECTIVES.fullmatch, names)
 
     def _count(self, node):
@@ -172,19 +170,19 @@ class Measured:
             name = getattr(node.func, "id", getattr(node.func, "attr", ""))
             if name in MESSAGES:
                 self.texts["messages"] += [
-                    part.value
-                    for part in ast.walk(node)
-                    if isinstance(part, ast.Constant)
-                    and isinstance(part.value, str)
-                    and " " in part.value
+                    child.value
+                    for child in ast.walk(node)
+                    if isinstance(child, ast.Constant)
+                    and isinstance(child.value, str)
+                    and " " in child.value
                 ]
 
     def figures(self):
-        """The figures by the names in LIMITS."""
+        """Return the figures under the names in LIMITS."""
         generic = sum(count for name, count in self.names.items() if name in GENERIC_NAMES)
         odd = sum(count for name, count in self.functions.items() if PARTICIPLES.fullmatch(name))
         pages = [path.read_text(encoding="utf-8") for path in (ROOT / "docs").rglob("*.md")]
-        texts = {name: "\n".join(parts) for name, parts in self.texts.items()}
+        texts = {name: "\n".join(passages) for name, passages in self.texts.items()}
         texts["docs"] = "\n".join(map(plain, pages))
         texts["README"] = plain((ROOT / "README.md").read_text(encoding="utf-8"))
         return {

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Messages carry the template and the values they are made of, from where they are made to where they are shown."""
+"""Messages keep their template and values on the whole way from the code that raises them to the
+window."""
 
 import ast
 import copy
@@ -26,7 +27,7 @@ from freecad_am.objects.fields import rows
 from freecad_am.objects.results.findings import issues_of, message_of
 from freecad_am.objects.staleness import INFEASIBLE
 from tests.robust import job_bases, mutations
-from tests.told_in_french import check_told, table
+from tests.told_in_french import check_french, table
 
 ROOT = Path(__file__).resolve().parent.parent
 NO_BREAK = "\u00a0"
@@ -37,7 +38,7 @@ def french():
     return table()
 
 
-# ---- a text
+# ---- texts
 
 
 def test_a_text_is_the_sentence():
@@ -55,8 +56,8 @@ def test_a_text_is_the_sentence():
     )
     assert Text("{1} before {0}", "b", "a") == "a before b" and Text("a {brace}") == "a {brace}"
     assert Text("{} {}", "x", Word("rows")).template == "{0} rows"
-    chosen = Text("it is {}{}", 3, Word(Text("; {} of {}", 1, 2)))
-    assert (chosen, chosen.template, chosen.values) == (
+    nested_text = Text("it is {}{}", 3, Word(Text("; {} of {}", 1, 2)))
+    assert (nested_text, nested_text.template, nested_text.values) == (
         "it is 3; 1 of 2",
         "it is {0}; {1} of {2}",
         ("3", "1", "2"),
@@ -80,12 +81,14 @@ def test_a_text_keeps_its_parts(way):
 
 
 def test_texts_in_a_row_keep_their_parts():
-    some = [Text("{} mm", k) for k in range(5)]
-    joined = Text.joined(" and ", some)
-    assert joined == " and ".join(some) and joined.template == "{0} and {1}"
+    texts = [Text("{} mm", k) for k in range(5)]
+    joined = Text.joined(" and ", texts)
+    assert joined == " and ".join(texts) and joined.template == "{0} and {1}"
     assert Text.joined(", ", ["a"]) == "a" and Text.joined(", ", ()) == ""
-    many = Text.joined("; ", map(str, range(5000)))
-    assert in_language(many, {"{0}; {1}": "{0} ; {1}"}.get) == " ; ".join(map(str, range(5000)))
+    long_text = Text.joined("; ", map(str, range(5000)))
+    assert in_language(long_text, {"{0}; {1}": "{0} ; {1}"}.get) == " ; ".join(
+        map(str, range(5000))
+    )
 
 
 def test_errors_carry_theirs():
@@ -105,55 +108,60 @@ def test_errors_carry_theirs():
     }
 
 
-# ---- how messages are made
+# ---- messages keep their values
 
 ERRORS, TELLING = ("AmError", "InputError", "InfeasibleError"), {"Issue": 2}
 
 
-def forgetful(node: ast.AST | None) -> bool:
-    """Whether an expression makes a text that forgets its parts."""
+def loses_values(node: ast.AST | None) -> bool:
+    """Return whether an expression formats a text without keeping its values."""
     if isinstance(node, ast.IfExp):
-        return forgetful(node.body) or forgetful(node.orelse)
+        return loses_values(node.body) or loses_values(node.orelse)
     if isinstance(node, ast.BoolOp):
-        return any(map(forgetful, node.values))
+        return any(map(loses_values, node.values))
     if isinstance(node, ast.JoinedStr):
-        return any(isinstance(part, ast.FormattedValue) for part in node.values)
+        return any(isinstance(operand, ast.FormattedValue) for operand in node.values)
     if isinstance(node, ast.BinOp):
-        parts = (node.left, node.right)
+        operands = (node.left, node.right)
         return isinstance(node.op, (ast.Add, ast.Mod)) and any(
-            isinstance(part, ast.JoinedStr) or isinstance(getattr(part, "value", None), str)
-            for part in parts
+            isinstance(operand, ast.JoinedStr) or isinstance(getattr(operand, "value", None), str)
+            for operand in operands
         )
     if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
         return False
-    shown = (
+    is_translated = (
         getattr(getattr(node.func.value, "func", None), "id", "") == "tr"
-    )  # of the window: it is in its language
-    return node.func.attr in ("format", "join") and not shown
+    )  # the window's translations are already in its language
+    return node.func.attr in ("format", "join") and not is_translated
 
 
-def forgotten(tree: ast.AST) -> list[int]:
-    """Lines with a message of an error or a finding that forgets what it is made of, itself or by a variable."""
-    told, waiting = [], [(tree, {})]
+def find_lost_values(tree: ast.AST) -> list[int]:
+    """Return the lines with an error or issue whose message loses its values, directly or through a
+    variable."""
+    messages, waiting = [], [(tree, {})]
     for (
         node,
-        given,
-    ) in waiting:  # which grows meanwhile; given: what the variables of a function are given
+        assignments,
+        # the list grows while it is read; `assignments` are the values of a function's variables
+    ) in waiting:
         if isinstance(node, (ast.Assign, ast.AnnAssign, ast.AugAssign)):
             for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
-                given.setdefault(getattr(target, "id", ""), []).append(node.value)
+                assignments.setdefault(getattr(target, "id", ""), []).append(node.value)
         elif isinstance(node, ast.Call):
             name = getattr(node.func, "id", getattr(node.func, "attr", ""))
-            at = 2 if name in ERRORS else TELLING.get(name)
-            if at is not None and len(node.args) > at:
-                told.append((node, node.args[at], given))
-        inner = {} if isinstance(node, ast.FunctionDef) else given
+            position = 2 if name in ERRORS else TELLING.get(name)
+            if position is not None and len(node.args) > position:
+                messages.append((node, node.args[position], assignments))
+        inner = {} if isinstance(node, ast.FunctionDef) else assignments
         waiting += [(child, inner) for child in ast.iter_child_nodes(node)]
     return [
         call.lineno
-        for call, text, given in told
+        for call, text, assignments in messages
         if any(
-            map(forgetful, [text, *(given.get(text.id, []) if isinstance(text, ast.Name) else [])])
+            map(
+                loses_values,
+                [text, *(assignments.get(text.id, []) if isinstance(text, ast.Name) else [])],
+            )
         )
     ]
 
@@ -168,12 +176,12 @@ def test_no_message_forgets_what_it_is_made_of():
         for path, text in texts.items()
         if any(f"{name}(" in text for name in (*ERRORS, *TELLING))
     }
-    lost = {
-        path.relative_to(ROOT).as_posix(): forgotten(ast.parse(text))
+    lost_values = {
+        path.relative_to(ROOT).as_posix(): find_lost_values(ast.parse(text))
         for path, text in telling.items()
     }
     assert len(telling) > 200
-    wrong = {name: lines for name, lines in lost.items() if lines}
+    wrong = {name: lines for name, lines in lost_values.items() if lines}
     assert wrong == {}, (
         "give the message as a template with its values: InputError(code, where, 'it has {} faces', count)"
     )
@@ -187,12 +195,12 @@ def test_a_message_that_forgets_is_found():
         'InfeasibleError("A", b, "{} a".format(c))',
         'Issue(d, "A", "; ".join(c))',
     ):
-        assert forgotten(ast.parse(text)) == [1], text
-    assert forgotten(
+        assert find_lost_values(ast.parse(text)) == [1], text
+    assert find_lost_values(
         ast.parse('def a():\n    why = f"{b} c"\n    raise InputError("A", b, why)')
     ) == [3]
     assert (
-        forgotten(
+        find_lost_values(
             ast.parse(
                 'InputError("A", f"{b}", "it has {}", f"{c:.3g}")\nIssue(d, "A", Text("{} it", c))'
             )
@@ -204,9 +212,9 @@ def test_a_message_that_forgets_is_found():
 # ---- errors in French
 
 
-def raised(work, *arguments):
-    """The message of an error of some work, as it was made; None where there is no error, or it is one of the command line,
-    which speaks English alone."""
+def error_message(work, *arguments):
+    """Return the message of the error that some work raises. Return None without an error and for
+    errors of the command line, which are in English only."""
     try:
         work(*arguments)
     except AmError as error:
@@ -221,7 +229,8 @@ def raised(work, *arguments):
 
 
 def test_errors_of_parameters_are_told_in_french(french):
-    """Odd values of all parameters, as a panel or a macro gives them."""
+    """Errors about parameters are in French, for odd values of all parameters as a panel or a macro
+    sets them."""
     sections = {
         *mutations.SECTIONS.values(),
         *mutations.LATER.values(),
@@ -234,31 +243,31 @@ def test_errors_of_parameters_are_told_in_french(french):
         for odd in mutations.ODD
         if isinstance(odd, str)
     ]
-    told = set()
+    messages = set()
     for cls, row, odd in random.Random(16).sample(entered, 4000):
-        message = raised(lambda: rows.build(cls, {row.key: row.inner(odd, row.label)}))  # noqa: B023
+        message = error_message(lambda: rows.build(cls, {row.key: row.inner(odd, row.label)}))  # noqa: B023
         if message is not None:
-            check_told(message, french)
-            told.add(getattr(message, "template", message))
-    assert len(told) > 20, told
+            check_french(message, french)
+            messages.add(getattr(message, "template", message))
+    assert len(messages) > 20, messages
 
 
 def test_errors_of_damaged_machine_files_are_told_in_french(tmp_path, french):
     sound = json.loads(
         (ROOT / "freecad_am" / "machines" / "fanuc-arcmate120ic.json").read_text(encoding="utf-8")
     )
-    told = set()
+    messages = set()
     for damaged in list(damages(sound))[::7]:
         (tmp_path / "damaged.json").write_text(json.dumps(damaged), encoding="utf-8")
-        message = raised(machine.load, tmp_path / "damaged.json")
+        message = error_message(machine.load, tmp_path / "damaged.json")
         if message is not None:
-            check_told(message, french)
-            told.add(getattr(message, "template", message))
-    assert len(told) > 10, told
+            check_french(message, french)
+            messages.add(getattr(message, "template", message))
+    assert len(messages) > 10, messages
 
 
 def damages(value):
-    """A tree with each entry left out, and with something else in its place."""
+    """Yield a tree with each entry removed, and with each entry replaced by an odd value."""
     entries = (
         value.items()
         if isinstance(value, dict)
@@ -280,8 +289,8 @@ def damages(value):
             yield changed
 
 
-# by key, what a file of a cell may not say
-WRONG = {
+# invalid values in a cell's file, by key
+INVALID_CELL_VALUES = {
     "machine": (
         "{file: a.urdf, top: x}",
         "{file: 3}",
@@ -319,9 +328,12 @@ WRONG = {
 
 
 def test_errors_of_files_of_cells_are_told_in_french(tmp_path, french):
-    """Which the window shows where a saved cell is chosen."""
+    """Errors in a cell's file are in French, because the window shows them when a saved cell is
+    chosen."""
     texts = [
-        f"machine: ur-ur10e\n{key}: {value}\n" for key, values in WRONG.items() for value in values
+        f"machine: ur-ur10e\n{key}: {value}\n"
+        for key, values in INVALID_CELL_VALUES.items()
+        for value in values
     ]
     texts += [
         "",
@@ -331,13 +343,13 @@ def test_errors_of_files_of_cells_are_told_in_french(tmp_path, french):
         "machine: " + "[" * 40 + "]" * 40,
         "a: " + "[" * 9000,
     ]
-    told = set()
+    messages = set()
     for text in texts:
         (tmp_path / "my.yaml").write_text(text, encoding="utf-8")
-        message = raised(api.read_cell, str(tmp_path / "my.yaml"))
+        message = error_message(api.read_cell, str(tmp_path / "my.yaml"))
         assert message is not None, text
-        check_told(message, french)
-        told.add(getattr(message, "template", message))
+        check_french(message, french)
+        messages.add(getattr(message, "template", message))
     for name, content in {
         "latin.yaml": "setup: é".encode("latin-1"),
         "nowhere.yaml": None,
@@ -345,8 +357,8 @@ def test_errors_of_files_of_cells_are_told_in_french(tmp_path, french):
     }.items():
         if content is not None:
             (tmp_path / name).write_bytes(content)
-        told.add(check_told(raised(api.read_cell, str(tmp_path / name)), french))
-    assert len(told) > 30, told
+        messages.add(check_french(error_message(api.read_cell, str(tmp_path / name)), french))
+    assert len(messages) > 30, messages
 
 
 @pytest.mark.parametrize(
@@ -355,26 +367,30 @@ def test_errors_of_files_of_cells_are_told_in_french(tmp_path, french):
     ids=["few", "more"],
 )
 def test_findings_of_jobs_are_told_in_french(numbers, doc, tmp_path, french):
-    """Jobs to which something was done, planned as far as they are."""
+    """Issues of jobs are in French: mutated jobs are planned as far as they can be."""
     job_bases.write_parts(tmp_path)
-    known, job = job_bases.bases(str(tmp_path)), tmp_path / "job.yaml"
+    base_jobs, job = job_bases.bases(str(tmp_path)), tmp_path / "job.yaml"
     session = SimpleNamespace(say=list, issues=list, progress=str, check=bool)
-    told = 0
+    count = 0
     for number in numbers:
         chance = random.Random(1600 + number)
-        job.write_bytes(mutations.mutated(known[number * 61 % len(known)][1], chance, tmp_path))
+        job.write_bytes(
+            mutations.mutated(base_jobs[number * 61 % len(base_jobs)][1], chance, tmp_path)
+        )
         stages = []
-        message = raised(lambda: stages.append(run.plan(jobs.read_job(str(job)), doc, session)))  # noqa: B023
+        message = error_message(
+            lambda: stages.append(run.plan(jobs.read_job(str(job)), doc, session))  # noqa: B023
+        )
         for text in [
             *([] if message is None else [message]),
-            *(one.message for made in stages for one in made.issues),
+            *(issue.message for stage in stages for issue in stage.issues),
         ]:
-            check_told(text, french)
-            told += 1
-    assert told
+            check_french(text, french)
+            count += 1
+    assert count
 
 
-# ---- on their way
+# ---- messages between processes
 
 
 def test_a_message_of_another_process_keeps_its_parts(tmp_path, french):
@@ -382,7 +398,7 @@ def test_a_message_of_another_process_keeps_its_parts(tmp_path, french):
     file.write_bytes(b"PK not a zip")
     with pytest.raises(InputError) as caught:
         read.read_mesh(str(file))
-    assert check_told(caught.value.message, french) != caught.value.message
+    assert check_french(caught.value.message, french) != caught.value.message
     assert (
         isinstance(caught.value.message.values[0], Text) and caught.value.message.values[0].values
     )
@@ -396,22 +412,23 @@ def test_a_message_of_a_row_of_a_batch_keeps_its_parts(tmp_path, french):
         pass
     message = row_result(row)["message"]
     assert (
-        check_told(message, french) == f"-2 mm est hors de la plage{NO_BREAK}; donnez plus de 0 mm"
+        check_french(message, french)
+        == f"-2 mm est hors de la plage{NO_BREAK}; donnez plus de 0 mm"
     )
     assert message.values[0] == "-2 mm"
 
 
-# ---- in documents
+# ---- messages in documents
 
 
 @pytest.fixture
 def infeasible(doc):
-    """A joint path that cannot be carried out, with its cell and what it follows."""
-    part = doc.addObject("Part::Sphere", "Sphere")
-    part.Angle1 = 0
+    """Return an infeasible joint path with its cell and toolpath."""
+    sphere = doc.addObject("Part::Sphere", "Sphere")
+    sphere.Angle1 = 0
     doc.recompute()
     cell = api.make_cell(doc, deposition_point="3000 0 0 0 0 0")
-    feature = api.make_feature(doc, part, layer_height=3)
+    feature = api.make_feature(doc, sphere, layer_height=3)
     return api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
 
 
@@ -419,15 +436,15 @@ def test_messages_of_a_document_are_told_in_french_when_it_is_opened_again(
     infeasible, tmp_path, french
 ):
     assert infeasible.Status == INFEASIBLE
-    said = infeasible.Message, infeasible.Issues, check_told(message_of(infeasible), french)
-    found = [check_told(issue.message, french) for issue in issues_of(infeasible)]
-    assert found and said[2] != said[0]
+    saved = infeasible.Message, infeasible.Issues, check_french(message_of(infeasible), french)
+    reopened = [check_french(issue.message, french) for issue in issues_of(infeasible)]
+    assert reopened and saved[2] != saved[0]
     infeasible.Document.saveAs(str(tmp_path / "a.FCStd"))
     again = App.openDocument(str(tmp_path / "a.FCStd"))
     try:
         opened = again.getObject(infeasible.Name)
-        assert (opened.Message, opened.Issues, check_told(message_of(opened), french)) == said
-        assert [check_told(issue.message, french) for issue in issues_of(opened)] == found
+        assert (opened.Message, opened.Issues, check_french(message_of(opened), french)) == saved
+        assert [check_french(issue.message, french) for issue in issues_of(opened)] == reopened
     finally:
         App.closeDocument(again.Name)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""package.xml holds what FreeCAD's Addon Manager needs, and names what exists."""
+"""package.xml holds what FreeCAD's Addon Manager needs, and everything it names exists."""
 
 import ast
 import re
@@ -42,7 +42,7 @@ def test_version_is_that_of_the_project_and_of_the_changelog(package):
 
 @pytest.mark.parametrize("hidden", ["PyKDL", "shapely", "matplotlib"])
 def test_demo_installs_what_jobs_beyond_it_need(hidden):
-    """The launcher installs its packages unless this Python is ready, which it is not without one of them."""
+    """The launcher installs its packages unless this Python already has every one of them."""
     boot = ROOT / "freecad_am" / "batch" / "boot.py"
     run = f"import sys, runpy; sys.modules[{hidden!r}] = None; sys.argv = ['boot.py', 'ready']; "
     run += f"runpy.run_path({str(boot)!r}, run_name='__main__')"
@@ -59,7 +59,8 @@ def test_demo_installs_what_jobs_beyond_it_need(hidden):
 
 
 def test_no_address_is_promised_that_is_not_there(package):
-    """There is no repository in public yet: nothing leads to one. Once there is, package.xml alone names it."""
+    """The project has no public repository yet, so no link may lead to one. Later, package.xml
+    alone names it."""
     assert package.findall(f"{NAMESPACE}url") == []
     owns = re.compile(
         r"(?:github|gitlab|codeberg)[\w./-]*/(?:freecad-am|robotic-?am)", re.IGNORECASE
@@ -74,8 +75,8 @@ def test_no_address_is_promised_that_is_not_there(package):
 
 
 def test_dependencies_are_those_of_the_window(package):
-    """numpy and scipy of every job; shapely of solids and matplotlib of plots, which tell when they miss it. PyYAML is
-    of commands alone, which the Addon Manager does not install."""
+    """Every job needs numpy and scipy; solids need shapely and plots matplotlib, and say so if it
+    is missing. Only commands need PyYAML, which the Addon Manager does not install."""
     (workbench,) = package.findall(f"{NAMESPACE}content/{NAMESPACE}workbench")
     depends = {
         node.text: node.get("optional") == "true"

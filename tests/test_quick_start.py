@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The quick start of CONTRIBUTING.md runs as it stands there, without FreeCAD."""
+"""The quick start of CONTRIBUTING.md runs as printed, without FreeCAD."""
 
 import re
 import subprocess

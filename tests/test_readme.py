@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What README and docs point to exists, and the commands they show are ones the program takes."""
+"""README and docs link to existing targets, and show commands that the program accepts."""
 
 import re
 import shlex
@@ -16,8 +16,8 @@ from freecad_am.posts import catalogue
 ROOT = Path(__file__).resolve().parent.parent
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")])
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
-# handled by the launcher: what may follow
-LAUNCHED = {
+# options that the launcher handles itself, with what may follow
+LAUNCHER_OPTIONS = {
     "demo": r"(-o \S+)?",
     "test": r"(--freecad 1\.[01])? ?(--long)? ?[\w/.]*",
     "docs": r"(\S+)?",
@@ -30,7 +30,7 @@ def name_of(path):
 
 
 def anchors(page):
-    """The anchors a forge makes of the headings of a page."""
+    """Return the anchors that a forge creates for the headings of a page."""
     headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
     return {
         re.sub(r"[^\w\- ]", "", heading.lower()).strip().replace(" ", "-") for heading in headings
@@ -38,7 +38,8 @@ def anchors(page):
 
 
 def commands(page):
-    """The words after ./freecad-am on each line of the page's shell blocks and in its inline code."""
+    """Return the words after ./freecad-am on each line of the page's shell blocks and in its inline
+    code."""
     text = page.read_text(encoding="utf-8")
     for block in re.findall(r"```sh\n(.*?)```", text, re.DOTALL):
         for line in block.splitlines():
@@ -67,21 +68,24 @@ def test_links_lead_somewhere(page):
 
 
 def test_commands_are_shown():
-    assert {words[0] for page, words in SHOWN if page == "README.md"} == {*COMMANDS, *LAUNCHED}
+    assert {words[0] for page, words in SHOWN if page == "README.md"} == {
+        *COMMANDS,
+        *LAUNCHER_OPTIONS,
+    }
 
 
 @pytest.mark.parametrize(
     "page,words", SHOWN, ids=[f"{page}: {' '.join(words)}" for page, words in SHOWN]
 )
 def test_commands_parse(page, words):
-    command, *rest = words
-    if command in LAUNCHED:
-        assert re.fullmatch(LAUNCHED[command], " ".join(rest)), words
+    command, *arguments = words
+    if command in LAUNCHER_OPTIONS:
+        assert re.fullmatch(LAUNCHER_OPTIONS[command], " ".join(arguments)), words
         return
     assert command in COMMANDS
-    if not rest:
-        return  # a command by its name alone
-    options = vars(command_parsers()[1][command].parse_args(rest))
+    if not arguments:
+        return  # only the name of a command, without arguments
+    options = vars(command_parsers()[1][command].parse_args(arguments))
     for value in options.values():
         if isinstance(value, str) and value.startswith(("resources/", "docs/")):
             assert (ROOT / value).is_file(), value
@@ -93,23 +97,23 @@ def test_the_launcher_tells_of_the_same_commands():
     ).stdout
     assert {
         line.split()[0] for line in usage.splitlines() if line.startswith("  ") and line[2] != " "
-    } == {*COMMANDS, *LAUNCHED}
+    } == {*COMMANDS, *LAUNCHER_OPTIONS}
 
 
 def test_packages_are_those_the_launcher_installs():
     launcher = (ROOT / "freecad-am").read_text(encoding="utf-8")
-    wanted = set(" ".join(re.findall(r"_packages='(.+)'", launcher)).split())
+    packages = set(" ".join(re.findall(r"_packages='(.+)'", launcher)).split())
     testing = re.search(
         r'testing_packages="\$planning_packages \$reference_packages (.+)"', launcher
     )
-    wanted |= set(testing[1].split())
+    packages |= set(testing[1].split())
     paragraph = (
         (ROOT / "README.md")
         .read_text(encoding="utf-8")
         .split("with `apt-get`")[1]
         .split("Elsewhere")[0]
     )
-    assert set(re.findall(r"`([\w-]+)`", paragraph)) == wanted
+    assert set(re.findall(r"`([\w-]+)`", paragraph)) == packages
 
 
 def test_tools_have_the_names_of_the_toolbar():

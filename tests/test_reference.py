@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The API reference is built from the docstrings, without a warning, and has every macro function."""
+"""The API reference builds from the docstrings without a warning and contains every macro
+function."""
 
 import re
 import subprocess

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The test runner: failed tests of the window, crashes, hangs, totals, and which tests run."""
+"""Test the test runner: repeated window tests, crashes, hangs, totals, and the selection of
+tests."""
 
 import os
 import re
@@ -24,7 +25,7 @@ def summary(passed, *failed, reason="late"):
 
 @pytest.fixture
 def windows(monkeypatch):
-    """Each item is the outcome of one run in windows: status and output."""
+    """Return a stub of the window run that yields the given outcomes: status and output."""
     waiting, calls = [], []
 
     def in_windows(arguments):
@@ -109,11 +110,11 @@ def test_of_a_test_that_failed_twice_the_end_tells_why(windows, capsys):
 def test_the_last_line_sums_up_all_runs(capsys, ends, status, total):
     assert run.summarize([Outcome(f"run {k}", *end) for k, end in enumerate(ends)]) == status
     passed, failed, skipped = total
-    last = capsys.readouterr().out.splitlines()[-1]
-    assert last == f"total: {passed} passed, {failed} failed, {skipped} skipped"
+    last_line = capsys.readouterr().out.splitlines()[-1]
+    assert last_line == f"total: {passed} passed, {failed} failed, {skipped} skipped"
 
 
-LONG = """\
+LONG_TESTS = """\
 import pytest
 
 @pytest.mark.long
@@ -142,7 +143,7 @@ def test_d(a):
 
 
 def pytest_of(folder, text, words):
-    """Run pytest on a file of tests beside our conftest.py."""
+    """Run pytest on a file of tests next to this project's conftest.py."""
     conftest = (Path(__file__).parent / "conftest.py").read_text(encoding="utf-8")
     conftest = conftest.replace(
         "Path(__file__).resolve().parent.parent", f"Path({str(run.ROOT)!r})"
@@ -175,8 +176,8 @@ def pytest_of(folder, text, words):
     ids=["always", "long", "named"],
 )
 def test_long_ones_run_where_they_are_asked_for(tmp_path, words, ran):
-    done = pytest_of(tmp_path, LONG, words)
-    assert done.returncode == 0 and ran in done.stdout.splitlines()[-1], done.stdout
+    process = pytest_of(tmp_path, LONG_TESTS, words)
+    assert process.returncode == 0 and ran in process.stdout.splitlines()[-1], process.stdout
 
 
 def test_of_the_variants_each_value_runs_always_and_the_rest_with_the_long_ones(tmp_path):
@@ -224,11 +225,11 @@ def test_last():
 def test_the_end_names_what_failed_crashed_or_hung_and_why(tmp_path, capsys):
     """A crashed or hanging worker is replaced, and the tests after it run."""
     workers = [*run.PLUGINS, "-n", "1", "--timeout=5", "--timeout-method=thread", "."]
-    done = pytest_of(tmp_path, BROKEN, workers)
-    outcome = Outcome("headless", done.returncode, done.stdout)
+    process = pytest_of(tmp_path, BROKEN, workers)
+    outcome = Outcome("headless", process.returncode, process.stdout)
     assert run.summarize([outcome]) == 1
     lines = capsys.readouterr().out.splitlines()
-    assert lines[-1] == "total: 2 passed, 4 failed, 0 skipped", done.stdout + done.stderr
+    assert lines[-1] == "total: 2 passed, 4 failed, 0 skipped", process.stdout + process.stderr
     failed = {line[8:] for line in lines if line.startswith("failed: ")}
     names = {"test_a[2]", "test_b", "test_crash", "test_hang"}
     assert failed == {f"test_it.py::{name}  [headless]" for name in names}
@@ -249,7 +250,7 @@ def test_a_run_that_ends_without_totals_is_a_failure_with_its_last_lines(capsys)
 
 
 def test_a_failure_in_another_version_is_told_once_with_its_part(monkeypatch):
-    """Tests that passed there at the second try are not reported as failed."""
+    """The summary does not report tests that pass in the other version at the second try."""
     inside = summary(5, A) + f"{run.SUMMARY}\n" + summary(6, B, reason="why")
     monkeypatch.setattr(run, "stream", lambda name, command, env: Outcome(name, 1, inside))
     outcome = run.run_in_version("1.0", [])

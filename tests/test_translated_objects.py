@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Helps and choices of every kind of object are among the texts that have to be translated."""
+"""The tooltips and choices of every kind of object are among the texts to translate."""
 
 import re
 import sys
@@ -12,12 +12,12 @@ import collect  # noqa: E402
 
 
 def test_the_helps_of_every_object_are_collected():
-    found = {
+    kinds = {
         name
         for path in (ROOT / "freecad_am" / "objects").rglob("*.py")
         for name in re.findall(
             r"^class (\w+)\((?:Feature)?Stage\)", path.read_text(encoding="utf-8"), re.MULTILINE
         )
     }
-    found.remove("FeatureStage")  # which has no fields of its own
-    assert len(found) > 9 and {stage.__name__ for stage in collect.STAGES} == found
+    kinds.remove("FeatureStage")  # this base class has no properties of its own
+    assert len(kinds) > 9 and {stage.__name__ for stage in collect.STAGES} == kinds

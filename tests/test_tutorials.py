@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every tutorial is done by a test of the window: its headings are the steps, its pictures those that the test takes."""
+"""A test of the window performs each tutorial: the headings are its steps, the pictures are those
+it takes."""
 
 import ast
 import re
@@ -11,11 +12,12 @@ ROOT = Path(__file__).resolve().parent.parent
 PAGES = sorted((ROOT / "docs" / "tutorials").glob("*.md"))
 IMAGES = ROOT / "docs" / "tutorials" / "images"
 LESSONS = [path for path in PAGES if path.name != "README.md"]
-ROOM = 3_000_000  # bytes of all pictures
+MAX_PICTURE_BYTES = 3_000_000  # bytes of all pictures together
 
 
 def lessons():
-    """(page, steps, pictures) of each test: the literals of its calls, in the order of the file."""
+    """Return (page, steps, pictures) of each test, from the literals of its calls in the order of
+    the file."""
     for path in sorted((ROOT / "tests" / "gui" / "tutorials").glob("test_*.py")):
         tree = ast.parse(path.read_text(encoding="utf-8"))
         page = next(
@@ -36,25 +38,30 @@ def lessons():
         yield page, [(call.func.attr, call.args[0].value) for call in calls]
 
 
-DONE = dict(lessons())
+PERFORMED_LESSONS = dict(lessons())
 
 
 @pytest.mark.parametrize("page", LESSONS, ids=lambda page: page.stem)
 def test_a_tutorial_is_what_its_test_does(page):
     text = page.read_text(encoding="utf-8")
-    found = re.findall(r"^## (\d+\. .+)$|!\[[^\]]+\]\(images/([\w-]+)\.png\)", text, re.MULTILINE)
-    told = [
-        ("step", heading.strip()) if heading else ("picture", picture) for heading, picture in found
+    page_steps = re.findall(
+        r"^## (\d+\. .+)$|!\[[^\]]+\]\(images/([\w-]+)\.png\)", text, re.MULTILINE
+    )
+    test_steps = [
+        ("step", heading.strip()) if heading else ("picture", picture)
+        for heading, picture in page_steps
     ]
-    assert told == DONE[page.stem]
-    assert 5 <= sum(kind == "picture" for kind, _ in told) <= 9
+    assert test_steps == PERFORMED_LESSONS[page.stem]
+    assert 5 <= sum(kind == "picture" for kind, _ in test_steps) <= 9
 
 
 def test_every_test_has_its_tutorial():
-    assert set(DONE) == {page.stem for page in LESSONS} and len(DONE) == 7
+    assert set(PERFORMED_LESSONS) == {page.stem for page in LESSONS} and len(PERFORMED_LESSONS) == 7
 
 
 def test_pictures_are_those_of_the_tutorials_and_small():
-    taken = {name for calls in DONE.values() for kind, name in calls if kind == "picture"}
-    assert {path.stem for path in IMAGES.iterdir()} == taken
-    assert sum(path.stat().st_size for path in IMAGES.iterdir()) < ROOM
+    pictures = {
+        name for calls in PERFORMED_LESSONS.values() for kind, name in calls if kind == "picture"
+    }
+    assert {path.stem for path in IMAGES.iterdir()} == pictures
+    assert sum(path.stat().st_size for path in IMAGES.iterdir()) < MAX_PICTURE_BYTES

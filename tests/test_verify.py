@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The read-back: correct programs pass, and every single thing gone wrong is caught."""
+"""The read-back accepts correct programs and catches every single deviation."""
 
 import dataclasses
 import re
@@ -35,7 +35,8 @@ ON_TABLE = CellParameters(
 
 
 def hemisphere(cell, layers=4, step=6.0, offset=0.6):
-    """The motion of a few layers of a hemisphere: local build directions, axis 6 going round and round."""
+    """Return the motion of a few layers of a hemisphere with local build directions; axis 6 turns
+    several times."""
     columns = {field.name: [] for field in dataclasses.fields(Motion)}
     for layer in range(layers):
         latitude = layer * step / RADIUS
@@ -43,17 +44,17 @@ def hemisphere(cell, layers=4, step=6.0, offset=0.6):
         count = int(np.ceil(np.pi / np.arccos(1.0 - CHORD_ERROR / radius))) + 1
         theta = np.linspace(0.0, 2.0 * np.pi, count) + 2.0 * np.pi * layer
         around = np.stack((np.cos(theta), np.sin(theta), np.zeros(count)), axis=1)
-        place = radius * around + [0.0, 0.0, height]
+        points = radius * around + [0.0, 0.0, height]
         tool = -np.sin(latitude) * around + [0.0, 0.0, np.cos(latitude)]
-        lifted = place[:1] + 20.0 * tool[:1]
+        lifted = points[:1] + 20.0 * tool[:1]
         rows = np.r_[0, 0, np.arange(count)]
-        columns["position"].append(np.vstack((lifted, place[:1], place)))
+        columns["position"].append(np.vstack((lifted, points[:1], points)))
         columns["tool"].append(tool[rows])
         columns["joints"].append(theta[rows])
         columns["deposit"].append(np.r_[False, False, np.ones(count, bool)])
         columns["point"].append(np.r_[0, 0, np.arange(count)])
         columns["layer"].append(np.full(count + 2, layer))
-    columns = {name: np.concatenate(parts) for name, parts in columns.items() if parts}
+    columns = {name: np.concatenate(blocks) for name, blocks in columns.items() if blocks}
     flange = cell.flange_poses(columns["position"], columns["tool"], offset - columns.pop("joints"))
     joints = np.unwrap(cell.machine.opw.inverse_branch(flange, cell.branch), axis=0)
     assert np.isfinite(joints).all()
@@ -72,7 +73,7 @@ def hemisphere(cell, layers=4, step=6.0, offset=0.6):
 
 
 def program_of(path, cell, **options):
-    """The program of a motion: a run of rapids, then a bead, layer by layer."""
+    """Return the program of a motion: for each layer, a run of rapids and then a bead."""
     blocks, endless = [], np.array([False] * 5 + [True])
     cartesian = options.get("motion") == "cartesian"
     for layer in np.unique(path.layer):
@@ -89,9 +90,15 @@ def program_of(path, cell, **options):
                     "configuration": (branch_name(cell.branch),) * int(rows.sum()),
                     "interpolation": "linear" if kind == "deposit" else "joint",
                 }
-            shown = cell.machine.to_controller(path.joints[rows])
+            controller_joints = cell.machine.to_controller(path.joints[rows])
             moves = Moves(
-                kind, int(layer), 0, shown, path.duration[rows], path.speed[rows], **extra
+                kind,
+                int(layer),
+                0,
+                controller_joints,
+                path.duration[rows],
+                path.speed[rows],
+                **extra,
             )
             blocks += [DepositOn(0.5), moves, DepositOff(0.2)] if kind == "deposit" else [moves]
     return Program(
@@ -128,10 +135,10 @@ def verify(cell, motion, program, files):
 
 
 def edited(files, pattern, replacement, count=1):
-    """The files with the first match(es) of a pattern replaced; it must be there."""
+    """Return the files with the first matches of a pattern replaced; the pattern must match."""
     (name,) = files
-    text, found = re.subn(pattern, replacement, files[name].decode("ascii"), count=count)
-    assert found
+    text, match_count = re.subn(pattern, replacement, files[name].decode("ascii"), count=count)
+    assert match_count
     return {name: text.encode("ascii")}
 
 
@@ -144,14 +151,14 @@ def test_a_correct_program_passes_with_both_solvers(cell, motion, program, files
 
 
 def test_a_program_in_parts_passes(cell, motion, program):
-    parts = fanuc.write(dataclasses.replace(program, max_points=150))
-    assert len(parts) > 2 and verify(cell, motion, program, parts).issues == ()
+    files = fanuc.write(dataclasses.replace(program, max_points=150))
+    assert len(files) > 2 and verify(cell, motion, program, files).issues == ()
 
 
 def test_a_dry_run_passes_and_differs_in_the_deposit_alone(cell, motion, program, files):
     dry = dataclasses.replace(program, dry_run=True)
     assert verify(cell, motion, dry, fanuc.write(dry)).issues == ()
-    # the lead times go with it
+    # the lead times shift with it
     assert codes(verify(cell, motion, dry, files)) == {"VERIFY_DEPOSIT", "VERIFY_WAIT"}
     assert codes(verify(cell, motion, program, fanuc.write(dry))) == {
         "VERIFY_DEPOSIT",
@@ -170,9 +177,9 @@ def test_one_joint_moved_is_caught_at_its_point(cell, motion, program, axis, cha
     for code in {
         "VERIFY_JOINT",
         *(["VERIFY_POINT"] if axis < 5 else []),
-    }:  # axis 6 may move within what digits explain
-        first = next(issue for issue in result.issues if issue.code == code)
-        assert (first.layer, first.bead, first.point) == (0, 0, 71)
+    }:  # axis 6 may move by what the rounding explains
+        first_issue = next(candidate for candidate in result.issues if candidate.code == code)
+        assert (first_issue.layer, first_issue.bead, first_issue.point) == (0, 0, 71)
 
 
 def test_a_point_left_out_is_caught(cell, motion, program, files):
@@ -225,36 +232,38 @@ def test_times_that_are_off_by_a_millisecond_each_are_caught_in_the_bead(
 def test_times_that_are_each_within_a_millisecond_are_caught_where_they_add_up(
     cell, motion, program, files
 ):
-    """Every move longer by what a whole millisecond forgives: a bead of 200 moves is off by a tenth of a second."""
+    """Millisecond rounding forgives every move of a bead, but 200 moves that are all too long add
+    up to a tenth of a second and are caught."""
     text = files["HEMISPHERE.LS"].decode()
     laid = [
         block for block in program.blocks if isinstance(block, Moves) and block.kind == "deposit"
     ]
     planned = iter(np.concatenate([moves.duration for moves in laid]))
 
-    def longer(found):
+    def longer(slowed):
         return f"{int(np.ceil(1000.0 * next(planned) - 1e-6))}msec"
 
-    found = re.sub(r"(\d+)msec(?= CNT)|(\d+)msec(?= FINE    ;\r\n *\d+:  WAIT)", longer, text)
-    assert next(planned, None) is None and found != text
-    result = verify(cell, motion, program, {"HEMISPHERE.LS": found.encode()})
+    slowed = re.sub(r"(\d+)msec(?= CNT)|(\d+)msec(?= FINE    ;\r\n *\d+:  WAIT)", longer, text)
+    assert next(planned, None) is None and slowed != text
+    result = verify(cell, motion, program, {"HEMISPHERE.LS": slowed.encode()})
     assert codes(result) == {"VERIFY_TIME"} and "do not add up" in result.issues[0].message
 
 
 def test_layers_in_the_wrong_order_are_caught(cell, motion, program):
-    parts = fanuc.write(dataclasses.replace(program, max_points=150))
+    files = fanuc.write(dataclasses.replace(program, max_points=150))
     swaps = {b"CALL HEMISPHERE01": b"CALL HEMISPHERE02", b"CALL HEMISPHERE02": b"CALL HEMISPHERE01"}
-    parts["HEMISPHERE.LS"] = re.sub(
-        rb"CALL HEMISPHERE0[12]", lambda m: swaps[m[0]], parts["HEMISPHERE.LS"]
+    files["HEMISPHERE.LS"] = re.sub(
+        rb"CALL HEMISPHERE0[12]", lambda m: swaps[m[0]], files["HEMISPHERE.LS"]
     )
-    assert "VERIFY_POINT" in codes(verify(cell, motion, program, parts))
+    assert "VERIFY_POINT" in codes(verify(cell, motion, program, files))
 
 
 def test_a_path_that_bulges_between_its_points_is_caught(cell, motion, program):
-    """Every third point of a bead alone is on the circle; the way between is not within the chord error."""
-    kept = ~motion.deposit | (motion.point % 3 == 0)
+    """Only every third point of a bead is on the circle, so the path between the points exceeds the
+    chord error."""
+    selected = ~motion.deposit | (motion.point % 3 == 0)
     thin = Motion(
-        **{f.name: np.array(getattr(motion, f.name)[kept]) for f in dataclasses.fields(Motion)}
+        **{f.name: np.array(getattr(motion, f.name)[selected]) for f in dataclasses.fields(Motion)}
     )
     length = np.r_[0.0, np.linalg.norm(np.diff(thin.position, axis=0), axis=1)]
     thin = dataclasses.replace(thin, duration=length / thin.speed)
@@ -272,7 +281,7 @@ def test_another_cell_than_the_planned_one_is_caught(cell, motion, program, file
 
 
 def test_the_pendant_angle_of_axis_3_counts(cell, motion, program):
-    """A post fed with serial angles instead of the controller's gives a program that fails."""
+    """A program made from serial angles instead of controller angles fails the check."""
     blocks = tuple(
         dataclasses.replace(block, joints=cell.machine.from_controller(block.joints))
         if isinstance(block, Moves)
@@ -311,14 +320,17 @@ def test_solvers_that_disagree_are_caught(cell, motion, program, files, monkeypa
 
 
 def test_the_bound_holds_and_is_tight_for_random_machines():
-    """Rounding joint values never leads further than the bound, and in the worst case nearly that far."""
+    """Rounded joint values never move the tip further than the bound, and in the worst case nearly
+    as far."""
     rng = np.random.default_rng(11)
     cell = cells.resolve(ON_TABLE, np.eye(4))
     half = np.radians(0.0005)
     corners = np.array(np.meshgrid(*[[-1.0, 1.0]] * 6)).reshape(6, -1).T * half
-    for shown in rng.uniform(-2.0, 2.0, (20, 6)):
-        path, _ = text_path.joint_path(cell, shown[None], np.full(6, half))
-        turned = cell.machine.chain.forward(cell.machine.from_controller(shown + corners))
+    for controller_joints in rng.uniform(-2.0, 2.0, (20, 6)):
+        path, _ = text_path.joint_path(cell, controller_joints[None], np.full(6, half))
+        turned = cell.machine.chain.forward(
+            cell.machine.from_controller(controller_joints + corners)
+        )
         tips, tools = cell.tip_in_part(turned)
         off = np.linalg.norm(tips - path.position, axis=1).max()
         tilt = np.linalg.norm(tools - path.tool, axis=1).max()
@@ -329,12 +341,13 @@ def test_the_bound_holds_and_is_tight_for_random_machines():
 def test_a_rapid_that_leaves_its_way_is_caught_even_where_coarse_digits_explain_it(
     cell, motion, program, files
 ):
-    """As near a singularity, where a last digit turns other axes far: by half a millimetre no clearance is spent."""
+    """Near a singularity the last digit of an axis turns other axes far, but a rapid that deviates
+    by half a millimetre is caught: this would use up clearance."""
 
     class Coarse:
         @staticmethod
-        def read(told):
-            return dataclasses.replace(fanuc.read(told), digits=np.radians(0.1))
+        def read(program_files):
+            return dataclasses.replace(fanuc.read(program_files), digits=np.radians(0.1))
 
     assert verification.verify(cell, motion, program, files, Coarse, CHORD_ERROR).issues == ()
     moves = program.blocks[6]
@@ -342,13 +355,13 @@ def test_a_rapid_that_leaves_its_way_is_caught_even_where_coarse_digits_explain_
     joints = moves.joints.copy()
     joints[-1, 0] += np.radians(0.04)
     blocks = (*program.blocks[:6], dataclasses.replace(moves, joints=joints), *program.blocks[7:])
-    other = fanuc.write(dataclasses.replace(program, blocks=blocks))
-    result = verification.verify(cell, motion, program, other, Coarse, CHORD_ERROR)
+    changed_files = fanuc.write(dataclasses.replace(program, blocks=blocks))
+    result = verification.verify(cell, motion, program, changed_files, Coarse, CHORD_ERROR)
     assert codes(result) == {"VERIFY_BETWEEN"} and "between two beads" in result.issues[0].message
 
 
 def short_of(cell, axis, upper):
-    """The cell with another upper limit of an axis, rad."""
+    """Return the cell with another upper limit of an axis, in rad."""
     ends = cell.limits.upper.copy()
     ends[axis] = upper
     return dataclasses.replace(cell, limits=dataclasses.replace(cell.limits, upper=ends))
@@ -359,18 +372,19 @@ def short_of(cell, axis, upper):
 def test_a_text_that_leads_beyond_a_limit_is_caught_at_its_point(
     cell, motion, program, files, table, axis, cartesian
 ):
-    """Rapids too: of what is rounded to a thousandth of a degree half of one is forgiven, of positions what they explain."""
+    """Limits hold for rapids too. The check allows half of the last digit of rounded joint values,
+    and for positions the error that their rounding explains."""
     if cartesian:
         cell, motion, program = table
         files = fanuc.write(program)
     rows = np.flatnonzero(motion.moves)
-    most = motion.joints[rows, axis].max()
-    assert verify(short_of(cell, axis, most + 1e-6), motion, program, files).issues == ()
-    result = verify(short_of(cell, axis, most - np.radians(0.01)), motion, program, files)
+    maximum = motion.joints[rows, axis].max()
+    assert verify(short_of(cell, axis, maximum + 1e-6), motion, program, files).issues == ()
+    result = verify(short_of(cell, axis, maximum - np.radians(0.01)), motion, program, files)
     assert codes(result) == {"VERIFY_LIMIT"}
     (issue,) = result.issues
-    first = rows[np.argmax(motion.joints[rows, axis] > most - np.radians(0.01))]
-    assert (issue.layer, issue.bead) == (motion.layer[first], motion.bead[first])
+    first_row = rows[np.argmax(motion.joints[rows, axis] > maximum - np.radians(0.01))]
+    assert (issue.layer, issue.bead) == (motion.layer[first_row], motion.bead[first_row])
     assert issue.message.startswith(f"the program moves {cell.limits.labels[axis]} up to 0.0")
 
 
@@ -403,11 +417,11 @@ def test_cartesian_positions_that_are_off_are_caught(table, word, code):
     moved = re.sub(
         rf"(?<=\t){word} = *(-?\d*\.\d+)", lambda m: f"{word} ={float(m[1]) + 0.02:10.3f}", text
     )
-    # and the rapids lead elsewhere as far as the digits tell
-    found = codes(verify(cell, motion, program, {"HEMISPHERE.LS": moved.encode()})) - {
+    # the rapids also deviate, as far as the rounding shows
+    issue_codes = codes(verify(cell, motion, program, {"HEMISPHERE.LS": moved.encode()})) - {
         "VERIFY_BETWEEN"
     }
-    assert found == ({code, "VERIFY_ROTATION"} if word in "WPR" else {code})
+    assert issue_codes == ({code, "VERIFY_ROTATION"} if word in "WPR" else {code})
 
 
 def test_a_tool_turned_about_its_own_axis_is_caught(table):
@@ -415,7 +429,7 @@ def test_a_tool_turned_about_its_own_axis_is_caught(table):
     text = fanuc.write(program)["HEMISPHERE.LS"].decode()
     upright = re.search(
         r"\tR = *(-?\d*\.\d+) deg", text
-    )  # the first layer stands upright: R turns about the tool
+    )  # the tool is vertical in the first layer, so R turns about the tool
     moved = text[: upright.start(1)] + f"{float(upright[1]) + 1.0:.3f}" + text[upright.end(1) :]
     assert codes(verify(cell, motion, program, {"HEMISPHERE.LS": moved.encode()})) == {
         "VERIFY_ROTATION"
@@ -444,12 +458,13 @@ def test_joint_programs_with_the_tool_on_the_robot_pass(table):
     result = verify(cell, motion, joint, fanuc.write(joint))
     assert codes(result) <= {
         "VERIFY_BETWEEN"
-    }  # joint moves do not run straight; points would be added
+    }  # joint moves are not straight, so the check would need more points
     assert result.at_points_mm <= result.bound_mm
 
 
 def test_the_program_origin_moves_the_user_frame_and_nothing_else(table):
-    """Another origin: other positions in the text, the same in space once the user frame of the remarks is set."""
+    """Another origin changes the positions in the text, but not those in space with the user frame
+    of the remarks."""
     cell, motion, _ = table
     spots = []
     for origin in ("auto", (10.0, -20.0, 5.0, 0.2, -0.1, 0.4)):
@@ -457,14 +472,14 @@ def test_the_program_origin_moves_the_user_frame_and_nothing_else(table):
         program = build(motion, cell, ProcessParameters(), parameters, "origin")
         files = fanuc.write(program)
         assert verify(cell, motion, program, files).issues == ()
-        read = fanuc.read(files)
+        readback = fanuc.read(files)
         user = frames.bryant(program.station)
-        spots.append((read.position, read.position @ user[:3, :3].T + user[:3, 3]))
-        told = b"User frame" if origin != "auto" else b"Platform"
-        assert told in files["ORIGIN.LS"]
+        spots.append((readback.position, readback.position @ user[:3, :3].T + user[:3, 3]))
+        remark = b"User frame" if origin != "auto" else b"Platform"
+        assert remark in files["ORIGIN.LS"]
     assert np.abs(spots[0][0] - spots[1][0]).max() > 5.0
     assert np.abs(spots[0][1] - spots[1][1]).max() < 2e-3
-    # a user frame that is not the one told of is caught
+    # a user frame other than that in the remarks is caught
     wrong = dataclasses.replace(
         program, station=(*program.station[:2], program.station[2] + 0.1, *program.station[3:])
     )
@@ -482,14 +497,15 @@ def test_the_program_origin_moves_the_user_frame_and_nothing_else(table):
     ],
 )
 def test_a_wait_is_told_to_its_last_digit(told, meant, alike):
-    """One that is shorter than that may be one of it, and no more; half a digit is rounding."""
+    """The check compares a wait to its last digit: half a digit is rounding, anything more is an
+    error."""
     half = 0.5 * 10.0 ** -len(told.split(".")[1])
-    found, due = (Event(3, "wait", (value,), half) for value in (told, meant))
-    assert _alike(None, found, due) is alike
+    event, expected_event = (Event(3, "wait", (value,), half) for value in (told, meant))
+    assert _alike(None, event, expected_event) is alike
 
 
 class _Standing:
-    """Rows of a text that are looked at by both solvers alone."""
+    """Select the rows of a text that both solvers check."""
 
     def __init__(self, joints):
         self.joints = joints
@@ -500,7 +516,8 @@ class _Standing:
 
 @pytest.fixture(scope="module")
 def long_text(cell):
-    """Joint values of more rows than are all driven through PyKDL, in a corner of their ranges, axis 1 at 0."""
+    """Return joint values of more rows than PyKDL checks, in a corner of their ranges with axis 1
+    at 0."""
     joints = np.random.default_rng(8).uniform(0.0, 0.1, (points.ROW_STRIDE * 3**6 + 5, 6)) * [
         0.0,
         1.0,
@@ -533,7 +550,8 @@ def test_of_a_long_text_some_rows_are_driven_by_the_second_solver(cell, long_tex
 def test_solvers_that_disagree_elsewhere_are_caught_by_any_long_text(
     cell, long_text, monkeypatch, axis
 ):
-    """They differ where an axis is, by a tenth of a micrometre at most: nowhere on a text that leaves this axis there."""
+    """The solvers differ by at most a tenth of a micrometre, depending on one axis, and not at all
+    on a text that keeps this axis at zero."""
     planned, _, _ = long_text
     joints = planned.joints.copy()
     joints[:, axis] = 0.0
@@ -552,15 +570,16 @@ def test_solvers_that_disagree_elsewhere_are_caught_by_any_long_text(
 
 
 def test_a_row_that_is_driven_wrongly_is_caught_in_a_long_text(cell, long_text, monkeypatch):
-    planned, shown, flange = long_text
+    planned, controller_joints, flange = long_text
     turned = flange.copy()
     turned[4000, 0, 0] += 1e-8
-    ((code, wrong),) = points.second_opinion(cell, planned, shown, turned)[0]
+    ((code, wrong),) = points.second_opinion(cell, planned, controller_joints, turned)[0]
     assert code == "VERIFY_SOLVERS" and wrong.tolist() == [4000]
 
 
 def test_what_differs_on_the_grid_bounds_what_differs_anywhere(cell):
-    """Random sums of constants, sines and cosines of degree one in each of three angles, on a tenth of a radian."""
+    """The difference on the grid bounds the difference anywhere, for random sums of constants,
+    sines and cosines of degree one in three angles, on a grid of a tenth of a radian."""
     rng, joints = np.random.default_rng(12), np.zeros((1, 6))
     grid = points.grid_of(cell.machine.chain, joints)
     assert len(grid) == 3**6

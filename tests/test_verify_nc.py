@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Five-axis programs on a cone, written for SINUMERIK and LinuxCNC, read back and verified; what is off is caught."""
+"""Write programs on a cone for SINUMERIK and LinuxCNC, read them back and verify them; deviations
+are caught."""
 
 import dataclasses
 import functools
@@ -32,7 +33,7 @@ WAYS = tuple(
         ("siemens", "linuxcnc"), (("joint", "time"), ("joint", "path"), ("cartesian", "time"))
     )
 )
-# machine and way; the controllers that drive heads are those of the machine file
+# (machine, output format); the machine file lists the controllers that drive tilting heads
 CASES = [(name, way) for name in MACHINES for way in WAYS if way[0] in machines.load(name).posts]
 
 
@@ -64,9 +65,9 @@ def plan(machine):
     return cell, motion
 
 
-def written(planned, way, max_points=2000):
+def write_program(planned, output, max_points=2000):
     cell, motion = planned
-    post, (kind, feed) = way
+    post, (kind, feed) = output
     parameters = ProgramParameters(
         post=post,
         motion=kind,
@@ -79,9 +80,11 @@ def written(planned, way, max_points=2000):
     return program, catalogue.load(post).write(program)
 
 
-def codes(planned, program, files, way):
+def codes(planned, program, files, format_):
     cell, motion = planned
-    result = verification.verify(cell, motion, program, files, catalogue.load(way[0]), CHORD_ERROR)
+    result = verification.verify(
+        cell, motion, program, files, catalogue.load(format_[0]), CHORD_ERROR
+    )
     return {issue.code for issue in result.issues}, result
 
 
@@ -89,27 +92,27 @@ def codes(planned, program, files, way):
 @pytest.mark.parametrize("max_points", [2000, 60])
 def test_programs_lead_where_they_should(machine, way, max_points):
     planned = plan(machine)
-    program, files = written(planned, way, max_points)
+    program, files = write_program(planned, way, max_points)
     assert len(files) == (1 if max_points == 2000 else 4)
-    found, result = codes(planned, program, files, way)
-    assert found == set() and result.solvers == ("chain", "pykdl")
+    issue_codes, result = codes(planned, program, files, way)
+    assert issue_codes == set() and result.solvers == ("chain", "pykdl")
     assert 0.0 < result.at_points_mm <= result.bound_mm < 1e-3
 
 
 def changed(text, line, word, step):
-    """The text with a word of a line moved by a step of its last digit times `step`."""
+    """Return the text with one word of a line changed by `step` units of its last digit."""
     lines = text.split("\n")
-    found = re.search(rf"(?<=\s)({word}=?(?:DC\()?)(-?\d+\.\d+)", lines[line])
-    decimals = len(found[2].partition(".")[2])
-    value = f"{float(found[2]) + step * 10.0**-decimals:.{decimals}f}"
-    lines[line] = lines[line][: found.start()] + found[1] + value + lines[line][found.end() :]
+    match = re.search(rf"(?<=\s)({word}=?(?:DC\()?)(-?\d+\.\d+)", lines[line])
+    decimals = len(match[2].partition(".")[2])
+    value = f"{float(match[2]) + step * 10.0**-decimals:.{decimals}f}"
+    lines[line] = lines[line][: match.start()] + match[1] + value + lines[line][match.end() :]
     return "\n".join(lines)
 
 
 @pytest.mark.parametrize(("machine", "way"), CASES)
 def test_every_word_that_is_off_is_caught(machine, way):
     planned = plan(machine)
-    program, files = written(planned, way)
+    program, files = write_program(planned, way)
     ((name, content),) = files.items()
     text = content.decode()
     beads = [
@@ -124,18 +127,18 @@ def test_every_word_that_is_off_is_caught(machine, way):
         )
         assert set("XYZF") < set(words)
         for word in words:
-            # a feed has seven digits, a direction is told by three numbers of six
+            # a feed has seven digits, a direction three numbers of six digits
             step = {"F": 40, "A3": 40, "B3": 40, "C3": 40}.get(word, 3)
             if word in ("A3", "B3", "C3"):
                 values = [
                     float(v) for v in re.findall(r"[ABC]3=(-?\d+\.\d+)", text.split("\n")[line])
                 ]
                 if abs(values["ABC".index(word[0])]) > 0.95:
-                    continue  # along the direction a number may change without turning it
-            found, _ = codes(
+                    continue  # a change along the direction does not turn it
+            issue_codes, _ = codes(
                 planned, program, {name: changed(text, line, word, step).encode()}, way
             )
-            assert found & {
+            assert issue_codes & {
                 "VERIFY_POINT",
                 "VERIFY_JOINT",
                 "VERIFY_TOOL",
@@ -147,12 +150,12 @@ def test_every_word_that_is_off_is_caught(machine, way):
 @pytest.mark.parametrize(("machine", "way"), CASES)
 def test_a_deposit_switched_elsewhere_is_caught(machine, way):
     planned = plan(machine)
-    program, files = written(planned, way)
+    program, files = write_program(planned, way)
     ((name, content),) = files.items()
     text = content.decode()
     off = re.search(r"\nN\d+ H1=0" if way[0] == "siemens" else r"\nM65 P0", text)
     moved = text[: off.start()] + text[off.end() :]
-    if way[1][0] == "cartesian":  # the deposit stays on while the kinematics is changed
+    if way[1][0] == "cartesian":  # the deposit stays on while the kinematics changes
         with pytest.raises(InputError, match="while the deposit is on"):
             catalogue.load(way[0]).read({name: moved.encode()})
     else:
@@ -162,7 +165,7 @@ def test_a_deposit_switched_elsewhere_is_caught(machine, way):
 def test_another_turn_is_caught_by_counting_axes_and_is_none_to_endless_ones():
     planned = plan("table-xyzac")
     for post in ("siemens", "linuxcnc"):
-        program, files = written(planned, (post, ("joint", "time")))
+        program, files = write_program(planned, (post, ("joint", "time")))
         ((name, content),) = files.items()
         lines = content.decode().split("\n")
         rows = [n for n, line in enumerate(lines) if " C" in line and "G1 " in line]
@@ -172,14 +175,14 @@ def test_another_turn_is_caught_by_counting_axes_and_is_none_to_endless_ones():
                 lines[row] = re.sub(
                     r"(?<= C)(-?\d+\.\d+)", lambda m: f"{float(m[0]) + 360.0:.5f}", lines[row]
                 )
-        found, _ = codes(planned, program, {name: "\n".join(lines).encode()}, (post, None))
-        assert ("VERIFY_JOINT" in found) == (post == "linuxcnc")
+        issue_codes, _ = codes(planned, program, {name: "\n".join(lines).encode()}, (post, None))
+        assert ("VERIFY_JOINT" in issue_codes) == (post == "linuxcnc")
 
 
 def test_the_work_offset_is_taken_from_the_program():
     planned = plan("table-xyzbc")
     way = ("linuxcnc", ("cartesian", "time"))
-    program, files = written(planned, way)
+    program, files = write_program(planned, way)
     elsewhere = dataclasses.replace(
         program, carried=(program.carried[0] + 0.01, *program.carried[1:])
     )

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A small dome on the RX60B L, planned, written as VAL 3, read back and verified; what goes wrong is caught."""
+"""Plan a small dome on the RX60B L, write it as VAL 3, read it back and verify it; errors are
+caught."""
 
 import re
 
@@ -90,14 +91,16 @@ def test_added_points_lie_on_the_circles_and_the_arm_reaches_them(planned):
     finer = steps.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
     assert len(finer) > 1.5 * len(motion) and finer.total_time == pytest.approx(motion.total_time)
     for layer, bead in {(0, 0), (int(motion.layer.max()), 0)}:
-        rows, more = ((m.deposit & (m.layer == layer) & (m.bead == bead)) for m in (motion, finer))
-        assert finer.point[more].tolist() == list(range(int(more.sum())))
+        rows, added_rows = (
+            (m.deposit & (m.layer == layer) & (m.bead == bead)) for m in (motion, finer)
+        )
+        assert finer.point[added_rows].tolist() == list(range(int(added_rows.sum())))
         radius, height = (
-            np.hypot(finer.position[more, 0], finer.position[more, 1]),
-            finer.position[more, 2],
+            np.hypot(finer.position[added_rows, 0], finer.position[added_rows, 1]),
+            finer.position[added_rows, 2],
         )
         assert np.abs(radius - radius[0]).max() < 1e-6 < CHORD_ERROR / 100 and np.ptp(height) < 1e-9
-        assert int(rows.sum()) <= int(more.sum())
+        assert int(rows.sum()) <= int(added_rows.sum())
     tip, tool = cell.tip_in_part(KdlArm(cell.machine).forward(finer.joints))
     assert np.abs(tip - finer.position).max() < 1e-6 and np.abs(tool - finer.tool).max() < 1e-6
 
@@ -115,10 +118,10 @@ def test_a_value_that_is_off_is_caught(written, array, attribute, change, code):
     if start < 0 or (attribute == "tmax" and program.motion == "joint"):
         return
     value = re.compile(rf'(?<= {attribute}=")(?!99999|100")[^"]+')
-    # past the first move of all, whose speed is not judged
+    # skip the very first move, whose speed the check ignores
     row = text.index('key="0"' if array == "pTarget" else 'key="2"', start)
-    found = value.search(text, row)
-    moved = text[: found.start()] + f"{float(found[0]) + change:.5f}" + text[found.end() :]
+    match = value.search(text, row)
+    moved = text[: match.start()] + f"{float(match[0]) + change:.5f}" + text[match.end() :]
     result = verify(cell, motion, program, {**files, name: moved.encode()})
     assert code in {issue.code for issue in result.issues}
 
@@ -126,7 +129,7 @@ def test_a_value_that_is_off_is_caught(written, array, attribute, change, code):
 def test_another_deposition_point_than_the_planned_one_is_caught(written):
     cell, motion, program, files = written
     if program.motion == "joint":
-        return  # joint values stand on their own
+        return  # joint values do not depend on the poses
     moved = {
         name: content.replace(b'x="300.0000"', b'x="300.0500"') for name, content in files.items()
     }
@@ -138,7 +141,8 @@ ORIGIN = (12.5, -7.25, 31.0, 0.3, -0.2, 1.1)
 
 
 def test_the_program_origin_changes_the_text_and_not_the_motion(planned):
-    """Two origins: other gauges, the same flange in space; from the text alone, by frames multiplied here."""
+    """Two origins give different gauges and the same flange poses in space, computed here from the
+    text by multiplying frames."""
     cell, motion, beads = planned
     motion = steps.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
     texts, flanges = [], []
@@ -148,33 +152,36 @@ def test_the_program_origin_changes_the_text_and_not_the_motion(planned):
         files = staubli.write(program)
         result = verify(cell, motion, program, files)
         assert result.issues == () and 0.0 < result.at_points_mm <= result.bound_mm < 0.001
-        read = staubli.read(files)
-        linear = read.deposit
+        readback = staubli.read(files)
+        linear = readback.deposit
         texts.append(files)
-        flanges.append(read.frame @ np.linalg.inv(read.tool[linear]))
+        flanges.append(readback.frame @ np.linalg.inv(readback.tool[linear]))
         assert (
             np.abs(
                 flanges[-1] - cell.machine.chain.forward(motion.joints[motion.moves])[linear]
             ).max()
             < 1e-3
         )
-        # a gauge is the point of the part seen from the origin
+        # a gauge is the point of the part relative to the origin
         moves = np.concatenate([run.position for run in program.moves if run.kind == "deposit"])
-        seen = motion.position[motion.moves][linear] - (
+        from_origin = motion.position[motion.moves][linear] - (
             np.array(origin[:3]) if origin != "auto" else cell.poses.mount[:3, 3]
         )
-        assert np.abs(np.linalg.norm(moves, axis=1) - np.linalg.norm(seen, axis=1)).max() < 1e-9
+        assert (
+            np.abs(np.linalg.norm(moves, axis=1) - np.linalg.norm(from_origin, axis=1)).max() < 1e-9
+        )
     assert texts[0]["dome/dome.dtx"] != texts[1]["dome/dome.dtx"]
     assert np.abs(flanges[0] - flanges[1]).max() < 5e-4
 
 
 def test_an_origin_of_zero_gauge_comes_to_the_deposition_point(planned):
-    """The point of the part that is the origin has the gauge 0 0 0, and its axes those of the target."""
+    """The point of the part at the origin has the gauge 0 0 0, and its axes are those of the
+    target."""
     cell, motion, _ = planned
     row = int(np.flatnonzero(motion.deposit)[5])
     flange = cell.machine.chain.forward(motion.joints[row : row + 1])
-    there = cell.poses.mount @ np.linalg.inv(flange @ cell.poses.carried) @ cell.poses.station
-    origin = (*there[0, :3, 3], *Rotation.from_matrix(there[0, :3, :3]).as_euler("XYZ"))
+    target = cell.poses.mount @ np.linalg.inv(flange @ cell.poses.carried) @ cell.poses.station
+    origin = (*target[0, :3, 3], *Rotation.from_matrix(target[0, :3, :3]).as_euler("XYZ"))
     parameters = ProgramParameters(post="staubli", motion="cartesian", origin=origin)
     program = build(motion, cell, ProcessParameters(), parameters, "dome")
     run = next(block for block in program.moves if block.kind == "deposit")

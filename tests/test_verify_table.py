@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Programs of five-axis machines read back: right ones pass, and every single thing gone wrong is caught."""
+"""The read-back of programs of five-axis machines accepts correct ones and catches every single
+error."""
 
 import dataclasses
 import itertools
@@ -56,8 +57,9 @@ def planned(request):
     return cell, motion
 
 
-def told(program):
-    """The events of a text that says what was planned: layers, and output 1 with no time before or after."""
+def planned_events(program):
+    """Return the events of a text that matches the plan: layers, and output 1 with no time before
+    or after."""
     events, row = [], 0
     for block in program.blocks:
         kind = {"LayerStart": "layer", "DepositOn": "on", "DepositOff": "off"}.get(
@@ -73,16 +75,17 @@ def told(program):
     return tuple(events)
 
 
-def first(duration):
-    """The first move takes its own time from wherever the machine stands."""
+def with_first_unset(duration):
+    """Return values with the first one unset: the duration of the first move depends on where the
+    machine starts."""
     duration = duration.copy()
     duration[0] = 10.0
     return duration
 
 
-def written(cell, motion, way):
-    """The program, and what a reader finds in a text of it: rounded as texts are."""
-    cartesian = way in CARTESIAN
+def write_program(cell, motion, output):
+    """Return the program and what a reader gets from its text, with rounded values."""
+    cartesian = output in CARTESIAN
     parameters = ProgramParameters(
         post="siemens",
         motion="cartesian" if cartesian else "joint",
@@ -102,37 +105,37 @@ def written(cell, motion, way):
     deposit = np.concatenate(
         [np.full(len(moves), moves.kind == "deposit") for moves in program.moves]
     )
-    rest = [deposit & cartesian, motion.stops[motion.moves], told(program)]
-    if way == "joints":
+    flags = [deposit & cartesian, motion.stops[motion.moves], planned_events(program)]
+    if output == "joints":
         times = duration * (1.0 + RELATIVE * np.sin(np.arange(len(duration))))
         return program, ReadMoves(
             joints,
             RAD,
             times,
             deposit,
-            *rest,
+            *flags,
             linear_digits=MM,
             duration_digits=duration * RELATIVE,
         )
     position = rounded(column("position"), MM)
-    known = {
+    fields = {
         "position": position,
         "position_digits": MM,
         "speed": np.round(column("speed"), 3),
         "speed_digits": 5e-4,
     }
     nothing = np.full(len(duration), np.nan)
-    if way == "directions":
+    if output == "directions":
         direction = rounded(column("direction"), UNIT)
-        known |= {"direction": direction, "direction_digits": UNIT}
-        return program, ReadMoves(None, 0.0, first(nothing), deposit, *rest, **known)
+        fields |= {"direction": direction, "direction_digits": UNIT}
+        return program, ReadMoves(None, 0.0, with_first_unset(nothing), deposit, *flags, **fields)
     return program, ReadMoves(
-        np.where(slides, np.nan, joints), RAD, first(nothing), deposit, *rest, **known
+        np.where(slides, np.nan, joints), RAD, with_first_unset(nothing), deposit, *flags, **fields
     )
 
 
-def verify(cell, motion, program, read):
-    post = SimpleNamespace(read=lambda files: read)
+def verify(cell, motion, program, readback):
+    post = SimpleNamespace(read=lambda files: readback)
     return verification.verify(cell, motion, program, {}, post, CHORD_ERROR)
 
 
@@ -142,7 +145,7 @@ def codes(result):
 
 @pytest.mark.parametrize("way", ["joints", *CARTESIAN])
 def test_a_right_text_passes(planned, way):
-    result = verify(*planned, *written(*planned, way))
+    result = verify(*planned, *write_program(*planned, way))
     assert result.issues == () and result.solvers == ("chain", "pykdl")
     assert 1e-5 < result.at_points_mm <= result.bound_mm < 0.02
     if way == "joints":
@@ -153,11 +156,11 @@ def test_a_right_text_passes(planned, way):
 @pytest.mark.parametrize("row", [3, 60, -2])
 def test_an_axis_value_that_is_off_is_caught(planned, axis, row):
     cell, motion = planned
-    program, read = written(cell, motion, "joints")
+    program, readback = write_program(cell, motion, "joints")
     slides = cell.machine.chain.sliding[axis]
-    joints = read.joints.copy()
+    joints = readback.joints.copy()
     joints[row, axis] += 3.0 * (MM if slides else RAD)
-    result = verify(cell, motion, program, dataclasses.replace(read, joints=joints))
+    result = verify(cell, motion, program, dataclasses.replace(readback, joints=joints))
     (issue,) = (issue for issue in result.issues if issue.code == "VERIFY_JOINT")
     assert (
         f"axis {cell.machine.axes[axis]} " in issue.message
@@ -166,99 +169,101 @@ def test_an_axis_value_that_is_off_is_caught(planned, axis, row):
 
 
 def test_whole_turns_are_turns(planned):
-    # a rotary axis of a machine tool counts: 360 deg further on is another place to go to
+    # a rotary axis of a machine tool counts its turns: 360 deg further is another position
     cell, motion = planned
-    for way in ("joints", "rotary words"):
-        program, read = written(cell, motion, way)
+    for output in ("joints", "rotary words"):
+        program, readback = write_program(cell, motion, output)
         for axis in np.flatnonzero(~cell.machine.chain.sliding):
-            joints = read.joints.copy()
+            joints = readback.joints.copy()
             joints[60:, axis] += 2.0 * math.pi
             assert "VERIFY_JOINT" in codes(
-                verify(cell, motion, program, dataclasses.replace(read, joints=joints))
+                verify(cell, motion, program, dataclasses.replace(readback, joints=joints))
             )
 
 
 def test_times_that_do_not_give_the_speed_are_caught(planned):
     cell, motion = planned
-    program, read = written(cell, motion, "joints")
+    program, readback = write_program(cell, motion, "joints")
     for factor in (1.0 + 4.0 * RELATIVE, 1.0 - 4.0 * RELATIVE):
-        times = read.duration.copy()
+        times = readback.duration.copy()
         times[40] *= factor
-        assert codes(verify(cell, motion, program, dataclasses.replace(read, duration=times))) == {
-            "VERIFY_TIME"
-        }
-    # a rapid that runs as fast as the machine does has no time; a bead must have one
-    times = first(np.where(read.deposit, read.duration, np.nan))
-    assert verify(cell, motion, program, dataclasses.replace(read, duration=times)).issues == ()
-    times[np.flatnonzero(read.deposit)[5]] = np.nan
-    assert codes(verify(cell, motion, program, dataclasses.replace(read, duration=times))) == {
+        assert codes(
+            verify(cell, motion, program, dataclasses.replace(readback, duration=times))
+        ) == {"VERIFY_TIME"}
+    # a rapid at full machine speed has no time; a bead must have one
+    times = with_first_unset(np.where(readback.deposit, readback.duration, np.nan))
+    assert verify(cell, motion, program, dataclasses.replace(readback, duration=times)).issues == ()
+    times[np.flatnonzero(readback.deposit)[5]] = np.nan
+    assert codes(verify(cell, motion, program, dataclasses.replace(readback, duration=times))) == {
         "VERIFY_TIME"
     }
 
 
 def test_deposit_and_count_are_caught(planned):
     cell, motion = planned
-    program, read = written(cell, motion, "joints")
-    deposit = read.deposit.copy()
+    program, readback = write_program(cell, motion, "joints")
+    deposit = readback.deposit.copy()
     deposit[20] = ~deposit[20]
-    assert codes(verify(cell, motion, program, dataclasses.replace(read, deposit=deposit))) == {
+    assert codes(verify(cell, motion, program, dataclasses.replace(readback, deposit=deposit))) == {
         "VERIFY_DEPOSIT"
     }
-    fewer = dataclasses.replace(
-        read,
-        joints=read.joints[1:],
-        duration=read.duration[1:],
-        deposit=read.deposit[1:],
-        duration_digits=read.duration_digits[1:],
-        linear=read.linear[1:],
-        stops=read.stops[1:],
+    incomplete = dataclasses.replace(
+        readback,
+        joints=readback.joints[1:],
+        duration=readback.duration[1:],
+        deposit=readback.deposit[1:],
+        duration_digits=readback.duration_digits[1:],
+        linear=readback.linear[1:],
+        stops=readback.stops[1:],
     )
-    assert codes(verify(cell, motion, program, fewer)) == {"VERIFY_COUNT"}
+    assert codes(verify(cell, motion, program, incomplete)) == {"VERIFY_COUNT"}
 
 
 @pytest.mark.parametrize("way", CARTESIAN)
 def test_positions_directions_and_speeds_that_are_off_are_caught(planned, way):
     cell, motion = planned
-    program, read = written(cell, motion, way)
+    program, readback = write_program(cell, motion, way)
     for axis in range(3):
-        position = read.position.copy()
+        position = readback.position.copy()
         position[33, axis] += 4.0 * MM
         assert "VERIFY_POINT" in codes(
-            verify(cell, motion, program, dataclasses.replace(read, position=position))
+            verify(cell, motion, program, dataclasses.replace(readback, position=position))
         )
-    speed = read.speed.copy()
+    speed = readback.speed.copy()
     speed[33] += 0.002
-    assert codes(verify(cell, motion, program, dataclasses.replace(read, speed=speed))) == {
+    assert codes(verify(cell, motion, program, dataclasses.replace(readback, speed=speed))) == {
         "VERIFY_SPEED"
     }
     elsewhere = dataclasses.replace(
         program, carried=(program.carried[0] + 0.01, *program.carried[1:])
     )
-    assert "VERIFY_POINT" in codes(verify(cell, motion, elsewhere, read))
+    assert "VERIFY_POINT" in codes(verify(cell, motion, elsewhere, readback))
     if way == "directions":
         for change in (
             lambda d: -d,
             lambda d: d + [5e-6, 0.0, 0.0],
             lambda d: np.full_like(d, np.nan),
         ):
-            direction = read.direction.copy()
+            direction = readback.direction.copy()
             direction[33] = change(direction[33])
             assert "VERIFY_TOOL" in codes(
-                verify(cell, motion, program, dataclasses.replace(read, direction=direction))
+                verify(cell, motion, program, dataclasses.replace(readback, direction=direction))
             )
-        # the length of a vector says nothing
+        # the length of a direction vector does not matter
         scaled = dataclasses.replace(
-            read, direction=2.0 * read.direction, direction_digits=2.0 * read.direction_digits
+            readback,
+            direction=2.0 * readback.direction,
+            direction_digits=2.0 * readback.direction_digits,
         )
         assert verify(cell, motion, program, scaled).issues == ()
     else:
         for axis in np.flatnonzero(~cell.machine.chain.sliding):
-            joints = read.joints.copy()
+            joints = readback.joints.copy()
             joints[33, axis] += 3.0 * RAD
             assert codes(
-                verify(cell, motion, program, dataclasses.replace(read, joints=joints))
+                verify(cell, motion, program, dataclasses.replace(readback, joints=joints))
             ) >= {"VERIFY_JOINT"}
-        nothing = dataclasses.replace(read, joints=None)
+        nothing = dataclasses.replace(readback, joints=None)
         assert codes(verify(cell, motion, program, nothing)) == {"VERIFY_TOOL", "VERIFY_BETWEEN"}
 
 
@@ -269,9 +274,9 @@ def test_the_bound_holds_and_is_tight(planned):
     digits = np.where(slides, 0.0005, math.radians(0.002))
     corners = np.array(list(itertools.product([-1.0, 1.0], repeat=5))) * digits
     for _ in range(20):
-        shown = np.where(slides, rng.uniform(-200, 200, 5), rng.uniform(-2, 2, 5))
-        path, _ = text_path.joint_path(cell, shown[None], digits)
-        tips, tools = cell.tip_in_part(cell.machine.chain.forward(shown + corners))
+        controller_joints = np.where(slides, rng.uniform(-200, 200, 5), rng.uniform(-2, 2, 5))
+        path, _ = text_path.joint_path(cell, controller_joints[None], digits)
+        tips, tools = cell.tip_in_part(cell.machine.chain.forward(controller_joints + corners))
         off = np.linalg.norm(tips - path.position, axis=1).max()
         tilt = np.linalg.norm(tools - path.tool, axis=1).max()
         assert (

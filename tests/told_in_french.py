@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether a message is told in French in full, by a table that is read without the code of the translations."""
+"""Check that a message is fully in French, with a table read independently of the translation
+code."""
 
 import re
 from collections import Counter
@@ -15,12 +16,12 @@ SIGNS = (("&lt;", "<"), ("&gt;", ">"), ("&quot;", '"'), ("&apos;", "'"), ("&amp;
 
 
 def table():
-    """The French of all texts."""
+    """Return the French translation of each text."""
     text = TABLE.read_text(encoding="utf-8")
-    found = re.findall(
+    entries = re.findall(
         r"<source>(.*?)</source>\s*<translation>(.*?)</translation>", text, re.DOTALL
     )
-    return {plain(source): plain(told) for source, told in found}
+    return {plain(source): plain(translation) for source, translation in entries}
 
 
 def plain(text):
@@ -29,8 +30,9 @@ def plain(text):
     return text
 
 
-def untold(text, table):
-    """Templates of a text, and of the texts put into it, that the table does not have; in full for a text that has none."""
+def missing_templates(text, table):
+    """Return the templates of a text and of its nested texts that the table lacks. A plain string
+    counts as one template."""
     if not isinstance(text, Text):
         key = text.strip().replace("{", "{{").replace("}", "}}")
         return (
@@ -38,18 +40,24 @@ def untold(text, table):
             if key in table or len(re.findall(r"[a-z]{2,}", LITERAL.sub("", key))) < 2
             else [text]
         )
-    own = text.template.strip()
-    words = re.findall(r"[a-z]{3,}", LITERAL.sub("", own))
+    template = text.template.strip()
+    words = re.findall(r"[a-z]{3,}", LITERAL.sub("", template))
     inner = [
-        found for value in text.values if isinstance(value, Text) for found in untold(value, table)
+        missing
+        for value in text.values
+        if isinstance(value, Text)
+        for missing in missing_templates(value, table)
     ]
-    return ([own] if words and own not in table else []) + inner
+    return ([template] if words and template not in table else []) + inner
 
 
-def check_told(text, table):
-    """A text has no English left, and its figures are kept."""
-    left = untold(text, table)
-    assert left == [], f"{text}: not in French: {left}"
-    told = in_language(text, lambda template: table.get(template, template))
-    assert Counter(FIGURE.findall(told)) == Counter(FIGURE.findall(text)), (text, told)
-    return told
+def check_french(text, table):
+    """Assert that no part of a text is left in English and that its figures are kept."""
+    missing = missing_templates(text, table)
+    assert missing == [], f"{text}: not in French: {missing}"
+    translation = in_language(text, lambda template: table.get(template, template))
+    assert Counter(FIGURE.findall(translation)) == Counter(FIGURE.findall(text)), (
+        text,
+        translation,
+    )
+    return translation

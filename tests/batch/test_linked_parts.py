@@ -317,7 +317,7 @@ def test_export_of_a_document_that_links_to_another(documents):
 
     def build():
         hall = App.openDocument(str(documents / "hall.FCStd"))
-        with plans.kept():
+        with plans.share_plans():
             cell = api.make_cell(hall, limits="paper")
             feature = api.make_solid_feature(hall, hall.Shown, layer_height=5, chord_error=0.5)
             api.make_toolpath(hall, feature, cell)

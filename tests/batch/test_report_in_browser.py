@@ -16,7 +16,7 @@ from tests.batch.conftest import JOB, Workshop, make_cup
 pytestmark = [
     pytest.mark.long,
     pytest.mark.skipif(
-        browser.found() is None,
+        browser.find_browser() is None,
         reason="there is no Chromium here; on Debian: apt-get install chromium",
     ),
 ]

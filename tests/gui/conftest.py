@@ -333,7 +333,7 @@ def planned_once(request):
     if request.node.get_closest_marker("planned_anew"):
         yield
     else:
-        with plans.kept():
+        with plans.share_plans():
             yield
 
 

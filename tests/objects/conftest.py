@@ -28,7 +28,7 @@ def part(doc):
 @pytest.fixture
 def job(doc, part):
     """All stages, few layers; planned for the first test that asks for it."""
-    with plans.kept():
+    with plans.share_plans():
         cell = api.make_cell(doc, limits="paper")
         feature = api.make_feature(doc, part, layer_height=10)
         toolpath = api.make_toolpath(doc, feature, cell)

@@ -45,7 +45,7 @@ def world(tmp_path_factory):
     Part.makeBox(20, 20, 20).exportStep(str(folder / "cup.step"))
     corners = [f"{x} {y} 10" for x in (0, 5, 10) for y in (0, 5, 10)]
     (folder / "points.xyz").write_text("\n".join(corners * 4) + "\n")
-    with plans.kept():
+    with plans.share_plans():
         cell = api.make_cell(doc, limits="paper")
         feature = api.make_feature(doc, dome, layer_height=15, chord_error=0.5)
         toolpath = api.make_toolpath(doc, feature, cell)
