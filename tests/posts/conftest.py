@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Judges of FANUC listings and VAL 3 applications that share nothing with the posts, and programs to judge."""
+"""Judges of FANUC listings and VAL 3 applications that share no code with the posts, and random
+programs to judge."""
 
 import dataclasses
 import os
@@ -48,10 +49,11 @@ HEADER = [
     r"/MN",
 ]
 SPEED = r"(?:[1-9]\d?%|(?:[1-9]\d{0,3}|[12]\d{4}|3[01]\d{3}|32000)msec|[1-9]\d{0,3}\.\dsec)"
-AHEAD = r"(?: TB(?=.{7}sec) *(?:0\.00|[1-9]?\.(?!00)\d\d)sec,DO\[[1-9]\d*\]=(?:ON|OFF))"  # where it stops alone
+# only before a stop
+TIME_BEFORE = r"(?: TB(?=.{7}sec) *(?:0\.00|[1-9]?\.(?!00)\d\d)sec,DO\[[1-9]\d*\]=(?:ON|OFF))"
 INSTRUCTIONS = [
-    rf"J P\[\d+\] {SPEED} (?:FINE{AHEAD}?|CNT(?:\d\d?|100))    ;",
-    rf"L P\[\d+\] (?:{SPEED}|\d{{1,4}}\.\dmm/sec) (?:FINE{AHEAD}?|CNT(?:\d\d?|100))    ;",
+    rf"J P\[\d+\] {SPEED} (?:FINE{TIME_BEFORE}?|CNT(?:\d\d?|100))    ;",
+    rf"L P\[\d+\] (?:{SPEED}|\d{{1,4}}\.\dmm/sec) (?:FINE{TIME_BEFORE}?|CNT(?:\d\d?|100))    ;",
     r"  U(?:FRAME|TOOL)_NUM=\d+ ;",
     r"  DO\[\d+\]=(?:ON|OFF) ;",
     r"  WAIT(?=.{7}\() *\d*\.\d\d\(sec\) ;",
@@ -73,8 +75,9 @@ POSES = [
 ]
 
 
-def _faults(file, content):
-    """What is not as controllers write it; strict, and for the plain instructions of a path only."""
+def _find_faults(file, content):
+    """Return the differences from what controllers write. Strict, and only for the plain
+    instructions of a path."""
     if content.replace(b"\r\n", b"").count(b"\n") or not content.endswith(b"/END\r\n"):
         yield "line ends"
     lines = content.decode("ascii").split("\r\n")[:-1]
@@ -114,8 +117,9 @@ def _faults(file, content):
 
 @pytest.fixture
 def assert_listings(tmp_path, root):
-    """A function that fails when a file of a program is not as controllers write it."""
-    other = Path(
+    """Return a function that fails if a file of a program is not as a FANUC controller writes
+    it."""
+    shared_check = Path(
         os.environ.get("FANUC_LS_CHECK", root.parent / "shared/recipes/posts/fanuc_ls_check.py")
     )
 
@@ -123,14 +127,14 @@ def assert_listings(tmp_path, root):
         assert not [
             f"{file}: {fault}"
             for file, content in files.items()
-            for fault in _faults(file, content)
+            for fault in _find_faults(file, content)
         ]
-        if other.exists():
+        if shared_check.exists():
             for file, content in files.items():
                 (tmp_path / file).write_bytes(content)
             command = [
                 sys.executable,
-                str(other),
+                str(shared_check),
                 "--style",
                 *(str(tmp_path / file) for file in files),
             ]
@@ -143,19 +147,19 @@ def assert_listings(tmp_path, root):
 def _random_program(seed, motion="joint", continuous=True, **options):
     rng = np.random.default_rng(seed)
     continuous = continuous and motion == "joint"
-    at = rng.uniform(-2.0, 2.0, 6)
+    position = rng.uniform(-2.0, 2.0, 6)
     blocks = []
 
     def moves(kind, layer, bead, count):
-        nonlocal at
+        nonlocal position
         steps = rng.normal(0.0, 0.03, (count, 6))
         if continuous:
             steps[:, 5] = rng.uniform(-3.1, 3.1, count)
-        joints = at + np.cumsum(steps, axis=0)
-        joints[:, :5][rng.random((count, 5)) < 0.1] *= 1e-5  # small values, of both signs
+        joints = position + np.cumsum(steps, axis=0)
+        joints[:, :5][rng.random((count, 5)) < 0.1] *= 1e-5  # small values of both signs
         if not continuous:
             joints = np.clip(joints, -3.1, 3.1)
-        at = joints[-1]
+        position = joints[-1]
         duration = rng.choice([0.0011, 0.05, 0.3, 4.0, 31.9994, 40.0, 3000.0], count) * rng.uniform(
             1.0, 1.05, count
         )
@@ -208,23 +212,24 @@ def _random_program(seed, motion="joint", continuous=True, **options):
 
 @pytest.fixture
 def random_program():
-    """A function that makes a program of a seed, of all kinds of blocks."""
+    """Return a function that builds a random program with all kinds of blocks from a seed."""
     return _random_program
 
 
 @pytest.fixture
 def random_application(random_program):
-    """A function that makes a program a VAL 3 controller can say, of a seed, a motion and a set-up."""
+    """Return a function that builds a random program within VAL 3's abilities from a seed, a motion
+    and a set-up."""
 
     def make(seed, motion="joint", setup="part-on-robot", **options):
-        whole = random_program(seed, motion, continuous=False, **options)
+        program = random_program(seed, motion, continuous=False, **options)
         blocks = []
-        for block in whole.blocks:
+        for block in program.blocks:
             if isinstance(block, Moves):
                 block = dataclasses.replace(block, duration=np.clip(block.duration, 0.3, 4.0))
             blocks.append(block)
         return dataclasses.replace(
-            whole,
+            program,
             setup=setup,
             blocks=tuple(blocks),
             max_speed=(15.0, 14.0, 15.5, 20.0, 16.0, 35.0),
@@ -278,8 +283,9 @@ def _parsed(content):
     return ElementTree.fromstring(text[1:])
 
 
-def _data_faults(file, data):
-    """Types, sizes and attributes of the data; returns type and size by name, yields what is wrong."""
+def _find_data_faults(file, data):
+    """Check types, sizes and attributes of the data. Yield the faults and return type and size by
+    name."""
     for name, (kind, size, values) in data.items():
         if (
             not re.fullmatch(WORD, name)
@@ -290,15 +296,16 @@ def _data_faults(file, data):
             yield f"{file}: {name} is {kind} of size {size} with {len(values)} values"
             continue
         for key, value in enumerate(values):
-            wanted = {"key": str(key)} | ATTRIBUTES[kind]
-            if set(value) != set(wanted) or not all(
-                re.fullmatch(wanted[a], value[a]) for a in wanted
+            expected = {"key": str(key)} | ATTRIBUTES[kind]
+            if set(value) != set(expected) or not all(
+                re.fullmatch(expected[a], value[a]) for a in expected
             ):
                 yield f"{file}: {name} {value}"
 
 
-def _code_faults(file, lines, data):
-    """Statements of the plain kind only, inside their arrays; each point used once, in order."""
+def _find_code_faults(file, lines, data):
+    """Check that the code has plain statements only, which stay inside their arrays and use each
+    point once, in order."""
     if (lines[0], lines[-1]) != ("begin", "end"):
         yield f"{file}: begin and end"
     used, moving, counter = {"jPath": [], "tPath": [], "pPath": []}, False, None
@@ -334,13 +341,13 @@ def _code_faults(file, lines, data):
         yield f"{file}: ends in motion"
 
 
-def _application_faults(project, files):
+def _find_application_faults(project, files):
     folder, name = project.rsplit("/", 1)[0], project.rsplit("/", 1)[1].removesuffix(".pjx")
     root = _parsed(files[project])
     space = VAL3 + "Project/3}"
     listed = [element.get("file") for element in root.iter(space + "Program")]
     datas = [element.get("file") for element in root.iter(space + "Data")]
-    here = {file.rsplit("/", 1)[1] for file in files if file.rsplit("/", 1)[0] == folder}
+    own_files = {file.rsplit("/", 1)[1] for file in files if file.rsplit("/", 1)[0] == folder}
     if (
         folder.rsplit("/", 1)[-1] != name
         or not re.fullmatch(WORD, name)
@@ -350,9 +357,9 @@ def _application_faults(project, files):
     if (
         listed != ["start.pgx", "stop.pgx"]
         or datas != [f"{name}.dtx"]
-        or here != {*listed, *datas, f"{name}.pjx"}
+        or own_files != {*listed, *datas, f"{name}.pjx"}
     ):
-        yield f"{project}: files {listed} {datas} {here}"
+        yield f"{project}: files {listed} {datas} {own_files}"
     aliases = {
         element.get("alias"): element.get("path") for element in root.iter(space + "Library")
     }
@@ -367,7 +374,7 @@ def _application_faults(project, files):
         d.get("name"): (d.get("type"), d.get("size"), [dict(v.attrib) for v in d]) for d in
         _parsed(files[f"{folder}/{name}.dtx"]).iter(space + "Data")
     }  # fmt: skip
-    yield from _data_faults(f"{folder}/{name}.dtx", data)
+    yield from _find_data_faults(f"{folder}/{name}.dtx", data)
     for program in ("start", "stop"):
         element = _parsed(files[f"{folder}/{program}.pgx"])[0]
         code = element.findtext(VAL3 + "Program/2}Code")
@@ -378,7 +385,7 @@ def _application_faults(project, files):
         if set(re.findall(r"(\w+):", re.sub('//.*|"[^"]*"', "", code))) - set(aliases):
             yield f"{folder}/{program}.pgx: a library that is not declared"
         if program == "start":
-            yield from _code_faults(f"{folder}/start.pgx", code.split("\n"), data)
+            yield from _find_code_faults(f"{folder}/start.pgx", code.split("\n"), data)
 
 
 LXML_LINT = """\
@@ -393,12 +400,12 @@ if not schema.validate(etree.parse(sys.argv[4])):
 
 @pytest.fixture
 def assert_applications(tmp_path, root):
-    """A function that fails when the files of a program are not as VAL 3 applications are.
-
-    Where it stands beside the repository, the shared check with its RELAX NG schema is asked too; it calls xmllint, and
-    lxml stands in for that where it is not installed.
-    """
-    other = Path(os.environ.get("VAL3_CHECK", root.parent / "shared/recipes/posts/val3_check.py"))
+    """Return a function that fails if the files of a program are not a valid VAL 3 application. A
+    shared check with its RELAX NG schema runs too if it is next to the repository; it calls
+    xmllint, or lxml where that is missing."""
+    shared_check = Path(
+        os.environ.get("VAL3_CHECK", root.parent / "shared/recipes/posts/val3_check.py")
+    )
     environment = dict(os.environ)
     if not shutil.which("xmllint"):
         (tmp_path / "bin").mkdir()
@@ -416,14 +423,16 @@ def assert_applications(tmp_path, root):
 
     def judge(files):
         projects = [file for file in files if file.endswith(".pjx")]
-        assert not [fault for project in projects for fault in _application_faults(project, files)]
-        if not other.exists() or not can_lint:
+        assert not [
+            fault for project in projects for fault in _find_application_faults(project, files)
+        ]
+        if not shared_check.exists() or not can_lint:
             return
         for file, content in files.items():
             (tmp_path / file).parent.mkdir(parents=True, exist_ok=True)
             (tmp_path / file).write_bytes(content)
         for project in projects:
-            command = [sys.executable, str(other), str(tmp_path / project), "--strict"]
+            command = [sys.executable, str(shared_check), str(tmp_path / project), "--strict"]
             result = subprocess.run(command, capture_output=True, text=True, env=environment)
             assert result.returncode == 0, result.stdout + result.stderr
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Programs of plain numbers for FANUC's post, those of the golden files among them, and its refusals."""
+"""Programs of plain numbers for FANUC's post, including those of the golden files, and its
+refusals."""
 
 import dataclasses
 
@@ -35,7 +36,7 @@ def program(*blocks, name="part", continuous=(False,) * 6, **options):
 
 
 def beads(count, points, layers=1, **options):
-    """Beads of so many points each, each with two rapid moves before it."""
+    """Return beads of `points` points each, each after two rapid moves."""
     blocks = []
     for layer in range(layers):
         blocks.append(LayerStart(layer))
@@ -47,7 +48,7 @@ def beads(count, points, layers=1, **options):
 
 
 def with_tool(of, **more):
-    """The same with the tool on the robot and a platform that stands."""
+    """Return the program with the tool on the robot and a fixed platform."""
     return dataclasses.replace(
         of,
         **{
@@ -101,7 +102,7 @@ GOLDEN_TABLE = program(
 
 
 def early(of, ahead=0.05, **more):
-    """The same with the deposit switched on the moves themselves."""
+    """Return the program with the deposit switched on the moves themselves."""
     blocks = [
         dataclasses.replace(block, lead=0.0, ahead=ahead)
         if isinstance(block, (DepositOn, DepositOff))

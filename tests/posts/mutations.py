@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Kinds of damage to a program's text, one at a random place each; none of them leaves the meaning as it was.
-
-A kind is a pattern and what becomes of one of its matches, or a function of all files. Digits that change in these are never
-the last one of a number: how little of a change is refused is told by SMALLEST.
-"""
+"""Kinds of damage to a program's text, each applied once at a random position; each one changes the
+meaning. A kind is a pattern with a function that changes a match, or a function of all files. It
+never changes the last digit of a number; SMALLEST lists the smallest change of a number that must
+be rejected."""
 
 from __future__ import annotations
 
@@ -18,14 +17,15 @@ NUMBER = r"-?\d*\.\d+"
 
 
 def mutated(files: Files, pattern: str, change: Change, rng: np.random.Generator) -> Files | None:
-    """The files with one match of the pattern, chosen at random, changed; None where there is none, or none that changes."""
-    places = [
+    """Return the files with one random match of the pattern changed. Return None without a match,
+    or if no match changes."""
+    matches = [
         (name, match)
         for name in sorted(files)
         for match in re.finditer(pattern, _text(files, name), re.MULTILINE)
     ]
-    while places:
-        name, match = places.pop(int(rng.integers(len(places))))
+    while matches:
+        name, match = matches.pop(int(rng.integers(len(matches))))
         new = match.expand(change) if isinstance(change, str) else change(match, rng)
         if new != match[0]:
             text = _text(files, name)
@@ -43,7 +43,8 @@ def _text(files: Files, name: str) -> str:
 
 
 def _numbered(name: str, text: str) -> str:
-    """Block numbers that rise again, so that nothing but the damage itself can be found."""
+    """Return the text with consecutive block numbers, so that a reader can find nothing but the
+    damage itself."""
     if not name.endswith((".MPF", ".SPF")):
         return text
     lines, number = [], 0
@@ -55,21 +56,21 @@ def _numbered(name: str, text: str) -> str:
     return "\n".join(lines)
 
 
-# what becomes of a match
+# ---- how a match changes
 
 
 def digit(match: re.Match, rng: np.random.Generator) -> str:
-    """One digit of the first group changed, not the last one."""
+    """Change one digit of the first group, but not its last digit."""
     text, start = match[1], match.start(1) - match.start()
-    places = [k for k, letter in enumerate(text[:-1]) if letter.isdigit()]
-    where = places[int(rng.integers(len(places)))]
-    other = str((int(text[where]) + int(rng.integers(1, 10))) % 10)
-    changed = text[:where] + other + text[where + 1 :]
+    digit_positions = [k for k, letter in enumerate(text[:-1]) if letter.isdigit()]
+    where = digit_positions[int(rng.integers(len(digit_positions)))]
+    new_digit = str((int(text[where]) + int(rng.integers(1, 10))) % 10)
+    changed = text[:where] + new_digit + text[where + 1 :]
     return match[0][:start] + changed + match[0][start + len(text) :]
 
 
-def moved(step: float) -> Change:
-    """The number of the first group moved by a step, with as many digits and as wide."""
+def shift_number(step: float) -> Change:
+    """Shift the number in the first group by a step, with the same digits and width."""
 
     def change(match: re.Match, rng: np.random.Generator) -> str:
         text, start = match[1], match.start(1) - match.start()
@@ -84,8 +85,8 @@ def moved(step: float) -> Change:
     return change
 
 
-def scaled(factor: float) -> Change:
-    """The number of the first group larger by a factor, by 3 of a whole one at least."""
+def scale_number(factor: float) -> Change:
+    """Scale the number in the first group by a factor, and a whole number by at least 3 units."""
 
     def change(match: re.Match, rng: np.random.Generator) -> str:
         text, start = match[1], match.start(1) - match.start()
@@ -96,25 +97,25 @@ def scaled(factor: float) -> Change:
     return change
 
 
-def one_more(match: re.Match, rng: np.random.Generator) -> str:
-    """The whole number of the first group, and one."""
+def increment(match: re.Match, rng: np.random.Generator) -> str:
+    """Increase the whole number in the first group by one."""
     start = match.start(1) - match.start()
     return match[0][:start] + str(int(match[1]) + 1) + match[0][start + len(match[1]) :]
 
 
 def other(*words: str) -> Change:
-    """The first group as another one of the words."""
+    """Replace the first group by another of the words."""
 
     def change(match: re.Match, rng: np.random.Generator) -> str:
         start = match.start(1) - match.start()
-        chosen = [word for word in words if word != match[1]]
-        return match[0][:start] + str(rng.choice(chosen)) + match[0][start + len(match[1]) :]
+        alternatives = [word for word in words if word != match[1]]
+        return match[0][:start] + str(rng.choice(alternatives)) + match[0][start + len(match[1]) :]
 
     return change
 
 
-def negated(match: re.Match, rng: np.random.Generator) -> str:
-    """The number of the first group with another sign; none where it is all but zero."""
+def negate_number(match: re.Match, rng: np.random.Generator) -> str:
+    """Change the sign of the number in the first group; return None for a number near zero."""
     start = match.start(1) - match.start()
     value = match[1].removeprefix("-") if match[1].startswith("-") else f"-{match[1]}"
     return (
@@ -138,25 +139,25 @@ _VALUE = r"(?:J[1-6]|[XYZWPR] )=( *-?\d*\.\d{3})"
 _GROUPED = r"(?:GP2:\r\n[^\n]*\n\tJ1=|(?<=deg,)\tJ2=)( *-?\d*\.\d{3})(?=[^\n]*\r\n\};)"
 _RECORD = r"(P\[\d+\]\{)([^}]*)(\};\s*P\[\d+\]\{)([^}]*)"
 FANUC: dict[str, tuple[str, Change]] = {
-    "a point moved": (_VALUE, moved(0.05)),
+    "a point moved": (_VALUE, shift_number(0.05)),
     "a digit changed": (_VALUE, digit),
-    "a sign changed": (r"(?:J[1-6]|[XYZ] )= *(-?\d*\.\d{3})", negated),
-    "a turn more": (r"J[1-5]=( *-?\d*\.\d{3})", moved(360.0)),
+    "a sign changed": (r"(?:J[1-6]|[XYZ] )= *(-?\d*\.\d{3})", negate_number),
+    "a turn more": (r"J[1-5]=( *-?\d*\.\d{3})", shift_number(360.0)),
     "two points exchanged": (_RECORD, r"\1\4\3\2"),
-    "another group": (r"^   GP(2):", one_more),
+    "another group": (r"^   GP(2):", increment),
     "another group moved": (r"^(DEFAULT_GROUP\t= 1,)1,\*", r"\1*,1"),
     "a group that stands": (r"^(DEFAULT_GROUP\t= 1,)1,", r"\1*,"),
     "a group left out": (r"   GP2:\r\n[^\n]*\n[^\n]*\n", DROP),
-    "an axis of a group moved": (_GROUPED, moved(0.05)),
-    "an axis of a group a turn on": (_GROUPED, moved(360.0)),
+    "an axis of a group moved": (_GROUPED, shift_number(0.05)),
+    "an axis of a group a turn on": (_GROUPED, shift_number(360.0)),
     "an axis of a group left out": (r"(?<=deg),\tJ2=[^\n]*deg(?=\r\n\};)", DROP),
-    "the track moved": (r"\tE1=( *-?\d*\.\d{3})", moved(0.05)),
+    "the track moved": (r"\tE1=( *-?\d*\.\d{3})", shift_number(0.05)),
     "the track left out": (r",\r\n\tE1=[^\n]*mm", DROP),
     "the track in degrees": (r"(\tE1=[^\n]*) mm", r"\1deg"),
-    "another axis called the track": (r"!E1 is the track e(\d)", one_more),
+    "another axis called the track": (r"!E1 is the track e(\d)", increment),
     "no axis called the track": (r"^ *\d+:  !E1 is the track[^\n]*\n", DROP),
-    "another frame of a group": (r"GP2:\r\n\tUF : (\d+)", one_more),
-    "another point named": (_FN + r"[JL] P\[(\d+)\]", one_more),
+    "another frame of a group": (r"GP2:\r\n\tUF : (\d+)", increment),
+    "another point named": (_FN + r"[JL] P\[(\d+)\]", increment),
     "a blend added": (r"FINE(?=    ;)", "CNT100"),
     "a blend of nothing added": (r"FINE(?=    ;)", "CNT0"),
     "a stop added": (r"CNT\d+(?=    ;)", "FINE"),
@@ -166,7 +167,7 @@ FANUC: dict[str, tuple[str, Change]] = {
     "a rapid made linear": (_FN + r"(J)(?= P\[\d+\] \d+msec FINE)", other("L")),
     "an output dropped": (_DO, DROP),
     "an output switched the other way": (r"DO\[1\]=(ON|OFF)", other("ON", "OFF")),
-    "another output": (r"DO\[(1)\]", one_more),
+    "another output": (r"DO\[(1)\]", increment),
     "an output doubled": (_DO, TWICE),
     "two moves swapped": (rf"({_MOVE})({_MOVE})", SWAP),
     "a move and an output swapped": (rf"({_DO})({_MOVE})", SWAP),
@@ -175,14 +176,14 @@ FANUC: dict[str, tuple[str, Change]] = {
     "a move doubled": (_MOVE, TWICE),
     "an approach dropped": (rf"{_MOVE}(?={_DO})", DROP),
     "a retract dropped": (rf"({_FN}  DO\[1\]=OFF ;\r\n){_MOVE}", r"\1"),
-    "a speed changed": (r"(\d+(?:\.\d)?)(?=mm/sec)", scaled(1.1)),
-    "a time changed": (r"(\d+)(?=msec)", scaled(1.1)),
+    "a speed changed": (r"(\d+(?:\.\d)?)(?=mm/sec)", scale_number(1.1)),
+    "a time changed": (r"(\d+)(?=msec)", scale_number(1.1)),
     "a unit of time changed": (r"(msec)", other("sec")),
     "the first move faster": (r"(10)%", other("100", "50")),
     "a wait dropped": (_WAIT, DROP),
-    "a wait changed": (r"WAIT +([.\d]+)\(sec\)", moved(0.2)),
+    "a wait changed": (r"WAIT +([.\d]+)\(sec\)", shift_number(0.2)),
     "an input dropped": (_IN, DROP),
-    "another input": (r"WAIT DI\[(\d+)\]", one_more),
+    "another input": (r"WAIT DI\[(\d+)\]", increment),
     "an input the other way": (r"(?<=DI\[3\]=)ON", "OFF"),
     "a call dropped": (_CLEAN, DROP),
     "another call": (r"CALL CLEAN\b", "CALL CLEAN2"),
@@ -193,11 +194,11 @@ FANUC: dict[str, tuple[str, Change]] = {
     "another shoulder": (r"CONFIG : '[NF] [UD] ([TB])", other("T", "B")),
     "a turn number changed": (r"T, 0, 0, (-?\d)'", other("-2", "-1", "0", "1", "2")),
     "another turn number changed": (r"T, (0), 0, -?\d'", other("-1", "1")),
-    "another frame selected": (r"UFRAME_NUM=(\d+)", one_more),
-    "another tool selected": (r"UTOOL_NUM=(\d+)", one_more),
-    "another frame recorded": (r"UF : (\d+)", one_more),
-    "another tool recorded": (r"UT : (\d+)", one_more),
-    "another layer": (r"!layer (\d+)", one_more),
+    "another frame selected": (r"UFRAME_NUM=(\d+)", increment),
+    "another tool selected": (r"UTOOL_NUM=(\d+)", increment),
+    "another frame recorded": (r"UF : (\d+)", increment),
+    "another tool recorded": (r"UT : (\d+)", increment),
+    "another layer": (r"!layer (\d+)", increment),
     "a part dropped": (r"^ *\d+:  CALL JOB\d+[^\n]*\n", DROP),
     "a part doubled": (r"^ *\d+:  CALL JOB\d+[^\n]*\n", TWICE),
     "parts in another order": (
@@ -205,12 +206,12 @@ FANUC: dict[str, tuple[str, Change]] = {
         SWAP,
     ),
 }
-# of texts that switch the deposit on the move itself
+# for texts that switch the deposit on the move itself
 TRIGGERS: dict[str, dict[str, tuple[str, Change]]] = {
     "fanuc": {
         "a trigger dropped": (_AHEAD, DROP),
         "a trigger doubled": (_AHEAD, TWICE),
-        "a trigger at another time": (r" TB( +\d?\.\d\d)sec", moved(0.05)),
+        "a trigger at another time": (r" TB( +\d?\.\d\d)sec", shift_number(0.05)),
         "a trigger behind the end": (r" (TB) ", other("TA", "DB")),
         "a trigger on the next move": (
             rf"({_AHEAD})(    ;\r\n {{0,3}}\d+:[JL] [^\n;]*?)(?=    ;)",
@@ -221,17 +222,17 @@ TRIGGERS: dict[str, dict[str, tuple[str, Change]]] = {
     "abb": {
         "a trigger dropped": (r"TriggL (\[[^\n]*),v_am\d+,g_o[nf]+\d", r"MoveL \1,v_am\\V:=5.000"),
         "a trigger doubled": (r",(g_o[nf]+\d)(?=,fine)", r",\1\\T2:=\1"),
-        "a trigger at another place": (rf"TriggIO \w+,({NUMBER})", moved(0.05)),
+        "a trigger at another place": (rf"TriggIO \w+,({NUMBER})", shift_number(0.05)),
         "a trigger at a time": (rf"(TriggIO \w+,{NUMBER})", r"\1\\Time"),
         "a trigger from the start": (rf"(TriggIO \w+,{NUMBER})", r"\1\\Start"),
-        "a trigger of another output": (r"TriggIO[^\n]*do(1)", one_more),
+        "a trigger of another output": (r"TriggIO[^\n]*do(1)", increment),
         "a trigger the other way": (r"TriggIO[^\n]*,([01]);", other("0", "1")),
         "another trigger": (r"(g_o[nf]+1)(?=,fine)", other("g_on1", "g_off1")),
         "a trigger that is not set": (r"^    TriggIO[^\n]*\n", DROP),
     },
 }
 
-# machines with rotary axes: what both controllers have in common, and what each has of its own
+# machines with rotary axes: first what both controllers share, then what each adds
 _AXIS = rf"(?: [XYZABC]=?(?:DC\()?)({NUMBER})"
 _SIEMENS_MOVE = r"^N\d+ (?:G9 )?(?:G9[34] )?G1 [^\n]*\n"
 _SIEMENS_RAPID = r"^N\d+ G9 (?:G9[34] )?G1 [^\n]*\n"
@@ -246,12 +247,12 @@ _SWITCH, _DWELL, _LOOP, _CLEANING = (
     )
 )
 SIEMENS: dict[str, tuple[str, Change]] = {
-    "a point moved": (_AXIS, moved(0.05)),
+    "a point moved": (_AXIS, shift_number(0.05)),
     "a digit changed": (_AXIS, digit),
-    "a sign changed": (rf" [XYZAB]({NUMBER})", negated),
-    "a turn more": (rf" [AB]({NUMBER})", moved(360.0)),
-    "a rapid's point moved": (rf"^N\d+ G9 G1 X({NUMBER})", moved(1.0)),
-    "a direction changed": (rf" [ABC]3=({NUMBER})", moved(0.02)),
+    "a sign changed": (rf" [XYZAB]({NUMBER})", negate_number),
+    "a turn more": (rf" [AB]({NUMBER})", shift_number(360.0)),
+    "a rapid's point moved": (rf"^N\d+ G9 G1 X({NUMBER})", shift_number(1.0)),
+    "a direction changed": (rf" [ABC]3=({NUMBER})", shift_number(0.02)),
     "two values exchanged": (rf" X({NUMBER}) Y({NUMBER})", r" X\2 Y\1"),
     "a blend added": (r"G9 (?=(?:G9[34] )?G1)", ""),
     "a stop added": (r"^(N\d+ (?:G9[34] )?)(?=G1 )", r"\1G9 "),
@@ -263,7 +264,7 @@ SIEMENS: dict[str, tuple[str, Change]] = {
     "in inches": (r"\bG710\b", "G700"),
     "an output dropped": (_SWITCH, DROP),
     "an output switched the other way": (r"H1=([01])", other("0", "1")),
-    "another output": (r"H(1)=", one_more),
+    "another output": (r"H(1)=", increment),
     "an output doubled": (_SWITCH, TWICE),
     "two moves swapped": (rf"({_SIEMENS_MOVE})({_SIEMENS_MOVE})", SWAP),
     "a move and an output swapped": (rf"({_SIEMENS_MOVE})({_SWITCH})", SWAP),
@@ -272,29 +273,29 @@ SIEMENS: dict[str, tuple[str, Change]] = {
     "a move doubled": (_SIEMENS_MOVE, TWICE),
     "an approach dropped": (rf"{_SIEMENS_RAPID}(?={_SWITCH}|N\d+ G54)", DROP),
     "a retract dropped": (rf"({_N}H1=0\n(?:N\d+ (?:TRAFOOF|G500|G93)\n)*){_SIEMENS_RAPID}", r"\1"),
-    "a feed changed": (r" F(\d+\.\d+)$", scaled(1.02)),
+    "a feed changed": (r" F(\d+\.\d+)$", scale_number(1.02)),
     "a wait dropped": (_DWELL, DROP),
-    "a wait changed": (r"G4 F([.\d]+)\n(?!N\d+ ENDWHILE)", moved(0.2)),
+    "a wait changed": (r"G4 F([.\d]+)\n(?!N\d+ ENDWHILE)", shift_number(0.2)),
     "an input dropped": (_LOOP, DROP),
-    "another input": (r"\$A_IN\[(\d+)\]", one_more),
+    "another input": (r"\$A_IN\[(\d+)\]", increment),
     "an input the other way": (r"(?<=\$A_IN\[3\]==)0", "1"),
     "a call dropped": (_CLEANING, DROP),
     "another call": (r"CLEAN$", "CLEAN_2"),
     "a call doubled": (_CLEANING, TWICE),
-    "another frame selected": (r"^N\d+ G(54)$", one_more),
+    "another frame selected": (r"^N\d+ G(54)$", increment),
     "a frame for axes": (r"\bG500(?= D1)", "G54"),
-    "another tool selected": (r" D(\d+)$", one_more),
+    "another tool selected": (r" D(\d+)$", increment),
     "a frame dropped": (_N + r"G54\n", DROP),
     "the transformation dropped": (_N + r"TRAORI\n", DROP),
     "the transformation kept": (_N + r"TRAFOOF\n", DROP),
     "directions in another frame": (r"ORIWKS", "ORIMKS"),
-    "another layer": (r"^; layer (\d+)", one_more),
+    "another layer": (r"^; layer (\d+)", increment),
     "a part dropped": (_N + r"JOB\d+\n", DROP),
     "a part doubled": (_N + r"JOB\d+\n", TWICE),
     "parts in another order": (rf"({_N}JOB\d+\n)({_N}JOB\d+\n)", SWAP),
 }
 
-# what is said again before the next move, in another file at the latest, is not in use
+# a word that is stated again before the next move, at the latest in the next file, has no effect
 _USED = r"(?:\n(?!o<|G61|G64)[^\n]*)*?\n(?:G9[34] )?G1 "
 _LINUX_MOVE = r"^(?:G9[34] )?G1 [^\n]*\n"
 _PIN, _G4, _M66, _SUB = (
@@ -304,16 +305,16 @@ _PIN, _G4, _M66, _SUB = (
     r"^o<clean> call\n",
 )
 LINUXCNC: dict[str, tuple[str, Change]] = {
-    "a point moved": (_AXIS, moved(0.05)),
+    "a point moved": (_AXIS, shift_number(0.05)),
     "a digit changed": (_AXIS, digit),
-    "a sign changed": (rf" [XYZAB]({NUMBER})", negated),
-    "a turn more": (rf" [ABC]({NUMBER})", moved(360.0)),
+    "a sign changed": (rf" [XYZAB]({NUMBER})", negate_number),
+    "a turn more": (rf" [ABC]({NUMBER})", shift_number(360.0)),
     "two values exchanged": (rf" X({NUMBER}) Y({NUMBER})", r" X\2 Y\1"),
     "a blend added": (rf"^G61\.1$(?={_USED})", "G64 P0.05000 Q0.05000"),
     "a blend without bounds": (r"^G64 P[.\d]+ Q[.\d]+$", "G64"),
     "a stop added": (r"^G64 P[.\d]+ Q[.\d]+$", "G61.1"),
-    "a blend changed": (r"^G64 P([.\d]+) Q", moved(0.02)),
-    "another blend changed": (r"^G64 P[.\d]+ Q([.\d]+)$", moved(0.02)),
+    "a blend changed": (r"^G64 P([.\d]+) Q", shift_number(0.02)),
+    "another blend changed": (r"^G64 P[.\d]+ Q([.\d]+)$", shift_number(0.02)),
     "a blend dropped": (r"^G64 P[.\d]+ Q[.\d]+\n", DROP),
     "a move's kind changed": (r"\bG1\b", "G0"),
     "another feed": (r"\b(G9[34])\b(?= G1|$)", other("G93", "G94")),
@@ -321,7 +322,7 @@ LINUXCNC: dict[str, tuple[str, Change]] = {
     "in inches": (r"\bG21\b", "G20"),
     "an output dropped": (_PIN, DROP),
     "an output switched the other way": (r"^M6([45]) P0", other("4", "5")),
-    "another output": (r"^M6[45] P(0)", one_more),
+    "another output": (r"^M6[45] P(0)", increment),
     "an output doubled": (_PIN, TWICE),
     "two moves swapped": (rf"({_LINUX_MOVE})({_LINUX_MOVE})", SWAP),
     "a move and an output swapped": (
@@ -333,23 +334,23 @@ LINUXCNC: dict[str, tuple[str, Change]] = {
     "a move doubled": (_LINUX_MOVE, TWICE),
     "an approach dropped": (rf"{_LINUX_MOVE}(?=(?:M428\nG54\n)?G64)", DROP),
     "a retract dropped": (rf"(^G61\.1\n(?:M429\nG59\.3\n)?(?:G93\n)?){_LINUX_MOVE}", r"\1"),
-    "a feed changed": (r" F(\d+\.\d+)$", scaled(1.02)),
+    "a feed changed": (r" F(\d+\.\d+)$", scale_number(1.02)),
     "a wait dropped": (_G4, DROP),
-    "a wait changed": (r"^G4 P([.\d]+)", moved(0.2)),
+    "a wait changed": (r"^G4 P([.\d]+)", shift_number(0.2)),
     "an input dropped": (_M66, DROP),
-    "another input": (r"^M66 P(\d+)", one_more),
+    "another input": (r"^M66 P(\d+)", increment),
     "an input the other way": (r"^(M66 P\d+) L3", r"\1 L4"),
     "a call dropped": (_SUB, DROP),
     "another call": (r"^o<clean> call", "o<clean2> call"),
     "a call doubled": (_SUB, TWICE),
-    "another frame selected": (r"^G(54)$", one_more),
+    "another frame selected": (r"^G(54)$", increment),
     "a frame for axes": (rf"^G59\.3$(?={_USED})", "G54"),
-    "another tool selected": (rf"^G43 H(\d+)(?={_USED})", one_more),
+    "another tool selected": (rf"^G43 H(\d+)(?={_USED})", increment),
     "another kinematics": (r"^M42([89])$", other("8", "9")),
     "the kinematics dropped": (r"^M428\n", DROP),
     "the kinematics kept": (r"(?<=^G61\.1\n)M429\n", DROP),
     "zeros that are none": (r"^(G10 L2 P9) X0", r"\1 X5"),
-    "another layer": (r"^\(layer (\d+)\)", one_more),
+    "another layer": (r"^\(layer (\d+)\)", increment),
     "a part dropped": (r"^o<job\d+> call\n", DROP),
     "a part doubled": (r"^o<job\d+> call\n", TWICE),
     "parts in another order": (r"^(o<job\d+> call\n)(o<job\d+> call\n)", SWAP),
@@ -359,7 +360,7 @@ _PLACE = r"(?<= )(?:j[1-6]|x|y|z|rx|ry|rz)=\"(-?\d+\.\d+)\""
 _POINT = rf"(?<=<Value )key=\"\d+\" (?:j1|x)[^\n]*?{_PLACE}(?=[^\n]*(?:fStation|tCarried\[|/>))"
 _POINTS = r"(?<=<Value )(key=\"\d+\" )((?:j1|x)[^\n]*)(\n *<Value key=\"\d+\" )((?:j1|x)[^\n]*)"
 _LOOP_OF = r"^  for [^\n]*\n[^\n]*\n  endFor\n  waitEndMove\(\)\n"
-_DEPOSIT, _DELAY, _READY, _GONE = (
+_DEPOSIT, _DELAY, _READY_WORD, _REMOVED = (
     rf"^  {word}\n"
     for word in (
         r"doDeposit=(?:true|false)",
@@ -369,24 +370,24 @@ _DEPOSIT, _DELAY, _READY, _GONE = (
     )
 )
 STAUBLI: dict[str, tuple[str, Change]] = {
-    "a point moved": (rf"key=\"\d+\" j1[^\n]*?{_PLACE}", moved(0.05)),
+    "a point moved": (rf"key=\"\d+\" j1[^\n]*?{_PLACE}", shift_number(0.05)),
     "a position moved": (
         r"key=\"\d+\" x=\"(-?\d+\.\d+)\"[^\n]*(?=fStation|tCarried\[)",
-        moved(0.05),
+        shift_number(0.05),
     ),
     "an angle of a position moved": (
         r"ry=\"(-?\d+\.\d+)\"(?=[^\n]*(?:fStation|tCarried\[))",
-        moved(0.05),
+        shift_number(0.05),
     ),
     "a digit changed": (r" j[1-6]=\"(-?\d+\.\d+)\"", digit),
-    "a sign changed": (r" j[1-6]=\"(-?\d+\.\d+)\"", negated),
-    "a turn more": (r" j[1-6]=\"(-?\d+\.\d+)\"", moved(360.0)),
+    "a sign changed": (r" j[1-6]=\"(-?\d+\.\d+)\"", negate_number),
+    "a turn more": (r" j[1-6]=\"(-?\d+\.\d+)\"", shift_number(360.0)),
     "two points exchanged": (_POINTS, r"\1\4\3\2"),
-    "a rapid's point moved": (r" j1=\"(-?\d+\.\d+)\"", moved(1.0)),
-    "a loop begins later": (r"^  for l_nI=(\d+) to", one_more),
-    "a loop ends later": (r"^  for l_nI=\d+ to (\d+)", one_more),
-    "another point named": (r"\[(\d+)\],(?:tCarried|mPath)", one_more),
-    "another speed named": (r"mPath\[(\d+)\]", one_more),
+    "a rapid's point moved": (r" j1=\"(-?\d+\.\d+)\"", shift_number(1.0)),
+    "a loop begins later": (r"^  for l_nI=(\d+) to", increment),
+    "a loop ends later": (r"^  for l_nI=\d+ to (\d+)", increment),
+    "another point named": (r"\[(\d+)\],(?:tCarried|mPath)", increment),
+    "another speed named": (r"mPath\[(\d+)\]", increment),
     "a blend added": (
         r"blend=\"off\" leave=\"0.000\" reach=\"0.000\"",
         'blend="joint" leave="5.000" reach="5.000"',
@@ -399,7 +400,7 @@ STAUBLI: dict[str, tuple[str, Change]] = {
         r"blend=\"(joint|Cartesian)\" leave=\"[.\d]+\" reach=\"[.\d]+\"",
         r'blend="\1" leave="7.000" reach="7.000"',
     ),
-    "a blend that leaves earlier": (r"leave=\"((?!0\.000)[.\d]+)\"", scaled(1.5)),
+    "a blend that leaves earlier": (r"leave=\"((?!0\.000)[.\d]+)\"", scale_number(1.5)),
     "another acceleration": (r"accel=\"(100)\"", other("150", "50")),
     "another deceleration": (r"decel=\"(100)\"", other("150", "50")),
     "a limit of speed": (
@@ -409,31 +410,31 @@ STAUBLI: dict[str, tuple[str, Change]] = {
     "a move's kind changed": (r"^ *move([jl])\(", other("j", "l")),
     "an output dropped": (_DEPOSIT, DROP),
     "an output switched the other way": (r"doDeposit=(true|false)", other("true", "false")),
-    "another output": (r"%Q(\d+)", one_more),
+    "another output": (r"%Q(\d+)", increment),
     "an output doubled": (_DEPOSIT, TWICE),
     "two moves swapped": (rf"({_LOOP_OF})({_DEPOSIT})", SWAP),
     "an output and a wait swapped": (rf"({_DEPOSIT})({_DELAY})", SWAP),
     "moves dropped": (_LOOP_OF, DROP),
     "moves doubled": (_LOOP_OF, TWICE),
     "an end of motion dropped": (r"^  waitEndMove\(\)\n(?=  (?:doDeposit|delay))", DROP),
-    "a speed changed": (r"tmax=\"((?!99999)[.\d]+)\"", scaled(1.02)),
-    "a share of speed changed": (r"vel=\"(\d+\.\d+)\"", scaled(0.9)),
-    "the first move faster": (r"key=\"0\" accel=\"100\" vel=\"(10\.00000)\"", scaled(5.0)),
+    "a speed changed": (r"tmax=\"((?!99999)[.\d]+)\"", scale_number(1.02)),
+    "a share of speed changed": (r"vel=\"(\d+\.\d+)\"", scale_number(0.9)),
+    "the first move faster": (r"key=\"0\" accel=\"100\" vel=\"(10\.00000)\"", scale_number(5.0)),
     "a wait dropped": (_DELAY, DROP),
-    "a wait changed": (r"delay\(([.\d]+)\)", moved(0.2)),
-    "an input dropped": (_READY, DROP),
-    "another input": (r"%I(\d+)", one_more),
+    "a wait changed": (r"delay\(([.\d]+)\)", shift_number(0.2)),
+    "an input dropped": (_READY_WORD, DROP),
+    "another input": (r"%I(\d+)", increment),
     "an input the other way": (r"(?<=diInput3==)true", "false"),
-    "a call dropped": (_GONE, DROP),
+    "a call dropped": (_REMOVED, DROP),
     "another call": (r"call clean:start", "call clean:stop"),
-    "a call doubled": (_GONE, TWICE),
-    "another frame": (r"x=\"(-?\d+\.\d+)\"(?=[^\n]*world)", moved(0.5)),
+    "a call doubled": (_REMOVED, TWICE),
+    "another frame": (r"x=\"(-?\d+\.\d+)\"(?=[^\n]*world)", shift_number(0.5)),
     "another configuration": (r"wrist=\"wsame\"", 'wrist="wpositive"'),
     "another elbow": (r"elbow=\"esame\"", 'elbow="enegative"'),
     "stopping leaves the deposit on": (r"(resetMotion\(\)\n)  doDeposit=false\n", r"\1"),
     "stopping does not stop": (r"  resetMotion\(\)\n", DROP),
     "in inches": (r"millimeterUnit=\"true\"", 'millimeterUnit="false"'),
-    "another layer": (r"^  // layer (\d+)", one_more),
+    "another layer": (r"^  // layer (\d+)", increment),
     "parts in another order": (r"libLoad\(\"\./job0(\d)\"\)", other("1", "2", "3", "4")),
 }
 
@@ -455,12 +456,12 @@ _UR_MOVE, _UR_OUT, _UR_SLEEP, _UR_WHILE, _UR_CALL = (
 )
 _UR_BLEND = r"r=(0\.\d*[1-9]\d*)\)$"
 UR: dict[str, tuple[str, Change]] = {
-    "a point moved": (_UR_JOINT, moved(0.001)),
-    "a position moved": (_UR_PLACE, moved(0.00005)),
-    "an angle of a position moved": (_UR_ANGLE, moved(0.001)),
+    "a point moved": (_UR_JOINT, shift_number(0.001)),
+    "a position moved": (_UR_PLACE, shift_number(0.00005)),
+    "an angle of a position moved": (_UR_ANGLE, shift_number(0.001)),
     "a digit changed": (_UR_JOINT, digit),
-    "a sign changed": (_UR_JOINT, negated),
-    "a turn more": (_UR_JOINT, moved(6.2831853)),
+    "a sign changed": (_UR_JOINT, negate_number),
+    "a turn more": (_UR_JOINT, shift_number(6.2831853)),
     "two points exchanged": (r"(movej\(\[)([^\]]*)(\][^\n]*\n +movej\(\[)([^\]]*)", r"\1\4\3\2"),
     "two positions exchanged": (
         r"(movep\([^\[]*\[)([^\]]*)(\][^\n]*\n +movep\([^\[]*\[)([^\]]*)",
@@ -468,19 +469,19 @@ UR: dict[str, tuple[str, Change]] = {
     ),
     "a blend added": (r"r=0\.000000(?=\)$)", "r=0.005000"),
     "a stop added": (_UR_BLEND, "r=0.000000)"),
-    "a blend changed": (_UR_BLEND, scaled(1.5)),
-    "a blend that overlaps": (_UR_BLEND, scaled(3.0)),
+    "a blend changed": (_UR_BLEND, scale_number(1.5)),
+    "a blend that overlaps": (_UR_BLEND, scale_number(3.0)),
     "a move's kind changed": (r"move(?:p|j(?=\(\[))", "movel"),
     "another acceleration": (r"a=(1\.[24])", other("0.1", "2.0")),
     "another speed of joints": (r"v=(1\.05)", other("0.10", "2.00")),
-    "a time changed": (r"t=(\d+\.\d+)", scaled(1.02)),
+    "a time changed": (r"t=(\d+\.\d+)", scale_number(1.02)),
     "a time dropped": (r" t=\d+\.\d+,", DROP),
     "no time": (r"t=\d+\.\d+", "t=0.000000"),
     "the first move faster": (r"t=(10\.000000)", other("1.000000", "0.500000")),
-    "a speed changed": (r"v=(0\.00\d+)", scaled(1.02)),
+    "a speed changed": (r"v=(0\.00\d+)", scale_number(1.02)),
     "an output dropped": (_UR_OUT, DROP),
     "an output switched the other way": (r"out\(\d, (True|False)\)", other("True", "False")),
-    "another output": (r"out\((0),", one_more),
+    "another output": (r"out\((0),", increment),
     "an output of another kind": (r"set_(standard)_digital", other("configurable", "tool")),
     "an output doubled": (_UR_OUT, TWICE),
     "two moves swapped": (rf"({_UR_MOVE})({_UR_MOVE})", SWAP),
@@ -491,25 +492,25 @@ UR: dict[str, tuple[str, Change]] = {
     "an approach dropped": (rf"{_UR_MOVE}(?={_UR_OUT})", DROP),
     "a retract dropped": (rf"(^ +set_[^\n]*False\)\n){_UR_MOVE}", r"\1"),
     "a wait dropped": (_UR_SLEEP, DROP),
-    "a wait changed": (r"sleep\(((?!0\.010)[.\d]+)\)", moved(0.2)),
+    "a wait changed": (r"sleep\(((?!0\.010)[.\d]+)\)", shift_number(0.2)),
     "an input dropped": (_UR_WHILE, DROP),
-    "another input": (r"digital_in\((\d)\)", one_more),
+    "another input": (r"digital_in\((\d)\)", increment),
     "an input the other way": (r"(?<=digital_in\(2\) == )False", "True"),
     "an input that is not waited for": (r"(?<=sleep\()0\.010", "0.000"),
     "a call dropped": (_UR_CALL, DROP),
     "another call": (r"\bclean\(\)", "clean2()"),
     "a call doubled": (_UR_CALL, TWICE),
     "a wait and a call swapped": (rf"({_UR_WHILE})({_UR_CALL})", SWAP),
-    "another platform": (rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{0,5}}\]\n)", moved(0.001)),
-    "another tool": (rf"set_tcp\(p\[(?:{_UR_N}, ){{0,2}}({_UR_N})", moved(0.05)),
+    "another platform": (rf"(?<![.\d-])({_UR_N})(?=(?:, {_UR_N}){{0,5}}\]\n)", shift_number(0.001)),
+    "another tool": (rf"set_tcp\(p\[(?:{_UR_N}, ){{0,2}}({_UR_N})", shift_number(0.05)),
     "no platform": (r"^ +global platform[^\n]*\n", DROP),
     "no tool": (r"^ +set_tcp[^\n]*\n", DROP),
     "another frame named": (r"pose_trans\(platform", "pose_trans(base"),
-    "another layer": (r"^ +# layer (\d+)", one_more),
+    "another layer": (r"^ +# layer (\d+)", increment),
     "a part dropped": (r"^  job\d+\(\)\n", DROP),
     "a part doubled": (r"^  job\d+\(\)\n", TWICE),
     "parts in another order": (r"^(  job\d+\(\)\n)(  job\d+\(\)\n)", SWAP),
-    "a part of another name": (r"^  def job(0)\d\(\):", one_more),
+    "a part of another name": (r"^  def job(0)\d\(\):", increment),
     "no end": (r"^end\n", DROP),
 }
 
@@ -527,19 +528,19 @@ _YA_MOVE, _YA_OUT, _YA_TIMER, _YA_IN, _YA_CALL, _YA_PART = (
 
 
 def next_position(match: re.Match, rng: np.random.Generator) -> str:
-    """The position after the one named."""
+    """Return the position after the named one."""
     return f"{match[1]}{int(match[2]) + 1:05d}"
 
 
 YASKAWA: dict[str, tuple[str, Change]] = {
-    "a point moved": (r"^C\d{5}=[^\r]*,(-?\d+)(?=\r)", moved(30.0)),
-    "another axis moved": (r"^C\d{5}=-?\d+,(-?\d+)", moved(30.0)),
+    "a point moved": (r"^C\d{5}=[^\r]*,(-?\d+)(?=\r)", shift_number(30.0)),
+    "another axis moved": (r"^C\d{5}=-?\d+,(-?\d+)", shift_number(30.0)),
     "a digit changed": (r"^C\d{5}=(?:-?\d+,){2}(-?\d{3,})", digit),
-    "a sign changed": (r"^C\d{5}=(?:-?\d+,){4}(-?\d{3,})", negated),
-    "a turn more": (r"^C\d{5}=(-?\d+)", moved(516708.0)),
+    "a sign changed": (r"^C\d{5}=(?:-?\d+,){4}(-?\d{3,})", negate_number),
+    "a turn more": (r"^C\d{5}=(-?\d+)", shift_number(516708.0)),
     "two points exchanged": (r"^(C\d{5}=)([^\r]*)(\r\nC\d{5}=)([^\r]*)", r"\1\4\3\2"),
     "another point named": (r"^(MOV[JL] C)(\d{5})", next_position),
-    "a point too many": (r"^///NPOS ([1-9]\d*)", one_more),
+    "a point too many": (r"^///NPOS ([1-9]\d*)", increment),
     "a blend added": (r"PL=0(?=\r)", "PL=8"),
     "a stop added": (r"PL=8(?=\r)", "PL=0"),
     "a blend changed": (r"PL=8(?=\r)", "PL=4"),
@@ -547,12 +548,12 @@ YASKAWA: dict[str, tuple[str, Change]] = {
     "a move's kind changed": (r"^MOV([JL])", other("J", "L", "C", "S")),
     "a rapid made linear": (r"^MOVJ (C\d{5}) VJ=[\d.]+ PL=0", r"MOVL \1 V=8.0 PL=0"),
     "another acceleration": (r"(PL=\d)(?=\r)", r"\1 ACC=20"),
-    "a share of speed changed": (r"VJ=(\d+\.\d\d)", scaled(1.1)),
-    "a speed changed": (r"V=(\d+\.\d)", scaled(1.1)),
+    "a share of speed changed": (r"VJ=(\d+\.\d\d)", scale_number(1.1)),
+    "a speed changed": (r"V=(\d+\.\d)", scale_number(1.1)),
     "the first move faster": (r"VJ=(10\.00)", other("50.00", "100.00")),
     "an output dropped": (_YA_OUT, DROP),
     "an output switched the other way": (r"^DOUT OT#\(1\) (ON|OFF)", other("ON", "OFF")),
-    "another output": (r"OT#\((1)\)", one_more),
+    "another output": (r"OT#\((1)\)", increment),
     "an output doubled": (_YA_OUT, TWICE),
     "two moves swapped": (rf"({_YA_MOVE})({_YA_MOVE})", SWAP),
     "a move and an output swapped": (rf"({_YA_OUT})({_YA_MOVE})", SWAP),
@@ -562,31 +563,31 @@ YASKAWA: dict[str, tuple[str, Change]] = {
     "an approach dropped": (rf"{_YA_MOVE}(?=DOUT)", DROP),
     "a retract dropped": (rf"(^DOUT OT#\(1\) OFF\r\n){_YA_MOVE}", r"\1"),
     "a wait dropped": (_YA_TIMER, DROP),
-    "a wait changed": (r"TIMER T=([.\d]+)", moved(0.2)),
+    "a wait changed": (r"TIMER T=([.\d]+)", shift_number(0.2)),
     "an input dropped": (_YA_IN, DROP),
-    "another input": (r"IN#\((\d+)\)", one_more),
+    "another input": (r"IN#\((\d+)\)", increment),
     "an input the other way": (r"(?<=IN#\(3\)=)ON", "OFF"),
     "a call dropped": (_YA_CALL, DROP),
     "another call": (r"JOB:CLEAN", "JOB:CLEAN2"),
     "a call doubled": (_YA_CALL, TWICE),
     "a wait and a call swapped": (rf"({_YA_TIMER})({_YA_IN})({_YA_CALL})", r"\3\2\1"),
-    "the track moved": (r"^BC\d{5}=(-?\d+)", moved(30.0)),
+    "the track moved": (r"^BC\d{5}=(-?\d+)", shift_number(30.0)),
     "another place of the track named": (r"^(MOVJ C\d{5} BC)(\d{5})", next_position),
     "no place of the track named": (r"^(MOVJ C\d{5}) BC\d{5}", r"\1"),
     "the track of no group": (r"RB1,BS1", "RB1"),
     "the track taken for a turning axis": (r"^'pulses/(mm) E\d", other("deg")),
-    "another ratio of the track": (r"^'pulses/mm E\d (-?\d+\.\d+)", moved(0.5)),
+    "another ratio of the track": (r"^'pulses/mm E\d (-?\d+\.\d+)", shift_number(0.5)),
     "no ratio of the track": (r"^'pulses/mm [^\r]*\r\n", DROP),
-    "another tool": (r"^///TOOL (\d+)", one_more),
-    "another ratio": (r"^'pulses/deg [SLURBT] (-?\d+\.\d+)", moved(0.5)),
-    "a ratio of the other sign": (r"^'pulses/deg [SLURBT] (-?\d+\.\d+)", negated),
+    "another tool": (r"^///TOOL (\d+)", increment),
+    "another ratio": (r"^'pulses/deg [SLURBT] (-?\d+\.\d+)", shift_number(0.5)),
+    "a ratio of the other sign": (r"^'pulses/deg [SLURBT] (-?\d+\.\d+)", negate_number),
     "no ratio": (r"^'pulses/deg [SLURBT] [^\r]*\r\n", DROP),
     "another unit": (r"^'V in (mm/s)", other("cm/min", "mm/min")),
     "positions of another kind": (r"^///PULSE", "///RECTAN"),
     "positions in another frame": (r"^///POSTYPE (PULSE)", other("USER", "BASE")),
     "a relative job": (r"SC,RW(?=\r)", "SC,RW,RJ"),
-    "another robot": (r"^///GROUP1 RB(1)", one_more),
-    "another layer": (r"^'layer (\d+)", one_more),
+    "another robot": (r"^///GROUP1 RB(1)", increment),
+    "another layer": (r"^'layer (\d+)", increment),
     "no end": (r"^END\r\n", DROP),
     "a part dropped": (_YA_PART, DROP),
     "a part doubled": (_YA_PART, TWICE),
@@ -603,19 +604,19 @@ _AXIS_ABB = rf"^    MoveAbsJ \[\[(?:{NUMBER},){{0,5}}?({NUMBER})"
 _PLACE_ABB = rf"^    MoveL \[\[(?:{NUMBER},){{0,2}}?({NUMBER})"
 _TURN_ABB = rf"^    MoveL \[\[[^]]*\],\[(?:{NUMBER},){{0,3}}?({NUMBER})"
 _BESIDE_ABB = rf"\[(?:{NUMBER},)?({NUMBER})(?:,{NUMBER})?,9E9,9E9"
-_IN_USE = r"(?=[\s\S]*MoveL )"  # frames: of joint moves they do not tell where these lead
+_IN_USE = r"(?=[\s\S]*MoveL )"  # frames: joint moves do not depend on them
 _PART_ABB = r"    Load [^\n]*\n    %[^\n]*\n    UnLoad [^\n]*\n"
 ABB: dict[str, tuple[str, Change]] = {
-    "a point moved": (_AXIS_ABB, moved(0.05)),
-    "a position moved": (_PLACE_ABB, moved(0.05)),
+    "a point moved": (_AXIS_ABB, shift_number(0.05)),
+    "a position moved": (_PLACE_ABB, shift_number(0.05)),
     "an orientation turned": (
         r"^    MoveL \[\[[^]]*\],\[(\S+?),(\S+?),",
         r"    MoveL [[0.000,0.000,0.000],[\2,\1,",
     ),
-    "a number of an orientation": (_TURN_ABB, moved(0.001)),
+    "a number of an orientation": (_TURN_ABB, shift_number(0.001)),
     "a digit changed": (_AXIS_ABB, digit),
-    "a sign changed": (_AXIS_ABB, negated),
-    "a turn more": (_AXIS_ABB, moved(360.0)),
+    "a sign changed": (_AXIS_ABB, negate_number),
+    "a turn more": (_AXIS_ABB, shift_number(360.0)),
     "two points exchanged": (rf"({_MOVE_ABB})({_MOVE_ABB})", SWAP),
     "a blend added": (r"(?<=,)fine(?=,)", "z_am1"),
     "a stop added": (r"(?<=,)z_am\d+(?=,t_am)", "fine"),
@@ -628,8 +629,8 @@ ABB: dict[str, tuple[str, Change]] = {
     "another zone": (r"(?<=,)z_am(\d+)(?=,t_am)", lambda match, rng: f"z{match[1]}"),
     "a move's kind changed": (r"^    Move(AbsJ|L) ", other("AbsJ", "L")),
     "external axes": (r"\[9E9,9E9", "[0,9E9"),
-    "an external axis moved": (_BESIDE_ABB, moved(0.05)),
-    "an external axis a turn on": (_BESIDE_ABB, moved(360.0)),
+    "an external axis moved": (_BESIDE_ABB, shift_number(0.05)),
+    "an external axis a turn on": (_BESIDE_ABB, shift_number(360.0)),
     "another axis called the track": (r"! eax_([a-c]) is the track", other("a", "b", "c")),
     "no axis called the track": (r"^  ! eax_[a-f] is the track[^\n]*\n", DROP),
     "an external axis of another letter": (rf"\[({NUMBER},{NUMBER}),9E9", r"[9E9,\1"),
@@ -641,7 +642,7 @@ ABB: dict[str, tuple[str, Change]] = {
     "a frame of the user on a unit": (r"(?<=\"STN1\",)\[\[0,0,0\]", "[[0,0,5]"),
     "a work object on a unit moved": (
         rf"STN1\",\[\[0,0,0\],\[1,0,0,0\]\],\[\[({NUMBER}){_IN_USE}",
-        moved(0.5),
+        shift_number(0.5),
     ),
     "a work object that no unit moves": (r"FALSE,\"STN1\"", 'TRUE,""'),
     "a configuration": (r"\[0,0,0,0\]", "[-1,0,0,1]"),
@@ -650,7 +651,7 @@ ABB: dict[str, tuple[str, Change]] = {
     "configurations supervised by a word": (rf"ConfL\\Off{_IN_USE}", r"ConfL\\On"),
     "an output dropped": (_SETDO, DROP),
     "an output switched the other way": (r"SetDO do1,([01])", other("0", "1")),
-    "another output": (r"SetDO do(1)", one_more),
+    "another output": (r"SetDO do(1)", increment),
     "an output doubled": (_SETDO, TWICE),
     "a move and an output swapped": (rf"({_SETDO})({_MOVE_ABB})", SWAP),
     "an output and a wait swapped": (rf"({_SETDO})({_WAITTIME})", SWAP),
@@ -658,23 +659,26 @@ ABB: dict[str, tuple[str, Change]] = {
     "a move doubled": (_MOVE_ABB, TWICE),
     "an approach dropped": (rf"{_MOVE_ABB}(?={_SETDO})", DROP),
     "a retract dropped": (rf"(^    SetDO do1,0;\r\n){_MOVE_ABB}", r"\1"),
-    "a speed changed": (r"\\V:=([.\d]+)", scaled(1.02)),
-    "a time changed": (r"\\T:=([.\d]+)", scaled(1.02)),
+    "a speed changed": (r"\\V:=([.\d]+)", scale_number(1.02)),
+    "a time changed": (r"\\T:=([.\d]+)", scale_number(1.02)),
     "a time for a speed": (r"\\(V):=", other("T")),
     "another speed named": (r"(v_am)\\", other("v100")),
     "a speed that turns slower": (r"(?<=v_am:=\[1000,)500", "5"),
     "the first move faster": (r"\\T:=(10\.00000)", other("1.00000")),
     "a wait dropped": (_WAITTIME, DROP),
-    "a wait changed": (r"WaitTime ([.\d]+)", moved(0.2)),
+    "a wait changed": (r"WaitTime ([.\d]+)", shift_number(0.2)),
     "an input dropped": (_WAITDI, DROP),
-    "another input": (r"WaitDI di(\d+)", one_more),
+    "another input": (r"WaitDI di(\d+)", increment),
     "an input the other way": (r"(?<=WaitDI di3,)1", "0"),
     "a call dropped": (_CLEAN_ABB, DROP),
     "another call": (r"^    clean;", "    clean2;"),
     "a call doubled": (_CLEAN_ABB, TWICE),
     "a wait and a call swapped": (rf"({_WAITTIME})({_WAITDI})({_CLEAN_ABB})", r"\3\2\1"),
-    "another tool": (rf"tooldata t_am:=\[\w+,\[\[({NUMBER}){_IN_USE}", moved(0.5)),
-    "another work object": (rf"wobjdata w_am:=\[\w+,TRUE,\"\",\[\[({NUMBER}){_IN_USE}", moved(0.5)),
+    "another tool": (rf"tooldata t_am:=\[\w+,\[\[({NUMBER}){_IN_USE}", shift_number(0.5)),
+    "another work object": (
+        rf"wobjdata w_am:=\[\w+,TRUE,\"\",\[\[({NUMBER}){_IN_USE}",
+        shift_number(0.5),
+    ),
     "a work object moved": (
         r"\[\[0,0,0\],\[1,0,0,0\]\](?=\];\r\n[\s\S]*MoveL )",
         "[[0,0,1],[1,0,0,0]]",
@@ -692,7 +696,7 @@ ABB: dict[str, tuple[str, Change]] = {
     "another tool named": (r",(t_am)\\WObj", other("tool0")),
     "another work object named": (r"WObj:=(w_am);", other("wobj0")),
     "no work object": (r"\\WObj:=w_am", ""),
-    "another layer": (r"! layer (\d+)", one_more),
+    "another layer": (r"! layer (\d+)", increment),
     "a part dropped": (rf"^{_PART_ABB}", DROP),
     "a part doubled": (rf"^{_PART_ABB}", TWICE),
     "parts in another order": (rf"^({_PART_ABB})({_PART_ABB})", SWAP),
@@ -711,42 +715,42 @@ _K_AXIS = rf"(?<=A\d )({NUMBER})"
 _K_BESIDE = rf"(?<=E\d )({NUMBER})"
 _K_PLACE, _K_ANGLE = (rf"(?<=[{letters}] )({NUMBER})(?=[^\n]*\}})" for letters in ("XYZ", "ABC"))
 KUKA: dict[str, tuple[str, Change]] = {
-    "a point moved": (_K_AXIS, moved(0.05)),
-    "a position moved": (_K_PLACE, moved(0.05)),
-    "an angle of a position moved": (_K_ANGLE, moved(0.05)),
+    "a point moved": (_K_AXIS, shift_number(0.05)),
+    "a position moved": (_K_PLACE, shift_number(0.05)),
+    "an angle of a position moved": (_K_ANGLE, shift_number(0.05)),
     "a digit changed": (_K_AXIS, digit),
-    "a sign changed": (_K_AXIS, negated),
-    "a turn more": (_K_AXIS, moved(360.0)),
+    "a sign changed": (_K_AXIS, negate_number),
+    "a turn more": (_K_AXIS, shift_number(360.0)),
     "two moves swapped": (rf"({_K_MOVE})({_K_MOVE})", SWAP),
     "a blend added": (r"^(LIN [^\r}]*\})(?=\r)", r"\1 C_DIS"),
     "a blend of joints added": (r"^(PTP [^\r]*)(?=\r)", r"\1 C_PTP"),
     "a stop added": (r" C_DIS", ""),
-    "a blend changed": (r"CDIS=([.\d]+)", scaled(1.5)),
+    "a blend changed": (r"CDIS=([.\d]+)", scale_number(1.5)),
     "a blend dropped": (r"^\$APO[^\n]*\n(?=\$VEL)", DROP),
     "another blend": (r"C_DIS", "C_VEL"),
     "a move's kind changed": (r"^(PTP|LIN)", other("PTP", "LIN", "SLIN", "PTP_REL")),
     "an axis left out": (r",A6 [-.\d]+", DROP),
     "an external axis": (r"(?<=\d)\}", ",E1 5.0}"),
-    "an external axis moved": (_K_BESIDE, moved(0.05)),
-    "an external axis a turn on": (_K_BESIDE, moved(360.0)),
+    "an external axis moved": (_K_BESIDE, shift_number(0.05)),
+    "an external axis a turn on": (_K_BESIDE, shift_number(360.0)),
     "an external axis left out": (r",E2 [-.\d]+", DROP),
-    "another external axis": (r",E(2) ", one_more),
+    "another external axis": (r",E(2) ", increment),
     "external axes exchanged": (rf"E1 ({NUMBER}),E2 ({NUMBER})", r"E1 \2,E2 \1"),
-    "another axis called the track": (r"^; E(\d) is the track", one_more),
+    "another axis called the track": (r"^; E(\d) is the track", increment),
     "no axis called the track": (r"^; E\d is the track[^\n]*\n", DROP),
-    "another mechanism": (r"^\$BASE[^\n]*MACHINE_DEF\[(2)\]", one_more),
+    "another mechanism": (r"^\$BASE[^\n]*MACHINE_DEF\[(2)\]", increment),
     "another mechanism altogether": (
         r"MACHINE_DEF\[2\]([^\n]*)MACHINE_DEF\[2\]",
         r"MACHINE_DEF[3]\1MACHINE_DEF[3]",
     ),
-    "another base of the mechanism": (r"MECH_TYPE,BASE_DATA\[(1)\]", one_more),
+    "another base of the mechanism": (r"MECH_TYPE,BASE_DATA\[(1)\]", increment),
     "no mechanism": (r"^\$BASE=EK[^\n]*\n", DROP),
     "a mechanism that is let go": (r"^(\$BASE=EK[^\n]*\n)", r"\1BAS(#BASE,1)\r\n"),
     "a slower external axis": (r"VEL_EXTAX\[[12]\]=(\d+)", other("1", "50")),
     "an external axis as slow as before": (r"^\$VEL_EXTAX\[2\]=100\r\n", DROP),
     "an output dropped": (_K_OUT, DROP),
     "an output switched the other way": (r"^\$OUT\[1\]=(TRUE|FALSE)", other("TRUE", "FALSE")),
-    "another output": (r"^\$OUT\[(1)", one_more),
+    "another output": (r"^\$OUT\[(1)", increment),
     "an output doubled": (_K_OUT, TWICE),
     "a move and an output swapped": (
         rf"({_K_OUT})((?:WAIT[^\n]*\n|\$[AV][^\n]*\n|BAS[^\n]*\n)*{_K_MOVE[1:]})",
@@ -758,25 +762,25 @@ KUKA: dict[str, tuple[str, Change]] = {
     "a move doubled": (_K_MOVE, TWICE),
     "an approach dropped": (rf"{_K_MOVE}(?=WAIT SEC 0\r\n\$OUT\[1\]=TRUE)", DROP),
     "a retract dropped": (rf"(^\$OUT\[1\]=FALSE\r\n(?:BAS[^\n]*\n)?){_K_MOVE[1:]}", r"\1"),
-    "a speed changed": (r"\$VEL\.CP=([.\d]+)", scaled(1.02)),
+    "a speed changed": (r"\$VEL\.CP=([.\d]+)", scale_number(1.02)),
     "a speed dropped": (r"^\$VEL\.CP[^\n]*\n", DROP),
     "the first move faster": (r"(?<=VEL_PTP,)(10)\b", other("100", "50")),
     "a wait dropped": (_K_SEC, DROP),
-    "a wait changed": (r"WAIT SEC (\d+\.\d+)", moved(0.2)),
+    "a wait changed": (r"WAIT SEC (\d+\.\d+)", shift_number(0.2)),
     "an input dropped": (_K_IN, DROP),
-    "another input": (r"\$IN\[(\d+)", one_more),
+    "another input": (r"\$IN\[(\d+)", increment),
     "an input the other way": (r"(?<=\$IN\[3\]==)TRUE", "FALSE"),
     "a call dropped": (_K_CLEAN, DROP),
     "another call": (r"^clean\(", "clean2("),
     "a call doubled": (_K_CLEAN, TWICE),
     "a wait and a call swapped": (rf"({_K_IN})(WAIT SEC 0\r\n{_K_CLEAN[1:]})", SWAP),
-    "another base": (r"#BASE,(\d+)", one_more),
-    "another tool": (r"#TOOL,(\d+)", one_more),
+    "another base": (r"#BASE,(\d+)", increment),
+    "another tool": (r"#TOOL,(\d+)", increment),
     "no base": (r"^BAS\(#BASE[^\n]*\n", DROP),
     "a tool that is fixed": (r"(?<=IPO_MODE=)#BASE", "#TCP"),
     "another orientation": (r"(?<=ORI_TYPE=)#VAR", "#CONSTANT"),
     "nothing initial": (r"^BAS\(#INITMOV,0\)\r\n", DROP),
-    "another layer": (r"^; layer (\d+)", one_more),
+    "another layer": (r"^; layer (\d+)", increment),
     "a part dropped": (r"^job\d+\(\)\r\n", DROP),
     "a part doubled": (r"^job\d+\(\)\r\n", TWICE),
     "parts in another order": (r"^(job\d+\(\)\r\n)(job\d+\(\)\r\n)", SWAP),
@@ -794,12 +798,13 @@ KINDS = {
     "kuka": KUKA,
 }
 
-# the least change of a number, in steps of its last digit, that is always refused (docs/decisions/0005-read-back.md). What
-# is written is off by half a step itself, and as much is allowed: of one number a step is refused, of three coordinates of
-# which each may be off it takes more, and more again where tool and frames are told with as many digits.
-_TOLD = r"(?=[^\n]*(?:fStation|tCarried\[))"
+# The smallest change of a number, in units of its last digit, that must be rejected
+# (docs/decisions/0005-read-back.md). A written number is itself off by half a unit, and the check
+# allows as much: one unit of a single number is rejected, three coordinates that may each be off
+# need more, and more again if tool and frames have as few digits.
+_BEFORE_FRAMES = r"(?=[^\n]*(?:fStation|tCarried\[))"
 _WAIT_NC, _FEED = r"^{}([.\d]+)\n(?!N\d+ ENDWHILE)", r"G1 [^\n]* F(\d+\.\d+)$"
-SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
+SMALLEST_REJECTED: dict[str, dict[str, tuple[str, int]]] = {
     "fanuc": {
         "axis of a group": (_GROUPED, 1),
         "track": (r"\tE1=( *-?\d*\.\d{3})", 1),
@@ -811,8 +816,8 @@ SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
     },
     "staubli": {
         "joint": (r" j[1-6]=\"(-?\d+\.\d+)\"", 1),
-        "position": (rf" [xyz]=\"(-?\d+\.\d+)\"{_TOLD}", 4),
-        "angle": (rf" r[xyz]=\"(-?\d+\.\d+)\"{_TOLD}", 8),
+        "position": (rf" [xyz]=\"(-?\d+\.\d+)\"{_BEFORE_FRAMES}", 4),
+        "angle": (rf" r[xyz]=\"(-?\d+\.\d+)\"{_BEFORE_FRAMES}", 8),
         "frame": (r" (?:x|y|z|rx|ry|rz)=\"(-?\d+\.\d+)\"(?=[^\n]*world)", 6),
         "speed": (r"tmax=\"((?!99999)[.\d]+)\"", 1),
         "share": (r"vel=\"(\d+\.\d+)\"", 50),
@@ -842,7 +847,7 @@ SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
     "siemens": {
         "rotary axis": (r" [ABC]=?(?:DC\()?(-?\d+\.\d+)", 1),
         "position": (r" [XYZ](-?\d+\.\d+)", 2),
-        # of a number that is nearly all of the direction the last digits are its length
+        # the last digits of a number that is nearly the whole direction only change its length
         "direction": (r" [ABC]3=(-?0\.[0-5]\d+)", 2),
         "feed": (_FEED, 1),
         "wait": (_WAIT_NC.format(r"N\d+ G4 F"), 1),
@@ -875,10 +880,10 @@ SMALLEST: dict[str, dict[str, tuple[str, int]]] = {
 }
 
 
-def stepped(steps: int) -> Change:
-    """The number of the first group off by so many steps of its last digit."""
+def step_number(steps: int) -> Change:
+    """Change the number in the first group by `steps` units of its last digit."""
 
     def change(match: re.Match, rng: np.random.Generator) -> str:
-        return moved(steps * 10.0 ** -len(match[1].partition(".")[2]))(match, rng)  # type: ignore[operator]
+        return shift_number(steps * 10.0 ** -len(match[1].partition(".")[2]))(match, rng)  # type: ignore[operator]
 
     return change

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Programs of five-axis machines for tests: by hand, and at random from a seed."""
+"""Programs of five-axis machines for tests: by hand, and random from a seed."""
 
 import dataclasses
 import math
@@ -24,7 +24,7 @@ CARRIED = (10.0, -20.5, 30.25, 0.0, 0.0, math.radians(15.0))
 
 
 def moves(kind, axes, duration=0.5, layer=0, bead=0, speed=6.0, **extra):
-    """axes: mm and deg."""
+    """Return moves of axis values in mm and deg."""
     axes = np.atleast_2d(np.asarray(axes, float))
     joints = np.hstack([axes[:, :3], np.radians(axes[:, 3:])])
     duration = np.broadcast_to(np.asarray(duration, float), len(axes)).copy()
@@ -40,28 +40,29 @@ def program(*blocks, name="part", **options):
 
 
 def random_program(seed, motion="joint", continuous=False, names=NAMES, wire=False, **options):
-    """Of all kinds of blocks, steps of all sizes and moves that only turn or only slide. wire: beads tell its speed."""
+    """Return a random program with all kinds of blocks, steps of all sizes, and moves that only
+    turn or only slide. With `wire`, beads state the wire speed."""
     rng, speeds = np.random.default_rng(seed), np.random.default_rng([seed, 1])
     kinds = tuple("linear" if name in "XYZ" else "rotary" for name in names)
     linear = np.array([kind == "linear" for kind in kinds])
-    at = np.where(
+    axis_values = np.where(
         linear, rng.uniform(-200.0, 200.0, len(names)), rng.uniform(-2.0, 2.0, len(names))
     )
-    last = np.zeros(len(names), bool)
-    last[-1] = continuous
+    is_last = np.zeros(len(names), bool)
+    is_last[-1] = continuous
     blocks = []
 
     def some(kind, layer, bead, count):
-        nonlocal at
+        nonlocal axis_values
         steps = rng.normal(0.0, np.where(linear, 2.0, 0.03), (count, len(names)))
         steps[rng.random(count) < 0.2] *= np.where(linear, 0.0, 1.0)
         steps[rng.random(count) < 0.2] *= np.where(linear, 1.0, 0.0)
         steps[rng.random(count) < 0.1] *= 1e-4
         if continuous:
             steps[:, -1] = rng.uniform(-3.1, 3.1, count)
-        joints = at + np.cumsum(steps, axis=0)
-        joints[(rng.random(joints.shape) < 0.05) & ~last] *= 1e-5  # small values, of both signs
-        at = joints[-1]
+        joints = axis_values + np.cumsum(steps, axis=0)
+        joints[(rng.random(joints.shape) < 0.05) & ~is_last] *= 1e-5  # small values of both signs
+        axis_values = joints[-1]
         duration = rng.choice([0.0011, 0.05, 0.3, 4.0, 40.0, 3000.0], count) * rng.uniform(
             1.0, 1.05, count
         )
@@ -82,7 +83,7 @@ def random_program(seed, motion="joint", continuous=False, names=NAMES, wire=Fal
             blocks.append(some("deposit", layer, bead, int(rng.integers(1, 40))))
             if wire:
                 feeds = speeds.uniform(20.0, 300.0, len(blocks[-1]))
-                feeds[speeds.random(len(feeds)) < 0.5] = 108.25  # many moves at one speed
+                feeds[speeds.random(len(feeds)) < 0.5] = 108.25  # many moves at the same speed
                 blocks[-1] = dataclasses.replace(blocks[-1], wire=feeds)
                 blocks[-2] = dataclasses.replace(blocks[-2], wire=float(feeds[0]))
             blocks.append(DepositOff(float(rng.choice([0.0, 1.25]))))
@@ -100,22 +101,22 @@ def random_program(seed, motion="joint", continuous=False, names=NAMES, wire=Fal
         *blocks,
         name="Random",
         motion=motion,
-        continuous=tuple(last.tolist()),
+        continuous=tuple(is_last.tolist()),
         axis_names=tuple(names),
         axis_kinds=kinds,
         **options,
     )
 
 
-def with_options(of, **options):
-    """The program with other options of five-axis machines."""
-    return dataclasses.replace(of, nc=NcOptions(**options))
+def with_options(program_, **options):
+    """Return the program with other options of five-axis machines."""
+    return dataclasses.replace(program_, nc=NcOptions(**options))
 
 
-def deposit_of(of):
-    """Whether the deposit is on in each move, as planned."""
+def deposit_of(program_):
+    """Return whether the deposit is on in each move, according to the plan."""
     deposit, on = [], False
-    for block in of.blocks:
+    for block in program_.blocks:
         on = isinstance(block, DepositOn) or (on and not isinstance(block, DepositOff))
-        deposit += [on and not of.dry_run] * len(block) if isinstance(block, Moves) else []
+        deposit += [on and not program_.dry_run] * len(block) if isinstance(block, Moves) else []
     return deposit

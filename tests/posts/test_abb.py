@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is written for an ABB controller: modules to the byte, splitting, times and speeds, what is refused; and what is read
-of modules by hand."""
+"""ABB modules: exact bytes, splitting, times and speeds, refusals, and reading of modules written
+by hand."""
 
 import dataclasses
 import json
@@ -52,7 +52,7 @@ def program(*blocks, name="part", **options):
 
 
 def beads(count, points, layers=1, **options):
-    """Beads of so many points each, each with two rapid moves before it."""
+    """Return beads of `points` points each, each after two rapid moves."""
     blocks = []
     for layer in range(layers):
         blocks.append(LayerStart(layer))
@@ -64,39 +64,40 @@ def beads(count, points, layers=1, **options):
 
 
 def lines(files, name):
-    """The statements of a module's routine."""
+    """Return the statements of a module's routine."""
     text = files[name].decode("ascii").split("\r\n")
-    first = next(k for k, line in enumerate(text) if line.startswith("  PROC "))
-    return [line.strip() for line in text[first + 1 : text.index("  ENDPROC")]]
+    start = next(k for k, line in enumerate(text) if line.startswith("  PROC "))
+    return [line.strip() for line in text[start + 1 : text.index("  ENDPROC")]]
 
 
 def values(line):
-    """The aggregate that a move goes to."""
+    """Return the aggregate that a move goes to."""
     return json.loads(re.match(r"Move\w+ (\[.*\])(?:\\NoEOffs)?,v_am", line)[1])
 
 
 def declared(files, name, kind):
-    """The values that a module declares of a type, by name."""
-    found = re.findall(
+    """Return the values that a module declares of a type, by name."""
+    matches = re.findall(
         rf"^  LOCAL (?:PERS|CONST) {kind} (\w+):=(.*);\r$",
         files[name].decode("ascii"),
         re.MULTILINE,
     )
     return {
         word: json.loads(value.replace("TRUE", "true").replace("FALSE", "false"))
-        for word, value in found
+        for word, value in matches
     }
 
 
-def refusal(of, *, code, where=None):
+def refusal(source, *, code, where=None):
     with pytest.raises(InputError) as raised:
-        abb.write(of)
+        abb.write(source)
     assert raised.value.code == code and where in (None, raised.value.where)
     return raised.value.message
 
 
 def assert_modules(files):
-    """Modules of the plain kind only: every aggregate has as many values as its type, every name is declared."""
+    """Assert that modules are plain: every aggregate has the number of values of its type, and
+    every name is declared."""
     for file, content in files.items():
         text = content.decode("ascii")
         assert text.count("\n") == text.count("\r\n") and text.endswith("ENDMODULE\r\n")
@@ -106,13 +107,13 @@ def assert_modules(files):
         tools, objects, speeds, zones = (
             declared(files, file, f"{kind}data") for kind in ("tool", "wobj", "speed", "zone")
         )
-        for (on_robot, (_, turn), load), (held, fixed, unit, (_, seen), inside) in zip(
+        for (on_robot, (_, turn), load), (is_held, fixed, unit, (_, user_turn), inside) in zip(
             tools.values(), objects.values()
         ):
             assert (
-                on_robot is not held
+                on_robot is not is_held
                 and fixed is (unit == "")
-                and (inside if fixed else seen)
+                and (inside if fixed else user_turn)
                 == ([[0, 0, 0], [1, 0, 0, 0]] if fixed else [1, 0, 0, 0])
             )
             assert (f"ActUnit {unit};" in lines(files, file)) is not fixed
@@ -120,7 +121,7 @@ def assert_modules(files):
             assert (
                 np.linalg.norm(turn)
                 == pytest.approx(1.0, abs=1e-6)
-                == pytest.approx(np.linalg.norm(seen), abs=1e-6)
+                == pytest.approx(np.linalg.norm(user_turn), abs=1e-6)
             )
         assert all(len(value) == 4 for value in speeds.values()) and all(
             len(value) == 7 for value in zones.values()
@@ -131,17 +132,17 @@ def assert_modules(files):
                 target = values(line)
                 joint = line.startswith("MoveAbsJ ")
                 on_track = fixed and file == "rail.mod"
-                last = 4 if file.startswith("both") else 3
+                part_count = 4 if file.startswith("both") else 3
                 beside_it = (
                     [*target[-1][:2], *target[-1][3:], NO_AXES[0]]
                     if on_track
                     else (
                         target[-1]
                         if fixed
-                        else [target[-1][0], *target[-1][last:], *NO_AXES[: last - 1]]
+                        else [target[-1][0], *target[-1][part_count:], *NO_AXES[: part_count - 1]]
                     )
                 )
-                assert [len(part) for part in target] == (
+                assert [len(component) for component in target] == (
                     [6, 6] if joint else [3, 4, 4, 6]
                 ) and beside_it == NO_AXES
                 assert joint or abs(np.linalg.norm(target[1]) - 1.0) < 1e-6
@@ -187,19 +188,25 @@ TURNED = np.array(
 
 
 def straight_bead(layer):
-    places = np.array([[10.0, 0.25, 105.0], [12.0, 0.25, 105.0 + layer], [14.0, 0.5, 105.0]])
-    at = [[0.5 * layer, -30.0, 120.0, 0.0, 60.0, 10.0 * n] for n in range(3)]
+    positions = np.array([[10.0, 0.25, 105.0], [12.0, 0.25, 105.0 + layer], [14.0, 0.5, 105.0]])
+    joints = [[0.5 * layer, -30.0, 120.0, 0.0, 60.0, 10.0 * n] for n in range(3)]
     return [
         LayerStart(layer),
-        moves("rapid", [at[0], at[0]], layer=layer, position=places[:2], rotation=TURNED[:2]),
+        moves(
+            "rapid",
+            [joints[0], joints[0]],
+            layer=layer,
+            position=positions[:2],
+            rotation=TURNED[:2],
+        ),
         DepositOn(),
         moves(
             "deposit",
-            at,
+            joints,
             [0.3, 0.4, 0.5],
             layer=layer,
             speed=5.0,
-            position=places,
+            position=positions,
             rotation=TURNED,
             interpolation="linear",
         ),
@@ -207,15 +214,16 @@ def straight_bead(layer):
     ]
 
 
-HELD = program(
+HELD_PART = program(
     *straight_bead(0), *straight_bead(1), name="held", motion="cartesian", max_points=8, blend=50
 )
 
 
-def beside(of, **more):
-    """The same with the tool on the robot and two axes beside it: they tilt by 30 deg, and turn on with every move."""
+def add_positioner(source, **changes):
+    """Return the program with the tool on the robot and two external axes that tilt by 30 deg and
+    turn further with every move."""
     count, blocks = 0, []
-    for block in of.blocks:
+    for block in source.blocks:
         if isinstance(block, Moves):
             turned = np.radians(
                 np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25]
@@ -226,7 +234,7 @@ def beside(of, **more):
             )
         blocks.append(block)
     return dataclasses.replace(
-        of,
+        source,
         blocks=tuple(blocks),
         **{
             "name": "dome",
@@ -236,15 +244,16 @@ def beside(of, **more):
             "unit": "STN1",
             "first_external": 2,
             "station": (0, 0, 20, 0, 0, 0),
-            **more,
+            **changes,
         },
     )
 
 
-def along(of, **more):
-    """The same with the tool on a robot on a track, told as eax_c, which goes on by 12.5 mm with every move."""
+def put_on_track(source, **changes):
+    """Return the program with the robot on a track, written as eax_c, that advances by 12.5 mm with
+    every move."""
     count, blocks = 0, []
-    for block in of.blocks:
+    for block in source.blocks:
         if isinstance(block, Moves):
             slid = 12.5 * (count + np.arange(len(block)))[:, None] - 900.125
             count, block = (
@@ -253,7 +262,7 @@ def along(of, **more):
             )
         blocks.append(block)
     return dataclasses.replace(
-        of,
+        source,
         blocks=tuple(blocks),
         **{
             "name": "rail",
@@ -263,16 +272,16 @@ def along(of, **more):
             "unit": "",
             "first_external": 3,
             "station": (1200, 0, 20, 0, 0, 0),
-            **more,
+            **changes,
         },
     )
 
 
-def both(of, **more):
-    """The same beside a positioner too, whose axes are eax_b and eax_d, the track's eax_c."""
-    of = beside(of)
+def put_on_track_with_positioner(source, **changes):
+    """Return the program on a track as eax_c with a positioner whose axes are eax_b and eax_d."""
+    source = add_positioner(source)
     blocks, count = [], 0
-    for block in of.blocks:
+    for block in source.blocks:
         if isinstance(block, Moves):
             slid = 12.5 * (count + np.arange(len(block))) - 900.125
             count, block = (
@@ -281,28 +290,28 @@ def both(of, **more):
             )
         blocks.append(block)
     return dataclasses.replace(
-        of,
+        source,
         blocks=tuple(blocks),
         **{
             "name": "both",
             "continuous": (False,) * 9,
             "external_kinds": ("rotary", "linear", "rotary"),
-            **more,
+            **changes,
         },
     )
 
 
 GOLDENS = {
     "joint": JOINT,
-    "held": HELD,
-    "positioner": beside(HELD),
-    "track": along(HELD, max_points=2000),
-    "track-joint": along(JOINT),
-    "both": both(HELD),
+    "held": HELD_PART,
+    "positioner": add_positioner(HELD_PART),
+    "track": put_on_track(HELD_PART, max_points=2000),
+    "track-joint": put_on_track(JOINT),
+    "both": put_on_track_with_positioner(HELD_PART),
     "tool-joint": with_tool(JOINT),
-    "tool": with_tool(HELD),
-    "positioner-joint": beside(JOINT),
-    "both-joint": both(JOINT),
+    "tool": with_tool(HELD_PART),
+    "positioner-joint": add_positioner(JOINT),
+    "both-joint": put_on_track_with_positioner(JOINT),
 }
 
 
@@ -315,17 +324,21 @@ def test_golden_modules_to_the_byte(root, name):
 
 
 def test_a_part_on_a_positioner_is_a_work_object_that_its_unit_moves():
-    for of in (beside(HELD), beside(JOINT), beside(HELD, max_points=2000)):
-        files, run = abb.write(of), of.moves
-        read, joints = abb.read(files), np.concatenate([moves.joints for moves in run])
-        np.testing.assert_allclose(read.joints[:, 6:], joints[:, 6:], rtol=0.0, atol=1e-6)
-        assert (read.unit, read.first_external) == ("STN1", 2) and np.isnan(
-            read.joints[read.linear, :6]
+    for source in (
+        add_positioner(HELD_PART),
+        add_positioner(JOINT),
+        add_positioner(HELD_PART, max_points=2000),
+    ):
+        files, run = abb.write(source), source.moves
+        readback, joints = abb.read(files), np.concatenate([moves.joints for moves in run])
+        np.testing.assert_allclose(readback.joints[:, 6:], joints[:, 6:], rtol=0.0, atol=1e-6)
+        assert (readback.unit, readback.first_external) == ("STN1", 2) and np.isnan(
+            readback.joints[readback.linear, :6]
         ).all()
         for file in files:
             if "Move" in files[file].decode():
-                ((held, fixed, unit, user, inside),) = declared(files, file, "wobjdata").values()
-                assert (held, fixed, unit, user) == (
+                ((is_held, fixed, unit, user, inside),) = declared(files, file, "wobjdata").values()
+                assert (is_held, fixed, unit, user) == (
                     False,
                     False,
                     "STN1",
@@ -338,39 +351,59 @@ def test_a_part_on_a_positioner_is_a_work_object_that_its_unit_moves():
                 assert all(
                     row[0] == row[3] == 9e9 and row[1] == 30.0 and row[2] < 360.0 for row in turned
                 )
-    refusal(beside(JOINT, first_external=6), code="UNSUPPORTED_AXES", where="program.axes.first")
+    refusal(
+        add_positioner(JOINT, first_external=6), code="UNSUPPORTED_AXES", where="program.axes.first"
+    )
     for unit in ("", "1", "my unit"):
-        refusal(beside(JOINT, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit")
+        refusal(
+            add_positioner(JOINT, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit"
+        )
 
 
 def test_a_track_carries_the_robot_and_the_work_object_stands():
-    for of in (along(HELD), along(JOINT), along(HELD, unit="TRACK_1")):
-        files, run = abb.write(of), of.moves
-        read, joints = abb.read(files), np.concatenate([moves.joints for moves in run])
-        assert np.array_equal(read.joints[:, 6], joints[:, 6])  # mm as they are
+    for source in (
+        put_on_track(HELD_PART),
+        put_on_track(JOINT),
+        put_on_track(HELD_PART, unit="TRACK_1"),
+    ):
+        files, run = abb.write(source), source.moves
+        readback, joints = abb.read(files), np.concatenate([moves.joints for moves in run])
+        assert np.array_equal(readback.joints[:, 6], joints[:, 6])  # mm stay unchanged
         np.testing.assert_allclose(
-            read.joints[~read.linear, :6], joints[~read.linear, :6], rtol=0.0, atol=1e-6
+            readback.joints[~readback.linear, :6], joints[~readback.linear, :6], rtol=0.0, atol=1e-6
         )
-        assert (read.unit, read.first_external, read.linear_digits) == (of.unit, 3, 0.00005)
+        assert (readback.unit, readback.first_external, readback.linear_digits) == (
+            source.unit,
+            3,
+            0.00005,
+        )
         for file in files:
             if "Move" in files[file].decode():
-                ((held, fixed, unit, user, _),) = declared(files, file, "wobjdata").values()
-                assert (held, fixed, unit, user[0]) == (False, True, "", [1200, 0, 20])
-                assert ("ActUnit TRACK_1;" in lines(files, file)) is bool(of.unit)
+                ((is_held, fixed, unit, user, _),) = declared(files, file, "wobjdata").values()
+                assert (is_held, fixed, unit, user[0]) == (False, True, "", [1200, 0, 20])
+                assert ("ActUnit TRACK_1;" in lines(files, file)) is bool(source.unit)
                 slid = [values(line)[-1] for line in lines(files, file) if line.startswith("Move")]
                 assert all(row[:2] == [9e9] * 2 and row[3:] == [9e9] * 3 for row in slid)
                 assert np.allclose(np.diff([row[2] for row in slid]), 12.5)
-    refusal(along(JOINT, first_external=7), code="UNSUPPORTED_AXES", where="program.axes.first")
-    refusal(along(JOINT, unit="my unit"), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    refusal(
+        put_on_track(JOINT, first_external=7), code="UNSUPPORTED_AXES", where="program.axes.first"
+    )
+    refusal(put_on_track(JOINT, unit="my unit"), code="UNSUPPORTED_AXES", where="program.axes.unit")
 
 
 def test_a_track_and_a_positioner_are_told_together():
-    for of in (both(HELD), both(JOINT)):
-        files, joints = abb.write(of), np.concatenate([moves.joints for moves in of.moves])
-        read = abb.read(files)
-        assert np.array_equal(read.joints[:, 7], joints[:, 7])  # mm as they are
-        np.testing.assert_allclose(read.joints[:, [6, 8]], joints[:, [6, 8]], rtol=0.0, atol=1e-6)
-        assert (read.unit, read.first_external, read.linear_digits) == ("STN1", 2, 0.00005)
+    for source in (put_on_track_with_positioner(HELD_PART), put_on_track_with_positioner(JOINT)):
+        files, joints = abb.write(source), np.concatenate([moves.joints for moves in source.moves])
+        readback = abb.read(files)
+        assert np.array_equal(readback.joints[:, 7], joints[:, 7])  # mm stay unchanged
+        np.testing.assert_allclose(
+            readback.joints[:, [6, 8]], joints[:, [6, 8]], rtol=0.0, atol=1e-6
+        )
+        assert (readback.unit, readback.first_external, readback.linear_digits) == (
+            "STN1",
+            2,
+            0.00005,
+        )
         main = files["both.mod"].decode()
         assert "! eax_c is the track in mm" in main and "w_am is on the face of STN1" in main
         for file in files:
@@ -384,21 +417,29 @@ def test_a_track_and_a_positioner_are_told_together():
             name = next(file for file in files if old in files[file].decode())
             with pytest.raises(InputError):
                 abb.read({**files, name: files[name].replace(old.encode(), new.encode())})
-    refusal(both(JOINT, first_external=5), code="UNSUPPORTED_AXES", where="program.axes.first")
-    refusal(both(JOINT, unit=""), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    refusal(
+        put_on_track_with_positioner(JOINT, first_external=5),
+        code="UNSUPPORTED_AXES",
+        where="program.axes.first",
+    )
+    refusal(
+        put_on_track_with_positioner(JOINT, unit=""),
+        code="UNSUPPORTED_AXES",
+        where="program.axes.unit",
+    )
 
 
 def test_a_part_that_is_held_is_a_work_object_and_the_nozzle_a_tool_that_stands():
-    files = abb.write(dataclasses.replace(HELD, max_points=20))
+    files = abb.write(dataclasses.replace(HELD_PART, max_points=20))
     half = math.sqrt(0.5)
-    (tool,), (held,) = (
+    (tool,), (work_object,) = (
         declared(files, "held.mod", f"{kind}data").values() for kind in ("tool", "wobj")
     )
     assert tool[0] is False and tool[1] == [
         [300.0, 0.0, 310.5],
         pytest.approx([half, 0, 0, half], abs=1e-7),
     ]
-    assert held[0] is True and held[3] == [[0.0, 0.0, 5.0], [1.0, 0.0, 0.0, 0.0]]
+    assert work_object[0] is True and work_object[3] == [[0.0, 0.0, 5.0], [1.0, 0.0, 0.0, 0.0]]
     targets = [values(line) for line in lines(files, "held.mod") if line.startswith("MoveL")][:3]
     assert [target[0] for target in targets] == [
         [10.0, 0.25, 105.0],
@@ -410,9 +451,9 @@ def test_a_part_that_is_held_is_a_work_object_and_the_nozzle_a_tool_that_stands(
         pytest.approx([half, 0, 0, half], abs=1e-7),
         [0, 0, 1, 0],
     ]
-    other = abb.write(dataclasses.replace(HELD, max_points=20, setup="tool-on-robot"))
+    tool_on_robot = abb.write(dataclasses.replace(HELD_PART, max_points=20, setup="tool-on-robot"))
     (tool,), (fixed,) = (
-        declared(other, "held.mod", f"{kind}data").values() for kind in ("tool", "wobj")
+        declared(tool_on_robot, "held.mod", f"{kind}data").values() for kind in ("tool", "wobj")
     )
     assert (
         tool[0] is True
@@ -425,86 +466,99 @@ def test_a_part_that_is_held_is_a_work_object_and_the_nozzle_a_tool_that_stands(
 @pytest.mark.parametrize("seed", range(4))
 @pytest.mark.parametrize(("motion", "setup"), VARIANTS)
 def test_random_programs_come_back_to_their_digits(random_application, seed, motion, setup):
-    of = random_application(seed, motion, setup, max_points=60)
-    files = abb.write(of)
+    source = random_application(seed, motion, setup, max_points=60)
+    files = abb.write(source)
     assert_modules(files)
-    read, run = abb.read(files), list(of.moves)
-    joints = np.concatenate([each.joints for each in run])
-    straight = np.concatenate([np.full(len(each), each.interpolation == "linear") for each in run])
-    np.testing.assert_array_equal(read.linear, straight)
-    np.testing.assert_allclose(
-        read.joints[~straight], joints[~straight], rtol=0.0, atol=read.digits + 1e-12
+    readback, run = abb.read(files), list(source.moves)
+    joints = np.concatenate([moves_.joints for moves_ in run])
+    straight = np.concatenate(
+        [np.full(len(moves_), moves_.interpolation == "linear") for moves_ in run]
     )
-    assert np.degrees(read.digits) == pytest.approx(0.00005)
+    np.testing.assert_array_equal(readback.linear, straight)
     np.testing.assert_allclose(
-        read.duration[~straight],
-        np.concatenate([each.duration for each in run])[~straight],
+        readback.joints[~straight], joints[~straight], rtol=0.0, atol=readback.digits + 1e-12
+    )
+    assert np.degrees(readback.digits) == pytest.approx(0.00005)
+    np.testing.assert_allclose(
+        readback.duration[~straight],
+        np.concatenate([moves_.duration for moves_ in run])[~straight],
         rtol=0.0,
         atol=5.1e-6,
     )
     np.testing.assert_array_equal(
-        read.stops,
+        readback.stops,
         np.concatenate(
             [
-                each.stops
-                | (each.kind == "deposit")
-                & (0.005 * of.blend * min(each.speed * each.duration) < 0.001)
-                for each in run
+                moves_.stops
+                | (moves_.kind == "deposit")
+                & (0.005 * source.blend * min(moves_.speed * moves_.duration) < 0.001)
+                for moves_ in run
             ]
         ),
     )
-    wet = np.concatenate([np.full(len(each), each.kind == "deposit") for each in run])
-    np.testing.assert_array_equal(read.deposit, wet)
+    wet = np.concatenate([np.full(len(moves_), moves_.kind == "deposit") for moves_ in run])
+    np.testing.assert_array_equal(readback.deposit, wet)
     if motion == "cartesian":
-        place, turn = (
-            np.concatenate([getattr(each, name) for each in run])[straight]
+        positions, turn = (
+            np.concatenate([getattr(moves_, name) for moves_ in run])[straight]
             for name in ("position", "rotation")
         )
         frame, carried = (np.eye(4), np.eye(4))
-        for pose, six in ((frame, of.station), (carried, of.carried)):
+        for pose, six in ((frame, source.station), (carried, source.carried)):
             pose[:3, :3], pose[:3, 3] = Rotation.from_euler("XYZ", six[3:]).as_matrix(), six[:3]
-        target = np.tile(np.eye(4), (len(place), 1, 1))
-        target[:, :3, :3], target[:, :3, 3] = turn, place
+        target = np.tile(np.eye(4), (len(positions), 1, 1))
+        target[:, :3, :3], target[:, :3, 3] = turn, positions
         if setup == "part-on-robot":
             target = np.linalg.inv(target)
-        told = np.tile(np.eye(4), (len(place), 1, 1))
-        told[:, :3, :3], told[:, :3, 3] = read.rotation[straight], read.position[straight]
-        # where the flange is asked to be
-        wanted, found = (
-            a @ b @ np.linalg.inv(c)
-            for a, b, c in ((frame, target, carried), (read.frame, told, read.tool[straight]))
+        flange_poses = np.tile(np.eye(4), (len(positions), 1, 1))
+        flange_poses[:, :3, :3], flange_poses[:, :3, 3] = (
+            readback.rotation[straight],
+            readback.position[straight],
         )
-        np.testing.assert_allclose(found, wanted, rtol=0.0, atol=4e-3)
-        np.testing.assert_allclose(found[:, :3, :3], wanted[:, :3, :3], rtol=0.0, atol=1e-6)
-        assert read.held == (setup == "part-on-robot")
+        # the commanded flange pose
+        expected, driven = (
+            a @ b @ np.linalg.inv(c)
+            for a, b, c in (
+                (frame, target, carried),
+                (readback.frame, flange_poses, readback.tool[straight]),
+            )
+        )
+        np.testing.assert_allclose(driven, expected, rtol=0.0, atol=4e-3)
+        np.testing.assert_allclose(driven[:, :3, :3], expected[:, :3, :3], rtol=0.0, atol=1e-6)
+        assert readback.held == (setup == "part-on-robot")
 
 
 def test_same_program_same_bytes_and_parts_are_the_program(random_application):
     for motion, setup in VARIANTS:
-        parts = abb.write(random_application(2, motion, setup, max_points=50))
+        part_files = abb.write(random_application(2, motion, setup, max_points=50))
         assert (
-            parts == abb.write(random_application(2, motion, setup, max_points=50))
-            and len(parts) > 3
+            part_files == abb.write(random_application(2, motion, setup, max_points=50))
+            and len(part_files) > 3
         )
-        whole, cut = (
+        complete, cut = (
             abb.read(abb.write(random_application(2, motion, setup, max_points=10**5))),
-            abb.read(parts),
+            abb.read(part_files),
         )
-        for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
+        for field in (
+            candidate for candidate in dataclasses.fields(complete) if candidate.name != "lines"
+        ):
             if field.name in (
                 "rotation",
                 "position",
-            ):  # products may differ in their last bit by where they stand in memory
+            ):  # products may differ in their last bit, depending on their address in memory
                 np.testing.assert_equal(
-                    getattr(cut, field.name) is None, getattr(whole, field.name) is None
+                    getattr(cut, field.name) is None, getattr(complete, field.name) is None
                 )
                 if getattr(cut, field.name) is not None:
                     np.testing.assert_allclose(
-                        getattr(cut, field.name), getattr(whole, field.name), rtol=0.0, atol=1e-11
+                        getattr(cut, field.name),
+                        getattr(complete, field.name),
+                        rtol=0.0,
+                        atol=1e-11,
                     )
             else:
                 np.testing.assert_array_equal(
-                    getattr(cut, field.name), getattr(whole, field.name), field.name
+                    getattr(cut, field.name), getattr(complete, field.name), field.name
                 )
 
 
@@ -522,8 +576,8 @@ def test_a_dry_run_moves_the_same_and_switches_nothing(random_application):
 
 
 def test_times_and_corners():
-    told = [line for line in lines(abb.write(JOINT), "Joint.mod") if line.startswith("Move")]
-    assert [re.search(r"\\T:=([\d.]+),(\w+),", line).groups() for line in told] == [
+    moves_ = [line for line in lines(abb.write(JOINT), "Joint.mod") if line.startswith("Move")]
+    assert [re.search(r"\\T:=([\d.]+),(\w+),", line).groups() for line in moves_] == [
         ("10.00000", "fine"), ("0.80000", "fine"), ("0.20000", "z_am1"), ("0.25000", "fine"), ("1.00000", "fine"),
     ]  # fmt: skip
     for blend, size in ((0, None), (50, 0.3), (100, 0.6)):  # the shorter move is 1.2 mm long
@@ -542,10 +596,10 @@ def test_times_and_corners():
     for speed in (0.004, 1e6, np.nan):
         blocks = (
             dataclasses.replace(b, speed=np.full(len(b), speed)) if isinstance(b, Moves) else b
-            for b in HELD.blocks
+            for b in HELD_PART.blocks
         )
         refusal(
-            dataclasses.replace(HELD, blocks=tuple(blocks)),
+            dataclasses.replace(HELD_PART, blocks=tuple(blocks)),
             code="MOVE_SPEED",
             where="layer 0 bead 0",
         )
@@ -562,13 +616,13 @@ def test_parts_hold_whole_beads_are_loaded_away_from_them_and_their_sum_is_told(
     total = sum(len(content) for name, content in files.items() if name != "part.mod")
     assert f"  ! 3 parts of {total} bytes in all".encode() in files["part.mod"]
     for number in (1, 2, 3):
-        part = lines(files, f"part{number:02d}.mod")
-        assert part.count("SetDO do1,1;") == part.count("SetDO do1,0;") == 2
-        last = max(n for n, line in enumerate(part) if line.startswith("Move"))
-        assert (last > part[::-1].index("SetDO do1,0;") and part[-1].startswith("Move")) == (
-            number < 3
-        )
-        assert sum(line.startswith("Move") for line in part) == (45, 44, 43)[number - 1]
+        statements = lines(files, f"part{number:02d}.mod")
+        assert statements.count("SetDO do1,1;") == statements.count("SetDO do1,0;") == 2
+        last_move = max(n for n, line in enumerate(statements) if line.startswith("Move"))
+        assert (
+            last_move > statements[::-1].index("SetDO do1,0;") and statements[-1].startswith("Move")
+        ) == (number < 3)
+        assert sum(line.startswith("Move") for line in statements) == (45, 44, 43)[number - 1]
     message = refusal(
         beads(2, 25, max_points=20, layers=2), code="BEAD_TOO_LONG", where="program.max_points"
     )
@@ -577,7 +631,8 @@ def test_parts_hold_whole_beads_are_loaded_away_from_them_and_their_sum_is_told(
 
 
 def test_of_beads_too_long_for_a_part_the_longest_is_named():
-    """What is said to be enough is enough."""
+    """Of beads that are too long for a part, the error names the longest, and the limit that it
+    states is enough."""
     blocks = [block for points in (22, 40, 31) for block in beads(1, points).blocks]
     too_long = dataclasses.replace(beads(1, 22, max_points=20), blocks=tuple(blocks))
     enough = int(
@@ -607,7 +662,9 @@ def test_what_cannot_be_said_is_refused():
     )
     continuous = dataclasses.replace(still, continuous=(False,) * 5 + (True,))
     assert "axis 6" in refusal(continuous, code="ENDLESS_AXIS", where="cell.limits")
-    refusal(dataclasses.replace(HELD, station=None), code="NO_POSITIONS", where="program.motion")
+    refusal(
+        dataclasses.replace(HELD_PART, station=None), code="NO_POSITIONS", where="program.motion"
+    )
     refusal(program(LayerStart(0)), code="NOTHING_TO_WRITE")
     refusal(program(moves("rapid", [0, 0, 0, np.nan, 0, 0])), code="UNREACHABLE")
     refusal(program(moves("rapid", np.ones(5))), code="UNSUPPORTED_AXES", where="program.post")
@@ -655,31 +712,36 @@ def by_hand(old="", new=""):
 
 
 def test_a_module_by_hand():
-    read = abb.read(by_hand())
-    np.testing.assert_allclose(np.degrees(read.joints[0]), [1.5, -30.0, 20.0, 0.0, 45.0, -190.5])
-    assert np.isnan(read.joints[1:]).all() and read.position[1:].tolist() == [
+    readback = abb.read(by_hand())
+    np.testing.assert_allclose(
+        np.degrees(readback.joints[0]), [1.5, -30.0, 20.0, 0.0, 45.0, -190.5]
+    )
+    assert np.isnan(readback.joints[1:]).all() and readback.position[1:].tolist() == [
         [20.5, 0.25, 5.0],
         [21.5, 0.25, 5.0],
     ]
     turned = Rotation.from_quat([[0.0, 1.0, 0.0, 0.0], [0.0, 0.8, 0.0, 0.6]]).as_matrix()
-    np.testing.assert_allclose(read.rotation[1:], turned, atol=1e-15)
-    # the work object is turned by half about Z, so what lies in it at X 10 is at X 1190
+    np.testing.assert_allclose(readback.rotation[1:], turned, atol=1e-15)
+    # the work object is rotated by 180 deg about Z, so its X 10 is at X 1190
     np.testing.assert_allclose(
-        read.frame, [[-1, 0, 0, 1190], [0, -1, 0, 0], [0, 0, 1, 300], [0, 0, 0, 1]], atol=1e-12
+        readback.frame, [[-1, 0, 0, 1190], [0, -1, 0, 0], [0, 0, 1, 300], [0, 0, 0, 1]], atol=1e-12
     )
     np.testing.assert_allclose(
-        read.tool[2], [[0, 0, 1, 1], [0, 1, 0, 2], [-1, 0, 0, 250], [0, 0, 0, 1]], atol=1e-12
+        readback.tool[2], [[0, 0, 1, 1], [0, 1, 0, 2], [-1, 0, 0, 250], [0, 0, 0, 1]], atol=1e-12
     )
-    assert read.deposit.tolist() == read.linear.tolist() == [False, True, True] and not read.held
-    assert read.stops.tolist() == [True, False, True] and read.rounding[1] == 0.3
-    assert [(event.row, event.kind, *event.value) for event in read.events] == [
+    assert (
+        readback.deposit.tolist() == readback.linear.tolist() == [False, True, True]
+        and not readback.held
+    )
+    assert readback.stops.tolist() == [True, False, True] and readback.rounding[1] == 0.3
+    assert [(event.row, event.kind, *event.value) for event in readback.events] == [
         (1, "on", 7.0, "do"),
         (1, "wait", 0.25),
         (3, "off", 7.0, "do"),
         (3, "call", "GRIPPER_OPEN"),
     ]
-    np.testing.assert_array_equal(read.speed, [np.nan, 30.5, 30.5])
-    np.testing.assert_array_equal(read.duration, [10.0, np.nan, np.nan])
+    np.testing.assert_array_equal(readback.speed, [np.nan, 30.5, 30.5])
+    np.testing.assert_array_equal(readback.duration, [10.0, np.nan, np.nan])
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What an ABB program tells of the process on its moves: ArcL with seam, weld and weave data, deposit switched ahead of its
-place, wire in proportion to the real speed. Texts are read here by patterns of their own, and any damage is refused."""
+"""Process data on the moves of an ABB program: ArcL with seam, weld and weave data, deposit
+switched ahead of its position, wire in proportion to the real speed. Patterns of this file read the
+texts, and any damage is rejected."""
 
 import dataclasses
 import functools
@@ -29,13 +30,13 @@ from freecad_am.read_back.events import MOST_DIGITS, timed
 from freecad_am.verify import verify
 from tests.posts.fanuc_programs import with_tool
 from tests.posts.planned_jobs import CHORD_ERROR, PROCESS, planned
-from tests.posts.test_abb import HELD, JOINT, beside
+from tests.posts.test_abb import HELD_PART, JOINT, add_positioner
 from tests.programs import build
 
 SCHEDULES, WEAVES = {"wall": 7, "contour": 3, "fill": 12}, {"wall": 4, "contour": 2, "fill": 0}
 RATIO, LEAD = 4.25, 0.045
 FED = WireParameters(feed_mode="proportional")
-# set-up, motion, and what is told
+# set-up, motion and process data
 KINDS = {
     "arc": ("abb positioner", "cartesian"),
     "held": ("abb part-on-robot", "cartesian"),
@@ -49,14 +50,14 @@ KINDS = {
 
 
 @functools.cache
-def written(kind, most=2000, dry_run=False):
-    setup, way = KINDS[kind]
+def write_program(kind, max_points=2000, dry_run=False):
+    setup, motion_kind = KINDS[kind]
     cell, _, motion = planned(setup)
     number = (motion.layer + motion.bead) % 3
     motion = dataclasses.replace(
         motion, bead_class=np.array([CLASSES.index(name) for name in SCHEDULES])[number]
     )
-    process, told = PROCESS, {}
+    process, options = PROCESS, {}
     if kind in ("arc", "held"):
         weave = (
             "; fill: schedule 12, weave 0, lead_off 0"
@@ -70,40 +71,42 @@ def written(kind, most=2000, dry_run=False):
             lead_off=0.25 if kind == "arc" else 0.0,
             classes=f"contour: schedule 3{', weave 2' if kind == 'arc' else ''}{weave}",
         )
-        told = {"schedule": ScheduleParameters(by="arc")}
+        options = {"schedule": ScheduleParameters(by="arc")}
     elif kind != "wire":
         process = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
-        told = {"trigger": TriggerParameters(lead=0.0 if kind == "joint" else LEAD)}
+        options = {"trigger": TriggerParameters(lead=0.0 if kind == "joint" else LEAD)}
     if kind.startswith("wire"):
         motion = dataclasses.replace(
             motion, wire=np.where(motion.deposit, RATIO * motion.speed, np.nan)
         )
-        told["nc"] = NcParameters(wire_output=9, wire_gain=2.5)
-    if "ahead" in kind and way == "cartesian":
+        options["nc"] = NcParameters(wire_output=9, wire_gain=2.5)
+    if "ahead" in kind and motion_kind == "cartesian":
         motion = linear_approach.shorten_approaches(motion, cell)
-    parameters = ProgramParameters(post="abb", motion=way, max_points=most, dry_run=dry_run, **told)
+    parameters = ProgramParameters(
+        post="abb", motion=motion_kind, max_points=max_points, dry_run=dry_run, **options
+    )
     program = build(motion, cell, process, parameters, "job")
     return cell, motion, program, abb.write(program)
 
 
-def codes(kind, files, most=2000):
-    cell, motion, program, _ = written(kind, most)
+def codes(kind, files, max_points=2000):
+    cell, motion, program, _ = write_program(kind, max_points)
     try:
-        found = verify(cell, motion, program, files, abb, CHORD_ERROR)
+        result = verify(cell, motion, program, files, abb, CHORD_ERROR)
     except InputError as error:
         return {error.code}
-    return {issue.code for issue in found.issues if issue.level == ERROR}
+    return {issue.code for issue in result.issues if issue.level == ERROR}
 
 
-def lines_of(kind, most=2000):
-    files = written(kind, most)[3]
+def lines_of(kind, max_points=2000):
+    files = write_program(kind, max_points)[3]
     return [
         line.strip() for name in sorted(files) for line in files[name].decode("ascii").split("\r\n")
     ]
 
 
 def deposits(motion):
-    """Rows of the beads that are moved to, one array each."""
+    """Return the rows of each bead's moves, one array for each bead."""
     rows = np.flatnonzero(motion.moves & motion.deposit)
     return np.split(
         rows,
@@ -114,13 +117,13 @@ def deposits(motion):
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("most", [2000, 40])
 def test_what_is_written_reads_back_as_planned(kind, most):
-    files = written(kind, most)[3]
+    files = write_program(kind, most)[3]
     assert codes(kind, files, most) == set() and (len(files) > 1) == (most == 40)
 
 
 @pytest.mark.parametrize("kind", ["arc", "held"])
 def test_each_bead_is_welded_at_its_speed_by_its_seam_and_weave_and_no_rapid_is(kind):
-    _, motion, program, _ = written(kind)
+    _, motion, program, _ = write_program(kind)
     lines, runs = lines_of(kind), [run for run in program.moves if run.kind == "deposit"]
     speeds = {
         name: float(value)
@@ -132,14 +135,16 @@ def test_each_bead_is_welded_at_its_speed_by_its_seam_and_weave_and_no_rapid_is(
         for line in lines
         for name, value in re.findall(r"^(\w+)\.org_weld_speed:=([\d.]+);", line)
     }
-    taken = dict(found for line in lines for found in re.findall(r"^(\w+):=weld(\d+);", line))
+    weld_numbers = dict(
+        match for line in lines for match in re.findall(r"^(\w+):=weld(\d+);", line)
+    )
     dry = {
         name: float(value)
         for line in lines
         for name, value in re.findall(r"speeddata (\w+):=\[([\d.]+),", line)
     }
-    assert speeds == again and set(speeds) == set(taken)
-    beads, inside, before = [], False, None
+    assert speeds == again and set(speeds) == set(weld_numbers)
+    beads, inside, previous = [], False, None
     for line in lines:
         arc = re.match(
             r"(ArcL(?:Start|End|)) \[\[([^]]*)\].*\],(\w+),seam(\d+),(\w+)(?:\\Weave:=weave(\d+))?,(\w+),t_am",
@@ -148,26 +153,26 @@ def test_each_bead_is_welded_at_its_speed_by_its_seam_and_weave_and_no_rapid_is(
         if not arc:
             assert not (inside and line.startswith("Move"))
             continue
-        name, place, speed, seam, weld, weave, zone = arc.groups()
-        place = [float(number) for number in place.split(",")]
-        assert taken[weld] == seam
+        name, position, speed, seam, weld, weave, zone = arc.groups()
+        position = [float(number) for number in position.split(",")]
+        assert weld_numbers[weld] == seam
         if name == "ArcLStart":
             assert not inside and zone == "fine"
             beads.append(
                 {
                     "seam": int(seam),
                     "weave": int(weave or 0),
-                    "start": place,
+                    "start": position,
                     "points": [],
                     "speeds": [],
                 }
             )
-        elif (name, place) != ("ArcLEnd", before):  # not where the torch stood after the bead
+        elif (name, position) != ("ArcLEnd", previous):  # not at the torch position after the bead
             assert dry[speed] == speeds[weld]
-            beads[-1]["points"].append(place)
+            beads[-1]["points"].append(position)
             beads[-1]["speeds"].append(speeds[weld])
         assert (int(seam), int(weave or 0)) == (beads[-1]["seam"], beads[-1]["weave"])
-        inside, before = name != "ArcLEnd", place
+        inside, previous = name != "ArcLEnd", position
         assert inside or zone == "fine"
     classes = [list(SCHEDULES)[(run.layer + run.bead) % 3] for run in runs]
     assert [bead["seam"] for bead in beads] == [SCHEDULES[name] for name in classes]
@@ -182,10 +187,10 @@ def test_each_bead_is_welded_at_its_speed_by_its_seam_and_weave_and_no_rapid_is(
         np.testing.assert_allclose(bead["points"], run.position, rtol=0.0, atol=5.1e-4)
         np.testing.assert_allclose(bead["speeds"], motion.speed[rows], rtol=0.0, atol=5.1e-4)
     starts = [
-        before for before, run in zip(program.moves, program.moves[1:]) if run.kind == "deposit"
+        previous for previous, run in zip(program.moves, program.moves[1:]) if run.kind == "deposit"
     ]
     np.testing.assert_allclose(
-        [b["start"] for b in beads], [one.position[-1] for one in starts], rtol=0.0, atol=5.1e-4
+        [b["start"] for b in beads], [start.position[-1] for start in starts], rtol=0.0, atol=5.1e-4
     )
     assert not any("SetDO" in line for line in lines)
     head = next(line for line in lines if line.startswith("! declare on the controller"))
@@ -197,12 +202,12 @@ def test_each_bead_is_welded_at_its_speed_by_its_seam_and_weave_and_no_rapid_is(
 
 @pytest.mark.parametrize("kind", ["ahead", "joint", "wire ahead", "joint ahead", "turned ahead"])
 def test_the_deposit_is_switched_on_the_moves_onto_the_beads_and_at_their_ends(kind):
-    _, motion, _, _ = written(kind)
+    _, motion, _, _ = write_program(kind)
     on, off, row, triggered, early, lead = [], [], 0, {}, [], 0.0 if kind == "joint" else LEAD
     rows = np.flatnonzero(motion.moves)
     for line in lines_of(kind):
-        if found := re.match(r"TriggIO (\w+),(\S+?)\\DOp:=do1,([01]);", line):
-            triggered[found[1]] = (found[2], found[3])
+        if match := re.match(r"TriggIO (\w+),(\S+?)\\DOp:=do1,([01]);", line):
+            triggered[match[1]] = (match[2], match[3])
         if re.match(r"(Move|Trigg)(AbsJ|L) \[", line):
             used = [name for name in triggered if re.search(rf"[,=]{name}(?=[,\\])", line)]
             on += [row for name in used if triggered[name][1] == "1"]
@@ -210,24 +215,25 @@ def test_the_deposit_is_switched_on_the_moves_onto_the_beads_and_at_their_ends(k
             early += [float(triggered[name][0]) - lead * motion.speed[rows][row] for name in used]
             assert len(used) < 2
             row += 1
-    # so far before the end of a move as the tip gets in the lead at the speed of that very move
+    # the output switches before the end of a move, at the distance that the tip covers in the lead
+    # time at the speed of that move
     assert np.abs(early).max() <= 0.00005 + lead * 0.0005 and len(early) == len(on + off)
     assert (
         (set(triggered) == {"g_on", "g_off"})
         == (kind == "joint")
-        == ({way for way, _ in triggered.values()} == {"0"})
+        == ({distance for distance, _ in triggered.values()} == {"0"})
     )
     moved = motion.deposit[np.flatnonzero(motion.moves)]
     assert on == (np.flatnonzero(np.diff(moved.astype(int)) == 1)).tolist()
     assert off == (np.flatnonzero(np.diff(moved.astype(int)) == -1)).tolist()
     assert not any("SetDO" in line for line in lines_of(kind))
-    # an IRC5 has no TriggAbsJ, so far as is known: Cartesian programs do without
+    # as far as known, an IRC5 has no TriggAbsJ, so Cartesian programs avoid it
     assert any("TriggAbsJ" in line for line in lines_of(kind)) is (KINDS[kind][1] == "joint")
 
 
 @pytest.mark.parametrize("kind", ["wire", "wire ahead"])
 def test_the_wire_follows_the_real_speed_on_all_moves_of_beads_and_no_other(kind):
-    _, motion, _, _ = written(kind)
+    _, motion, _, _ = write_program(kind)
     lines, row, fed, ends = lines_of(kind), 0, {}, []
     scales = {
         name: float(value)
@@ -249,14 +255,14 @@ def test_the_wire_follows_the_real_speed_on_all_moves_of_beads_and_no_other(kind
             row += 1
     rows = np.flatnonzero(motion.moves)
     assert list(fed) == np.flatnonzero(motion.deposit[rows]).tolist()
-    wanted = 2.5 * 0.06 * RATIO * motion.speed[rows][list(fed)]
-    np.testing.assert_allclose(list(fed.values()), wanted, rtol=2e-4)
+    expected = 2.5 * 0.06 * RATIO * motion.speed[rows][list(fed)]
+    np.testing.assert_allclose(list(fed.values()), expected, rtol=2e-4)
     assert ends == np.flatnonzero(np.diff(motion.deposit[rows].astype(int)) == -1).tolist()
 
 
 N = r"-?\d+\.\d+"
 ARC_LINE = r"^    ArcL \[[^\n]*\n"
-DAMAGE = [  # of which text, what is found in it, and what stands there then
+DAMAGE = [  # kind of text, pattern to find, and its replacement
     ("arc", r"(?m)^    ArcLStart[^\n]*\n", ""), ("arc", r"(?m)^(    ArcLStart[^\n]*\n)", r"\1\1"),
     ("arc", r"(?m)^    ArcLEnd[^\n]*\n", ""), ("arc", r"(?m)^(    ArcLEnd[^\n]*\n)", r"\1\1"),
     ("arc", r"ArcLEnd(?=[^\n]*v_am\d)", "ArcL"), ("arc", rf"(?m){ARC_LINE}", ""), ("arc", rf"(?m)({ARC_LINE})", r"\1\1"),
@@ -310,35 +316,39 @@ DAMAGE = [  # of which text, what is found in it, and what stands there then
 
 @pytest.mark.parametrize(("kind", "pattern", "change"), DAMAGE)
 def test_a_text_with_anything_else_is_refused(kind, pattern, change):
-    """At its first place, its last one, and one between, in the whole text and in parts."""
-    for most in (2000, 40):
-        files = written(kind, most)[3]
-        places = [
-            (name, found)
+    """Damage at the first, a middle and the last match is rejected, in a single text and in
+    parts."""
+    for max_points in (2000, 40):
+        files = write_program(kind, max_points)[3]
+        all_matches = [
+            (name, match)
             for name in sorted(files)
-            for found in re.finditer(pattern, files[name].decode())
+            for match in re.finditer(pattern, files[name].decode())
         ]
-        assert places, pattern
-        for name, found in {
-            id(one): one for one in (places[0], places[len(places) // 2], places[-1])
+        assert all_matches, pattern
+        for name, match in {
+            id(candidate): candidate
+            for candidate in (all_matches[0], all_matches[len(all_matches) // 2], all_matches[-1])
         }.values():
             text = files[name].decode()
-            damaged = text[: found.start()] + found.expand(change) + text[found.end() :]
-            assert damaged != text and codes(kind, {**files, name: damaged.encode()}, most), found[
-                0
-            ]
+            damaged = text[: match.start()] + match.expand(change) + text[match.end() :]
+            assert damaged != text and codes(kind, {**files, name: damaged.encode()}, max_points), (
+                match[0]
+            )
 
 
 @pytest.mark.parametrize(
     "name", ["Weld5", "seam5", "weave2", "d_am1", "v_am1", "z_am1", "do1", "di4", "ai2"]
 )
 def test_no_module_and_no_routine_that_is_called_has_the_name_of_what_the_program_uses(name):
-    of = GOLDENS["arc"]
-    more = dataclasses.replace(of, blocks=(*of.blocks, WaitInput(4), WaitBelow(2, 1.0, 0, 0)))
+    source = GOLDENS["arc"]
+    with_waits = dataclasses.replace(
+        source, blocks=(*source.blocks, WaitInput(4), WaitBelow(2, 1.0, 0, 0))
+    )
     for bad, where in (
-        (dataclasses.replace(more, name=name), "name"),
+        (dataclasses.replace(with_waits, name=name), "name"),
         (
-            dataclasses.replace(more, blocks=(*more.blocks, Call(name))),
+            dataclasses.replace(with_waits, blocks=(*with_waits.blocks, Call(name))),
             "process.between_layers.call",
         ),
     ):
@@ -349,55 +359,57 @@ def test_no_module_and_no_routine_that_is_called_has_the_name_of_what_the_progra
 
 
 def test_a_trigger_on_a_corner_is_not_read():
-    """By itself, without a plan: the time of a trigger counts from where the robot stops."""
-    files = written("ahead")[3]
+    """A reader without a plan rejects a trigger on a rounded corner, because its time counts from
+    the stop."""
+    files = write_program("ahead")[3]
     damaged = files["job.mod"].replace(b"g_on1,fine", b"g_on1,z_am1", 1)
     with pytest.raises(InputError) as error:
         abb.read({"job.mod": damaged})
     assert "the corner is rounded" in error.value.message
 
 
-def onto(rapid):
-    """A rapid with a linear move as its last one."""
+def approach_linearly(rapid):
+    """Return a rapid that ends with a linear move."""
     columns = ("joints", "duration", "speed", "position", "rotation", "stops", "halt")
-    before, last = (
+    joint_moves, linear_move = (
         {name: getattr(rapid, name)[rows] for name in columns}
         for rows in (slice(-1), slice(-1, None))
     )
     return [
-        dataclasses.replace(rapid, **before, role=rapid.role[:-1]),
-        dataclasses.replace(rapid, **last, role=rapid.role[-1:], interpolation="linear"),
+        dataclasses.replace(rapid, **joint_moves, role=rapid.role[:-1]),
+        dataclasses.replace(rapid, **linear_move, role=rapid.role[-1:], interpolation="linear"),
     ]
 
 
-def told(of, name, **how):
-    """The program with its beads told otherwise. arc, weave: numbers; ahead, wire: the lead, and wire a mm."""
+def with_process_data(source, name, **options):
+    """Return the program with process data on its beads. arc, weave: numbers of the data; ahead:
+    the lead; wire: wire per mm."""
     blocks = []
-    for block in of.blocks:
+    for block in source.blocks:
         if isinstance(block, (DepositOn, DepositOff)):
             begins = isinstance(block, DepositOn)
-            weave = [Weave(how["weave"] if begins else 0)] if "weave" in how else []
-            lead = 0.0 if "ahead" in how else block.lead
-            if begins and "ahead" in how and of.motion == "cartesian":
-                blocks[-1:] = onto(blocks[-1])
+            weave = [Weave(options["weave"] if begins else 0)] if "weave" in options else []
+            lead = 0.0 if "ahead" in options else block.lead
+            if begins and "ahead" in options and source.motion == "cartesian":
+                blocks[-1:] = approach_linearly(blocks[-1])
             new = dataclasses.replace(
-                block, schedule=how.get("arc"), ahead=how.get("ahead"), lead=lead
+                block, schedule=options.get("arc"), ahead=options.get("ahead"), lead=lead
             )
             blocks += [new, *weave] if begins else [*weave, new]
-        elif isinstance(block, Moves) and block.kind == "deposit" and "wire" in how:
-            blocks.append(dataclasses.replace(block, wire=how["wire"] * block.speed))
+        elif isinstance(block, Moves) and block.kind == "deposit" and "wire" in options:
+            blocks.append(dataclasses.replace(block, wire=options["wire"] * block.speed))
         else:
             blocks.append(block)
-    return dataclasses.replace(of, name=name, blocks=tuple(blocks), max_points=2000)
+    return dataclasses.replace(source, name=name, blocks=tuple(blocks), max_points=2000)
 
 
-TOOL = with_tool(HELD)
+TOOL = with_tool(HELD_PART)
 GOLDENS = {
-    "arc": told(beside(HELD), "arc", arc=5, weave=2),
-    "arc-held": told(HELD, "archeld", arc=5),
-    "ahead": told(TOOL, "ahead", ahead=0.05),
-    "ahead-joint": told(JOINT, "aheadj", ahead=0.0),
-    "wire": told(TOOL, "wire", wire=3.5, ahead=0.02),
+    "arc": with_process_data(add_positioner(HELD_PART), "arc", arc=5, weave=2),
+    "arc-held": with_process_data(HELD_PART, "archeld", arc=5),
+    "ahead": with_process_data(TOOL, "ahead", ahead=0.05),
+    "ahead-joint": with_process_data(JOINT, "aheadj", ahead=0.0),
+    "wire": with_process_data(TOOL, "wire", wire=3.5, ahead=0.02),
 }
 
 
@@ -405,15 +417,15 @@ GOLDENS = {
 def test_golden_modules_to_the_byte(root, name):
     files, folder = abb.write(GOLDENS[name]), root / "tests/golden/abb" / name
     assert files == {path.name: path.read_bytes() for path in folder.iterdir()}
-    read = abb.read(files)
+    readback = abb.read(files)
     deposit = np.repeat(
         [run.kind == "deposit" for run in GOLDENS[name].moves],
         [len(run) for run in GOLDENS[name].moves],
     )
-    assert read.deposit.tolist() == deposit.tolist()
+    assert readback.deposit.tolist() == deposit.tolist()
     if name == "wire":
         wire = 0.06 * 3.5 * np.concatenate([run.speed for run in GOLDENS[name].moves])
-        np.testing.assert_allclose(read.wire[deposit], wire[deposit], rtol=1e-6)
+        np.testing.assert_allclose(readback.wire[deposit], wire[deposit], rtol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -469,63 +481,74 @@ def test_golden_modules_to_the_byte(root, name):
 )
 def test_what_does_not_go_together_is_refused_before_planning(process, program, setup, code, words):
     by, motion = program.pop("by", "output"), program.pop("motion", "cartesian")
-    asked = ProgramParameters(
+    parameters = ProgramParameters(
         post="abb", motion=motion, schedule=ScheduleParameters(by=by), **program
     )
     with pytest.raises(InputError) as error:
-        refuse(planned(setup)[0], ProcessParameters(**process), asked)
+        refuse(planned(setup)[0], ProcessParameters(**process), parameters)
     assert error.value.code == code and words in error.value.message
 
 
-def ending_at(of, speed):
-    """The program with the last moves of its beads at another speed of the tip, and the time that this takes."""
+def ending_at(source, speed):
+    """Return the program with another tip speed on the last moves of its beads, and the matching
+    time."""
 
     def slower(block):
         if not isinstance(block, Moves) or block.kind != "deposit":
             return block
-        last = np.arange(len(block)) == len(block) - 1
-        duration = np.where(last, block.duration * block.speed / speed, block.duration)
+        is_last = np.arange(len(block)) == len(block) - 1
+        duration = np.where(is_last, block.duration * block.speed / speed, block.duration)
         return dataclasses.replace(
-            block, speed=np.where(last, speed, block.speed), duration=duration
+            block, speed=np.where(is_last, speed, block.speed), duration=duration
         )
 
-    return dataclasses.replace(of, blocks=tuple(map(slower, of.blocks)))
+    return dataclasses.replace(source, blocks=tuple(map(slower, source.blocks)))
 
 
 @pytest.mark.parametrize("of", [TOOL, JOINT])
 def test_rounding_moves_no_switch_by_more_than_half_a_millisecond_and_slower_moves_are_refused(of):
     for speed in (0.1, 0.123, 0.7891, 7.7777):
         for lead in (0.0007, 0.0123, 0.1, 0.15):
-            program = ending_at(told(of, "ahead", ahead=lead), speed)
-            kept = np.round(speed, 3) if of is TOOL else speed
+            program = ending_at(with_process_data(of, "ahead", ahead=lead), speed)
+            written_speed = np.round(speed, 3) if of is TOOL else speed
             (early,) = {
-                event.before / kept
+                event.before / written_speed
                 for event in abb.read(abb.write(program)).events
                 if event.kind == "off"
             }
             assert abs(early - lead) <= MOST_DIGITS + 1e-12
-    slow = ending_at(told(of, "ahead", ahead=0.02), 0.09)
+    slow = ending_at(with_process_data(of, "ahead", ahead=0.02), 0.09)
     with pytest.raises(InputError) as error:
         abb.write(slow)
     assert error.value.code == "TRIGGER" and "0.09 mm/s" in error.value.message
-    abb.write(ending_at(told(of, "ahead", ahead=0.0), 0.09))  # where it ends, whatever the speed
+    abb.write(
+        ending_at(with_process_data(of, "ahead", ahead=0.0), 0.09)
+    )  # at its end, at any speed
 
 
 def test_a_way_is_as_long_ahead_as_the_tip_takes_for_it_on_that_very_move():
-    ways = ((1, 0.5), (2, 0.5), (3, 0.5), (4, 0.0))
-    events = tuple(Event(row, "off", (1.0, "do"), 0.00005, before=way) for row, way in ways)
-    other = Event(2, "on", (1.0, "do"), 0.001, ahead=0.03)
-    first, second, third, fourth, fifth = timed((*events, other), np.array([10.0, 0.05, 0.0, 0.0]))
-    assert (first.ahead, first.digits, first.before) == (0.05, 5e-6, None)
-    assert (second.ahead, second.digits) == (
+    distances = ((1, 0.5), (2, 0.5), (3, 0.5), (4, 0.0))
+    events = tuple(
+        Event(row, "off", (1.0, "do"), 0.00005, before=distance) for row, distance in distances
+    )
+    timed_event = Event(2, "on", (1.0, "do"), 0.001, ahead=0.03)
+    switch_on, switch_1, switch_2, switch_3, switch_4 = timed(
+        (*events, timed_event), np.array([10.0, 0.05, 0.0, 0.0])
+    )
+    assert (switch_on.ahead, switch_on.digits, switch_on.before) == (0.05, 5e-6, None)
+    assert (switch_1.ahead, switch_1.digits) == (
         10.0,
         MOST_DIGITS,
-    )  # digits explain no more than that
-    assert np.isnan(third.ahead) and (fourth.ahead, fourth.digits) == (0.0, 0.0) and fifth is other
+    )  # the rounding explains no more than this
+    assert (
+        np.isnan(switch_2.ahead)
+        and (switch_3.ahead, switch_3.digits) == (0.0, 0.0)
+        and switch_4 is timed_event
+    )
 
 
 def many_speeds(block):
-    """A bead of 501 points and as many speeds."""
+    """Return a bead of 501 points with a different speed at each."""
     if not isinstance(block, Moves) or block.kind != "deposit":
         return block
     names = ("joints", "duration", "position", "rotation")
@@ -537,31 +560,31 @@ def many_speeds(block):
 
 def test_writing_refuses_it_too_and_weaves_and_speeds_beyond_what_there_is():
     for wrong, code in (
-        (told(JOINT, "arc", arc=3), "SCHEDULE"),
-        (told(TOOL, "weave", weave=2), "WEAVE"),
-        (told(HELD, "weave", arc=3, weave=2), "WEAVE"),
-        (told(TOOL, "weave", arc=3, weave=256), "WEAVE"),
-        (told(JOINT, "wire", wire=2.0), "NO_WIRE_OUTPUT"),
-        (told(HELD, "wire", wire=2.0), "NO_WIRE_OUTPUT"),
-        (told(beside(HELD), "wire", wire=2.0), "NO_WIRE_OUTPUT"),
-        (told(TOOL, "wire", arc=3, wire=2.0), "NO_WIRE_OUTPUT"),
-        (told(TOOL, "seam", arc=10000), "SCHEDULE"),
-        (told(TOOL, "ahead", ahead=0.51), "TRIGGER_LEAD"),
+        (with_process_data(JOINT, "arc", arc=3), "SCHEDULE"),
+        (with_process_data(TOOL, "weave", weave=2), "WEAVE"),
+        (with_process_data(HELD_PART, "weave", arc=3, weave=2), "WEAVE"),
+        (with_process_data(TOOL, "weave", arc=3, weave=256), "WEAVE"),
+        (with_process_data(JOINT, "wire", wire=2.0), "NO_WIRE_OUTPUT"),
+        (with_process_data(HELD_PART, "wire", wire=2.0), "NO_WIRE_OUTPUT"),
+        (with_process_data(add_positioner(HELD_PART), "wire", wire=2.0), "NO_WIRE_OUTPUT"),
+        (with_process_data(TOOL, "wire", arc=3, wire=2.0), "NO_WIRE_OUTPUT"),
+        (with_process_data(TOOL, "seam", arc=10000), "SCHEDULE"),
+        (with_process_data(TOOL, "ahead", ahead=0.51), "TRIGGER_LEAD"),
     ):
         with pytest.raises(InputError) as error:
             abb.write(wrong)
         assert error.value.code == code, code
-    many = tuple(many_speeds(block) for block in told(TOOL, "many", arc=3).blocks)
+    blocks = tuple(many_speeds(block) for block in with_process_data(TOOL, "many", arc=3).blocks)
     with pytest.raises(InputError) as error:
-        abb.write(dataclasses.replace(TOOL, blocks=many, max_points=5000))
+        abb.write(dataclasses.replace(TOOL, blocks=blocks, max_points=5000))
     assert error.value.code == "MOVE_SPEED" and "500" in error.value.message
 
 
 def test_a_dry_run_has_no_arc_no_trigger_and_no_wire_and_moves_alike():
     for kind in ("held", "wire ahead"):
-        text = b"".join(written(kind, dry_run=True)[3].values())
+        text = b"".join(write_program(kind, dry_run=True)[3].values())
         assert not re.search(rb"Arc|Trigg|trigg|weld|ao9|SetDO", text)
-        cell, motion, program, files = written(kind, dry_run=True)
+        cell, motion, program, files = write_program(kind, dry_run=True)
         assert not [
             issue
             for issue in verify(cell, motion, program, files, abb, CHORD_ERROR).issues
@@ -570,13 +593,15 @@ def test_a_dry_run_has_no_arc_no_trigger_and_no_wire_and_moves_alike():
 
 
 def test_lines_of_moves_are_found_where_an_arc_stands_too():
-    """As many as there are moves, and none of them is where an arc is struck or ends standing."""
+    """A program with arcs lists one line for each move; none of them is a line that only strikes or
+    ends an arc."""
     for kind in KINDS:
-        _, motion, _, files = written(kind)
-        found = found_lines("abb", files)
-        assert len(found) == int(motion.moves.sum())
+        _, motion, _, files = write_program(kind)
+        move_lines = found_lines("abb", files)
+        assert len(move_lines) == int(motion.moves.sum())
         (text,) = (content.decode().split("\n") for content in files.values())
         assert not any(
-            "ArcLStart" in text[line] or ",v_am,seam" in text[line] for line in found.line.tolist()
+            "ArcLStart" in text[line] or ",v_am,seam" in text[line]
+            for line in move_lines.line.tolist()
         )
     assert catalogue.load("abb").NO_TRIGGER == ""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Which of a program's files a controller is told to run."""
+"""The catalogue states which files of a program the controller has to run."""
 
 import ast
 import re
@@ -44,13 +44,16 @@ def test_of_programs_that_are_written_it_names_all_parts(folder):
         if path.is_file()
     ]
     main = catalogue.main_file(files)
-    parts = {match.group() for name in files if (match := re.search(r"(?i)(gauge|tip)\d\d", name))}
+    part_names = {
+        match.group() for name in files if (match := re.search(r"(?i)(gauge|tip)\d\d", name))
+    }
     text = (GOLDEN / folder / main).read_text(encoding="latin-1")
-    assert len(parts) == 2 and all(part in text for part in parts)
+    assert len(part_names) == 2 and all(part_name in text for part_name in part_names)
 
 
 def test_no_other_room_names_a_controller():
-    """Nothing but its post knows of a controller: no constant elsewhere is the name of one, but the post of a new job."""
+    """Only its post knows a controller: no constant elsewhere is the name of one, except the
+    default post of a new job."""
     package = Path(catalogue.__file__).resolve().parent.parent
     named = {
         (path.relative_to(package).as_posix(), node.value)

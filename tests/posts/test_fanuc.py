@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is written for a FANUC controller: texts to the byte, times, turns and parts."""
+"""FANUC listings: exact bytes, times, turns and parts."""
 
 import dataclasses
 import re
@@ -47,10 +47,11 @@ def test_golden_programs_to_the_byte(root, name, assert_listings):
     assert_listings(files)
 
 
-def two_groups(of, **more):
-    """The same with two axes of another motion group, which tilt by 30 deg and turn on with every move."""
+def add_second_group(source, **changes):
+    """Return the program with two axes of another motion group, which tilt by 30 deg and turn
+    further with every move."""
     count, blocks = 0, []
-    for block in of.blocks:
+    for block in source.blocks:
         if isinstance(block, Moves):
             turned = np.radians(
                 np.c_[np.full(len(block), 30.0), 10.0 * (count + np.arange(len(block))) - 0.25]
@@ -61,7 +62,7 @@ def two_groups(of, **more):
             )
         blocks.append(block)
     return dataclasses.replace(
-        of,
+        source,
         blocks=tuple(blocks),
         **{
             "name": "groups",
@@ -69,98 +70,114 @@ def two_groups(of, **more):
             "setup": "tool-on-robot",
             "external_kinds": ("rotary", "rotary"),
             "unit": "2",
-            **more,
+            **changes,
         },
     )
 
 
 def test_a_positioner_is_a_second_motion_group(root):
-    of = two_groups(beads(1, 12, layers=2, max_points=20))
-    files = fanuc.write(of)
+    source = add_second_group(beads(1, 12, layers=2, max_points=20))
+    files = fanuc.write(source)
     assert files == {
         path.name: path.read_bytes() for path in (root / "tests/golden/fanuc").glob("GROUPS*.LS")
     }
-    read, joints = fanuc.read(files), np.concatenate([moves.joints for moves in of.moves])
-    np.testing.assert_allclose(read.joints, joints, rtol=0.0, atol=np.radians(5.1e-4))
-    assert read.unit == "2" and read.position is None
+    readback, joints = fanuc.read(files), np.concatenate([moves.joints for moves in source.moves])
+    np.testing.assert_allclose(readback.joints, joints, rtol=0.0, atol=np.radians(5.1e-4))
+    assert readback.unit == "2" and readback.position is None
     assert all(b"DEFAULT_GROUP\t= 1,1,*,*,*;" in content for content in files.values())
-    text = fanuc.write(two_groups(GOLDEN_JOINT, unit="4"))["GROUPS.LS"].decode()
+    text = fanuc.write(add_second_group(GOLDEN_JOINT, unit="4"))["GROUPS.LS"].decode()
     assert "= 1,*,*,1,*;" in text and text.count(
         "   GP4:\r\n\tUF : 1, UT : 1,\t\r\n\tJ1=    30.000 deg,\tJ2="
     ) == len(re.findall(r"^P\[", text, re.MULTILINE))
     assert "COORD" in refusal(
-        dataclasses.replace(of, motion="cartesian"),
+        dataclasses.replace(source, motion="cartesian"),
         code="COORDINATED_MOTION",
         where="program.motion",
     )
     refusal(
-        dataclasses.replace(of, first_external=2),
+        dataclasses.replace(source, first_external=2),
         code="UNSUPPORTED_AXES",
         where="program.axes.first",
     )
     for unit in ("1", "6", "STN1"):
         refusal(
-            dataclasses.replace(of, unit=unit), code="UNSUPPORTED_AXES", where="program.axes.unit"
+            dataclasses.replace(source, unit=unit),
+            code="UNSUPPORTED_AXES",
+            where="program.axes.unit",
         )
 
 
-def along(of, at=0, **more):
-    """The same with the robot on a track, which goes on by 12.5 mm with every move: its axis so far behind the robot's."""
+def put_on_track(source, axis_index=0, **changes):
+    """Return the program with the robot on a track that advances by 12.5 mm with every move;
+    `axis_index` counts its axis from the robot's."""
     count, blocks = 0, []
-    for block in of.blocks:
+    for block in source.blocks:
         if isinstance(block, Moves):
-            way = 12.5 * (count + np.arange(len(block))) - 900.125
+            track_positions = 12.5 * (count + np.arange(len(block))) - 900.125
             count += len(block)
-            block = dataclasses.replace(block, joints=np.insert(block.joints, 6 + at, way, axis=1))
+            block = dataclasses.replace(
+                block, joints=np.insert(block.joints, 6 + axis_index, track_positions, axis=1)
+            )
         blocks.append(block)
-    kinds = [*of.external_kinds]
-    kinds.insert(at, "linear")
+    kinds = [*source.external_kinds]
+    kinds.insert(axis_index, "linear")
     return dataclasses.replace(
-        of,
+        source,
         blocks=tuple(blocks),
         **{
             "name": "rail",
-            "continuous": (False,) * (7 + len(of.external_kinds)),
+            "continuous": (False,) * (7 + len(source.external_kinds)),
             "setup": "tool-on-robot",
             "external_kinds": tuple(kinds),
-            **more,
+            **changes,
         },
     )
 
 
 def test_a_track_is_an_axis_of_the_robots_own_group(root):
-    grouped = two_groups(beads(1, 12, layers=2, max_points=20))
-    for of, group in (
-        (along(GOLDEN_JOINT), "1"),
-        (along(grouped, at=2, name="railgrp"), "2"),
-        (along(grouped, at=1), "2"),
+    grouped = add_second_group(beads(1, 12, layers=2, max_points=20))
+    for source, group in (
+        (put_on_track(GOLDEN_JOINT), "1"),
+        (put_on_track(grouped, axis_index=2, name="railgrp"), "2"),
+        (put_on_track(grouped, axis_index=1), "2"),
     ):
-        files = fanuc.write(of)
-        read, joints = fanuc.read(files), np.concatenate([moves.joints for moves in of.moves])
-        slides = np.array([*(False,) * 6, *(kind == "linear" for kind in of.external_kinds)])
-        np.testing.assert_array_equal(read.joints[:, slides], joints[:, slides])  # mm as they are
-        np.testing.assert_allclose(
-            read.joints[:, ~slides], joints[:, ~slides], rtol=0.0, atol=np.radians(5.1e-4)
+        files = fanuc.write(source)
+        readback, joints = (
+            fanuc.read(files),
+            np.concatenate([moves.joints for moves in source.moves]),
         )
-        assert (read.unit, read.linear_digits) == (group if group != "1" else "", 0.0005)
+        slides = np.array([*(False,) * 6, *(kind == "linear" for kind in source.external_kinds)])
+        # mm stay unchanged
+        np.testing.assert_array_equal(readback.joints[:, slides], joints[:, slides])
+        np.testing.assert_allclose(
+            readback.joints[:, ~slides], joints[:, ~slides], rtol=0.0, atol=np.radians(5.1e-4)
+        )
+        assert (readback.unit, readback.linear_digits) == (group if group != "1" else "", 0.0005)
         for content in files.values():
             text = content.decode()
             records = text[text.index("/POS") :].split("};")[:-1]
-            # the form of records of controllers: after the last angle, blank before mm, in the first group
-            told = [
+            # the form in a controller's records: after the last angle, blank before mm, in the
+            # first group
+            matches = [
                 re.search(r" deg,\r\n\tE1=(.{10})  mm\r\n(?:   GP2:\r\n|$)", record)
                 for record in records
             ]
-            assert all(told) and np.allclose(np.diff([float(one[1]) for one in told]), 12.5)
+            assert all(matches) and np.allclose(
+                np.diff([float(match[1]) for match in matches]), 12.5
+            )
             assert f"DEFAULT_GROUP\t= {'1,1' if group == '2' else '1,*'},*,*,*;" in text
-    files = fanuc.write(along(GOLDEN_JOINT)) | fanuc.write(along(grouped, at=2, name="railgrp"))
+    files = fanuc.write(put_on_track(GOLDEN_JOINT)) | fanuc.write(
+        put_on_track(grouped, axis_index=2, name="railgrp")
+    )
     assert files == {
         path.name: path.read_bytes() for path in (root / "tests/golden/fanuc").glob("RAIL*.LS")
     }
-    on_rail = dataclasses.replace(along(GOLDEN_JOINT), motion="cartesian")
+    on_rail = dataclasses.replace(put_on_track(GOLDEN_JOINT), motion="cartesian")
     assert "rail" in refusal(on_rail, code="COORDINATED_MOTION", where="program.motion")
-    refusal(along(GOLDEN_JOINT, unit="2"), code="UNSUPPORTED_AXES", where="program.axes.unit")
-    refusal(along(grouped, unit=""), code="UNSUPPORTED_AXES", where="program.axes.unit")
+    refusal(
+        put_on_track(GOLDEN_JOINT, unit="2"), code="UNSUPPORTED_AXES", where="program.axes.unit"
+    )
+    refusal(put_on_track(grouped, unit=""), code="UNSUPPORTED_AXES", where="program.axes.unit")
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -182,12 +199,12 @@ def test_a_locale_with_decimal_commas_changes_nothing(tmp_path, root):
         'comment_char %\nescape_char /\nLC_NUMERIC\ndecimal_point "<U002C>"\n'
         'thousands_sep "<U002E>"\ngrouping 3;3\nEND LC_NUMERIC\n'
     )
-    made = subprocess.run(
+    process = subprocess.run(
         ["localedef", "-c", "-i", source, "-f", "UTF-8", tmp_path / "comma.utf8"],
         capture_output=True,
     )
     if not (tmp_path / "comma.utf8/LC_NUMERIC").exists():
-        pytest.skip(f"no locale with decimal commas can be made here: {made.stderr[-200:]!r}")
+        pytest.skip(f"no locale with decimal commas can be made here: {process.stderr[-200:]!r}")
     code = (
         "import locale, importlib.util as u, sys; locale.setlocale(locale.LC_NUMERIC, 'comma.utf8');"
         "assert locale.str(0.5) == '0,5', locale.str(0.5);"
@@ -206,13 +223,13 @@ def test_a_locale_with_decimal_commas_changes_nothing(tmp_path, root):
     assert result.stdout == fanuc.write(GOLDEN_JOINT)["JOINT.LS"]
 
 
-# times
+# ---- times
 
 
 def written_times(content):
-    """Every time of the moves in ms, the first one left out."""
-    found = re.findall(r"J P\[\d+\] ([\d.]+)(msec|sec|%)", content.decode("ascii"))
-    return [float(value) * {"msec": 1, "sec": 1000, "%": 0}[unit] for value, unit in found][1:]
+    """Return the times of all moves but the first, in ms."""
+    matches = re.findall(r"J P\[\d+\] ([\d.]+)(msec|sec|%)", content.decode("ascii"))
+    return [float(value) * {"msec": 1, "sec": 1000, "%": 0}[unit] for value, unit in matches][1:]
 
 
 @pytest.mark.parametrize("seed", range(20))
@@ -224,7 +241,7 @@ def test_milliseconds_add_up_over_a_bead_and_none_is_zero(seed):
     )["PART.LS"]
     times = np.array(written_times(file))
     assert times.min() >= 1.0 and abs(times.sum() - 1000.0 * duration.sum()) <= 0.5 + 1e-9
-    if not seed % 2:  # no move is too short: every partial sum is right
+    if not seed % 2:  # no move is too short, so every partial sum is right
         assert np.abs(np.cumsum(times) - 1000.0 * np.cumsum(duration)).max() <= 0.5 + 1e-9
 
 
@@ -259,7 +276,7 @@ def test_the_first_move_goes_slowly_from_wherever_the_robot_stands():
     assert lines[2] == "J P[1] 10% FINE    ;"
 
 
-# events
+# ---- events
 
 
 def test_the_order_of_a_layer():
@@ -287,8 +304,8 @@ def test_an_endless_axis_says_what_it_needs_and_a_limited_one_keeps_its_turns():
     turning = moves("rapid", np.outer(np.arange(9), [0, 0, 0, 0, 0, 100.0]))
     text = fanuc.write(program(turning, continuous=(False,) * 5 + (True,)))["PART.LS"].decode()
     assert "!axis 6 turns without end: set it" in text and "Continuous Turn" in text
-    shown = [float(value) for value in re.findall(r"J6= *(\S+)", text)]
-    assert shown == [0.0, 100.0, -160.0, -60.0, 40.0, 140.0, -120.0, -20.0, 80.0]
+    axis_6 = [float(value) for value in re.findall(r"J6= *(\S+)", text)]
+    assert axis_6 == [0.0, 100.0, -160.0, -60.0, 40.0, 140.0, -120.0, -20.0, 80.0]
     text = fanuc.write(program(turning))["PART.LS"].decode()
     assert "Continuous" not in text
     assert [float(value) for value in re.findall(r"J6= *(\S+)", text)] == [
@@ -310,16 +327,16 @@ def test_angles_of_an_endless_axis_lie_within_half_a_turn(degrees, written):
 
 def test_a_move_of_half_a_turn_on_an_endless_axis_is_refused():
     values = [[0, 0, 0, 0, 0, 0.0], [0, 0, 0, 0, 0, 179.9], [0, 0, 0, 0, 0, 359.9]]
-    of = program(
+    source = program(
         moves("rapid", values[:2]),
         moves("deposit", values[2:], layer=3, bead=1),
         continuous=(False,) * 5 + (True,),
     )
-    assert "axis 6 turns 180.0 deg" in refusal(of, code="ENDLESS_STEP", where="layer 3 bead 1")
-    fanuc.write(dataclasses.replace(of, continuous=(False,) * 6))
+    assert "axis 6 turns 180.0 deg" in refusal(source, code="ENDLESS_STEP", where="layer 3 bead 1")
+    fanuc.write(dataclasses.replace(source, continuous=(False,) * 6))
 
 
-# parts
+# ---- parts
 
 
 def test_parts_hold_whole_beads(assert_listings):
@@ -336,21 +353,23 @@ def test_parts_hold_whole_beads(assert_listings):
 
 def test_a_bead_longer_than_a_part_is_cut_and_says_so(assert_listings):
     files = fanuc.write(beads(2, 25, max_points=10, layers=1))
-    parts = [body(files[name]) for name in list(files)[1:]]
-    points = [sum(line[0] == "J" for line in part) for part in parts]
+    bodies = [body(files[name]) for name in list(files)[1:]]
+    points = [sum(line[0] == "J" for line in statements) for statements in bodies]
     assert points == [10, 10, 7, 10, 10, 7]
-    assert [any("bead goes on in the next part" in line for line in part) for part in parts] == [
+    assert [
+        any("bead goes on in the next part" in line for line in statements) for statements in bodies
+    ] == [
         True,
         True,
         False,
     ] * 2
-    assert [any("bead goes on here" in line for line in part) for part in parts] == [
+    assert [any("bead goes on here" in line for line in statements) for statements in bodies] == [
         False,
         True,
         True,
     ] * 2
-    # the cut is passed without a stop, the bead's end is a stop
-    assert parts[0][-2].endswith("CNT100    ;") and [line for line in parts[2] if line[0] == "J"][
+    # the cut is passed without a stop; the bead's end is a stop
+    assert bodies[0][-2].endswith("CNT100    ;") and [line for line in bodies[2] if line[0] == "J"][
         -1
     ].endswith("FINE    ;")
     assert_listings(files)
@@ -361,12 +380,12 @@ def test_a_bead_that_goes_on_through_layers_is_no_place_to_cut():
         LayerStart(0), moves("rapid", np.zeros(6)), DepositOn(), moves("deposit", np.zeros((20, 6))),
         LayerStart(1), moves("deposit", np.zeros((20, 6)), layer=1), DepositOff(),
     )  # fmt: skip
-    first, second = (
+    first_run, second_run = (
         body(fanuc.write(dataclasses.replace(through, max_points=30))[f"PART0{n}.LS"])
         for n in (1, 2)
     )
-    assert "  !layer 1 ;" in first and first[-1] == "  !bead goes on in the next part ;"
-    assert second[2] == "  !bead goes on here ;" and second[-1] == "  DO[1]=OFF ;"
+    assert "  !layer 1 ;" in first_run and first_run[-1] == "  !bead goes on in the next part ;"
+    assert second_run[2] == "  !bead goes on here ;" and second_run[-1] == "  DO[1]=OFF ;"
 
 
 def test_no_file_has_more_lines_than_a_controller_takes(assert_listings):
@@ -376,7 +395,7 @@ def test_no_file_has_more_lines_than_a_controller_takes(assert_listings):
 
 
 def test_the_parts_of_a_program_are_the_program(random_program):
-    """Whatever the limit of points, the moves and events in the order of execution are the same."""
+    """The moves and events in the order of execution do not depend on the limit of points."""
 
     def executed(files, name="RANDOM"):
         for line in body(files[f"{name}.LS"]):
@@ -391,9 +410,9 @@ def test_the_parts_of_a_program_are_the_program(random_program):
                 re.findall(r"P\[\d+\]\{.*?\};", files[name].decode(), re.DOTALL)]  # fmt: skip
 
     for seed in range(8):
-        whole = fanuc.write(random_program(seed, max_points=10**5))
-        for most in (1, 7, 40):
-            parts = fanuc.write(random_program(seed, max_points=most))
-            assert list(executed(parts)) == list(executed(whole)) and records(parts) == records(
-                whole
-            )
+        complete = fanuc.write(random_program(seed, max_points=10**5))
+        for max_points in (1, 7, 40):
+            part_files = fanuc.write(random_program(seed, max_points=max_points))
+            assert list(executed(part_files)) == list(executed(complete)) and records(
+                part_files
+            ) == records(complete)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Numbers in FANUC listings, as controllers list them: no 0 before the point, except for 0 itself."""
+"""Numbers in FANUC listings have the form of controllers: no 0 before the point, except for 0
+itself."""
 
 import pytest
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Listings read back: everything written comes back to half a digit, and what is not understood is refused."""
+"""Listings come back from the reader to half a digit, and statements that it does not understand
+are rejected."""
 
 import re
 
@@ -14,7 +15,7 @@ pytestmark = pytest.mark.any_version
 
 HALF_DIGIT = 0.0005
 
-# an independent hand-written listing, as the pendant would list it
+# an independent listing by hand, as the pendant would show it
 BY_HAND = """\
 /PROG  HAND
 /ATTR
@@ -76,53 +77,53 @@ def by_hand(pattern="", replacement="", sub=SUB):
 
 
 def test_a_listing_by_hand():
-    read = fanuc.read(by_hand())
-    first, home, other = (
+    readback = fanuc.read(by_hand())
+    first_event, home_event, last_event = (
         [0.5, -0.25, 0.0, -190.125, 45.0, 180.0],
         [0, 0, 0, 0, -90.0, 0],
         [1, 2, 3, 4, 5, 6],
     )
-    assert np.degrees(read.joints) == pytest.approx(
-        np.array([home, first, home, other, first], float), abs=1e-12
+    assert np.degrees(readback.joints) == pytest.approx(
+        np.array([home_event, first_event, home_event, last_event, first_event], float), abs=1e-12
     )
-    assert read.duration == pytest.approx([np.nan, 0.25, 2.5, 0.001, 0.5], nan_ok=True)
-    assert read.deposit.tolist() == [False, True, True, False, False]
-    assert not read.linear.any() and read.stops.tolist() == [True, False, False, True, True]
-    assert read.blend[1:3].tolist() == [100.0, 0.0] and read.share[0] == 0.2
-    assert set(read.user_frame.tolist()) == {3.0} and set(read.tool_frame.tolist()) == {4.0}
-    assert [(event.row, event.kind, *event.value) for event in read.events] == [
+    assert readback.duration == pytest.approx([np.nan, 0.25, 2.5, 0.001, 0.5], nan_ok=True)
+    assert readback.deposit.tolist() == [False, True, True, False, False]
+    assert not readback.linear.any() and readback.stops.tolist() == [True, False, False, True, True]
+    assert readback.blend[1:3].tolist() == [100.0, 0.0] and readback.share[0] == 0.2
+    assert set(readback.user_frame.tolist()) == {3.0} and set(readback.tool_frame.tolist()) == {4.0}
+    assert [(event.row, event.kind, *event.value) for event in readback.events] == [
         (1, "on", 5.0, "DO"),
         (1, "wait", 0.5),
         (3, "off", 5.0, "DO"),
         (3, "input", 3.0),
         (5, "call", "ELSEWHERE"),
     ]
-    assert np.degrees(read.digits) == pytest.approx(0.005)  # two decimals in one of the files
-    assert np.isnan(read.speed).all() and read.position is None
+    assert np.degrees(readback.digits) == pytest.approx(0.005)  # one of the files has two decimals
+    assert np.isnan(readback.speed).all() and readback.position is None
 
 
 @pytest.mark.parametrize("seed", range(25))
 @pytest.mark.parametrize("motion", ["joint", "cartesian"])
 def test_random_programs_come_back(random_program, seed, motion):
     program = random_program(seed, motion, continuous=bool(seed % 3))
-    read = fanuc.read(fanuc.write(program))
+    readback = fanuc.read(fanuc.write(program))
     deposit, on = [], False
     for block in program.blocks:
         on = isinstance(block, DepositOn) or (on and not isinstance(block, DepositOff))
         deposit += [on] * len(block) if isinstance(block, Moves) else []
-    assert read.deposit.tolist() == deposit
+    assert readback.deposit.tolist() == deposit
     runs = program.moves
     timed = np.concatenate(
         [np.full(len(run), motion == "joint" or run.kind == "rapid") for run in runs]
     )
     timed[0] = False
-    assert (np.isfinite(read.duration) == timed).all()
-    assert not np.isfinite(read.speed[timed]).any() and not np.isfinite(read.speed[0])
+    assert (np.isfinite(readback.duration) == timed).all()
+    assert not np.isfinite(readback.speed[timed]).any() and not np.isfinite(readback.speed[0])
     starts = np.cumsum([0] + [len(run) for run in runs])
     for run, start in list(zip(runs, starts, strict=False))[1:]:
-        written = read.duration[start : start + len(run)]
+        written = readback.duration[start : start + len(run)]
         if not timed[start]:
-            assert np.abs(read.speed[start : start + len(run)] - run.speed).max() <= 0.05 + 1e-9
+            assert np.abs(readback.speed[start : start + len(run)] - run.speed).max() <= 0.05 + 1e-9
             continue
         long = run.duration > 32.0005
         assert np.abs(written - run.duration)[long].max(initial=0.0) <= 0.05 + 1e-9
@@ -131,24 +132,27 @@ def test_random_programs_come_back(random_program, seed, motion):
             and written.min() > 0.0009
         )
     if motion == "joint":
-        apart = np.degrees(read.joints - np.concatenate([run.joints for run in runs]))
-        apart[:, np.array(program.continuous)] -= 360.0 * np.rint(
-            apart[:, np.array(program.continuous)] / 360.0
+        joint_errors = np.degrees(readback.joints - np.concatenate([run.joints for run in runs]))
+        joint_errors[:, np.array(program.continuous)] -= 360.0 * np.rint(
+            joint_errors[:, np.array(program.continuous)] / 360.0
         )
-        assert np.abs(apart).max() <= HALF_DIGIT + 1e-9 and np.degrees(
-            read.digits
+        assert np.abs(joint_errors).max() <= HALF_DIGIT + 1e-9 and np.degrees(
+            readback.digits
         ) == pytest.approx(HALF_DIGIT)
     else:
         position, rotation = (
             np.concatenate([getattr(run, name) for run in runs])
             for name in ("position", "rotation")
         )
-        assert np.abs(read.position - position).max() <= HALF_DIGIT + 1e-9 and read.joints is None
-        between = np.swapaxes(read.rotation, 1, 2) @ rotation
+        assert (
+            np.abs(readback.position - position).max() <= HALF_DIGIT + 1e-9
+            and readback.joints is None
+        )
+        between = np.swapaxes(readback.rotation, 1, 2) @ rotation
         angle = np.linalg.norm(between - np.eye(3), axis=(1, 2)) / np.sqrt(2.0)
         assert np.degrees(angle).max() <= 3.0 * HALF_DIGIT + 1e-9
-        assert read.position_digits == pytest.approx(HALF_DIGIT)
-        assert np.degrees(read.rotation_digits) == pytest.approx(HALF_DIGIT)
+        assert readback.position_digits == pytest.approx(HALF_DIGIT)
+        assert np.degrees(readback.rotation_digits) == pytest.approx(HALF_DIGIT)
 
 
 @pytest.mark.parametrize(("pattern", "replacement", "where", "why"), [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What FANUC's post refuses: names, set-ups, turns and speeds that no controller takes."""
+"""FANUC's post rejects names, set-ups, turns and speeds that no controller accepts."""
 
 import dataclasses
 
@@ -52,17 +52,17 @@ def test_a_name_without_room_for_the_digits_of_its_parts_is_refused():
 
 def test_called_programs_are_judged_by_the_same_rules():
     where = "process.between_layers.call"
-    of = program(moves("rapid", np.zeros(6)), Call("nozzle clean"))
-    assert "'NOZZLE_CLEAN'" in refusal(of, code="PROGRAM_NAME", where=where)
+    source = program(moves("rapid", np.zeros(6)), Call("nozzle clean"))
+    assert "'NOZZLE_CLEAN'" in refusal(source, code="PROGRAM_NAME", where=where)
     assert "program of the job" in refusal(
         program(moves("rapid", np.zeros(6)), Call("Part")), code="PROGRAM_NAME", where=where
     )
     split = beads(3, 20, max_points=25)
-    own = dataclasses.replace(split, blocks=(*split.blocks, Call("PART02")))
-    assert "program of the job" in refusal(own, code="PROGRAM_NAME", where=where)
+    clashing = dataclasses.replace(split, blocks=(*split.blocks, Call("PART02")))
+    assert "program of the job" in refusal(clashing, code="PROGRAM_NAME", where=where)
 
 
-# further refusals
+# ---- further refusals
 
 
 def test_remote_tcp_is_refused_with_its_reason():
@@ -112,8 +112,8 @@ def test_the_turn_number_of_axis_6(degrees, turn):
     run = GOLDEN_TABLE.blocks[0]
     joints = run.joints.copy()
     joints[0, 5] = np.radians(degrees)
-    of = dataclasses.replace(GOLDEN_TABLE, blocks=(dataclasses.replace(run, joints=joints),))
-    assert f"CONFIG : 'N U T, 0, 0, {turn}'".encode() in fanuc.write(of)["TABLE.LS"]
+    source = dataclasses.replace(GOLDEN_TABLE, blocks=(dataclasses.replace(run, joints=joints),))
+    assert f"CONFIG : 'N U T, 0, 0, {turn}'".encode() in fanuc.write(source)["TABLE.LS"]
 
 
 def test_cartesian_positions_of_an_arm_bent_backwards_are_refused():

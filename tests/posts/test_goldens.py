@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Golden programs by post, motion and what moves part and robot: for each of these that is written there are golden files,
-which are what is written, read back as the numbers that they are of, and with any damage are read as something else or not
-at all. The rest is refused with its reason (test_matrix.py). Damaged texts of planned jobs are refused: test_mutations.py.
-"""
+"""Golden programs by post, motion and set-up: each supported combination has golden files that
+equal the written ones, read back to the source numbers, and with any damage read as something else
+or not at all. Other combinations are rejected with a reason (test_matrix.py); test_mutations.py
+damages texts of planned jobs."""
 
 import dataclasses
 import itertools
@@ -29,19 +29,20 @@ from tests.posts.mutations import KINDS, TRIGGERS, mutated
 from tests.posts.test_matrix import OF_ROBOTS, ON_TABLES, REFUSED, SETUPS
 
 PART, TOOL, BOTH, TABLE = "part-on-robot", "tool-on-robot", "track and positioner", "rotary-table"
-GROUPED = test_fanuc.two_groups(beads(1, 12, layers=2, max_points=20))
+GROUPED = test_fanuc.add_second_group(beads(1, 12, layers=2, max_points=20))
 FANUC, ABB, KUKA, YASKAWA, STAUBLI, UR = (
     module.GOLDENS
     for module in (test_fanuc, test_abb, test_kuka, test_yaskawa, test_staubli, test_ur)
 )
-# of what is written: a program and its golden files, by their names in a folder of tests/golden
+# for each supported combination, a program and the names of its golden files in a folder of
+# tests/golden
 GOLDENS = {
     ("fanuc", "joint", PART): (FANUC["joint"], "", "JOINT*.LS"),
     ("fanuc", "joint", TOOL): (FANUC["tool"], "", "TOOL*.LS"),
     ("fanuc", "cartesian", TOOL): (FANUC["table"], "", "TABLE*.LS"),
     ("fanuc", "joint", "positioner"): (GROUPED, "fanuc", "GROUPS*.LS"),
-    ("fanuc", "joint", "track"): (test_fanuc.along(GOLDEN_JOINT), "fanuc", "RAIL.LS"),
-    ("fanuc", "joint", BOTH): (test_fanuc.along(GROUPED, at=2, name="railgrp"), "fanuc", "RAILGRP*.LS"),
+    ("fanuc", "joint", "track"): (test_fanuc.put_on_track(GOLDEN_JOINT), "fanuc", "RAIL.LS"),
+    ("fanuc", "joint", BOTH): (test_fanuc.put_on_track(GROUPED, axis_index=2, name="railgrp"), "fanuc", "RAILGRP*.LS"),
     ("staubli", "joint", PART): (STAUBLI["joint"], "val3/joint", "**/*"),
     ("staubli", "joint", TOOL): (STAUBLI["tool-joint"], "val3/tool-joint", "**/*"),
     ("staubli", "cartesian", PART): (STAUBLI["gauge"], "val3/gauge", "**/*"),
@@ -90,22 +91,22 @@ ALL = GOLDENS | OPTIONAL
 EXTERNAL = {"positioner": {"rotary"}, "track": {"linear"}, BOTH: {"rotary", "linear"}}
 IDS = [" ".join(cell) for cell in ALL]
 OWN_FRAMES = {("ur", TOOL), ("staubli", PART), ("staubli", TOOL), ("abb", PART)}
-LEAST = 10  # kinds of damage that each text has a place for
-# of the only place in the text, where the next part says the same again
+MIN_DAMAGE_KINDS = 10  # each text has matches for at least this many kinds of damage
+# at the only match in the text, where the next part states the same again
 NO_DAMAGE = {("linuxcnc", "cartesian", TABLE): "the kinematics kept"}
 
 
 def golden_files(root, folder, names):
-    at = root / "tests/golden" / folder
+    golden_folder = root / "tests/golden" / folder
     return {
-        path.relative_to(at).as_posix(): path.read_bytes()
-        for path in at.glob(names)
+        path.relative_to(golden_folder).as_posix(): path.read_bytes()
+        for path in golden_folder.glob(names)
         if path.is_file()
     }
 
 
-def column(of, name):
-    return np.concatenate([getattr(run, name) for run in of.moves])
+def column(source, name):
+    return np.concatenate([getattr(run, name) for run in source.moves])
 
 
 def test_all_that_is_written_has_golden_files_and_the_rest_is_refused():
@@ -119,24 +120,26 @@ def test_all_that_is_written_has_golden_files_and_the_rest_is_refused():
 @pytest.mark.parametrize("cell", ALL, ids=IDS)
 def test_golden_files_are_what_is_written_and_come_back_as_its_numbers(root, cell):
     post, motion, setup = cell[:3]
-    of, folder, names = ALL[cell]
-    assert (of.motion, set(of.external_kinds)) == (motion, EXTERNAL.get(setup, set()))
-    assert setup == TABLE or (of.setup == PART) == (setup == PART)
+    source, folder, names = ALL[cell]
+    assert (source.motion, set(source.external_kinds)) == (motion, EXTERNAL.get(setup, set()))
+    assert setup == TABLE or (source.setup == PART) == (setup == PART)
     files = golden_files(root, folder, names)
-    assert files and files == catalogue.load(post).write(of)
-    read, joints = catalogue.load(post).read(files), column(of, "joints")
-    deposit = np.repeat([run.kind == "deposit" for run in of.moves], [len(run) for run in of.moves])
-    assert read.deposit.tolist() == deposit.tolist()
-    # moves onto beads on which an ABB switches the deposit are linear ones too
+    assert files and files == catalogue.load(post).write(source)
+    readback, joints = catalogue.load(post).read(files), column(source, "joints")
+    deposit = np.repeat(
+        [run.kind == "deposit" for run in source.moves], [len(run) for run in source.moves]
+    )
+    assert readback.deposit.tolist() == deposit.tolist()
+    # an ABB also approaches beads linearly if it switches the deposit on these moves
     straight = np.repeat(
-        [run.interpolation == "linear" for run in of.moves], [len(run) for run in of.moves]
+        [run.interpolation == "linear" for run in source.moves], [len(run) for run in source.moves]
     )
     linear = (deposit | straight) & (motion == "cartesian")
-    assert read.linear.tolist() == linear.tolist()
+    assert readback.linear.tolist() == linear.tolist()
     slides = np.array(
         [
-            *(False,) * (joints.shape[1] - len(of.external_kinds)),
-            *(kind == "linear" for kind in of.external_kinds),
+            *(False,) * (joints.shape[1] - len(source.external_kinds)),
+            *(kind == "linear" for kind in source.external_kinds),
         ]
     )
     if setup == TABLE:
@@ -144,27 +147,28 @@ def test_golden_files_are_what_is_written_and_come_back_as_its_numbers(root, cel
     by_joints = (
         ~linear if motion == "cartesian" and post != "yaskawa" else np.ones(len(joints), bool)
     )
-    if read.joints is None:
+    if readback.joints is None:
         assert (post, motion) == ("fanuc", "cartesian") or post == "ur"
     else:
-        apart = read.joints - joints
-        continuous = np.array(of.continuous)
-        apart[:, continuous] -= 2.0 * np.pi * np.rint(apart[:, continuous] / (2.0 * np.pi))
-        assert np.isfinite(apart[by_joints]).all()
-        allowed = np.where(slides, read.linear_digits, read.digits) + 1e-9
-        assert (np.nan_to_num(np.abs(apart)) <= allowed).all()
-        told = np.isfinite(read.joints[:, len(slides) - len(of.external_kinds) :])
-        assert told.all()  # external axes at every move
-    # texts of URScript and VAL 3, and of ABB with the part on the robot, tell positions in frames of their own
+        errors = readback.joints - joints
+        continuous = np.array(source.continuous)
+        errors[:, continuous] -= 2.0 * np.pi * np.rint(errors[:, continuous] / (2.0 * np.pi))
+        assert np.isfinite(errors[by_joints]).all()
+        allowed = np.where(slides, readback.linear_digits, readback.digits) + 1e-9
+        assert (np.nan_to_num(np.abs(errors)) <= allowed).all()
+        is_stated = np.isfinite(readback.joints[:, len(slides) - len(source.external_kinds) :])
+        assert is_stated.all()  # every move states the external axes
+    # URScript, VAL 3, and ABB with the part on the robot state positions in frames of their own
     if motion == "cartesian" and post != "yaskawa" and (post, setup) not in OWN_FRAMES:
-        apart = read.position[deposit] - np.concatenate(
-            [run.position for run in of.moves if run.kind == "deposit"]
+        errors = readback.position[deposit] - np.concatenate(
+            [run.position for run in source.moves if run.kind == "deposit"]
         )
-        assert np.abs(apart).max() <= read.position_digits + 1e-9
+        assert np.abs(errors).max() <= readback.position_digits + 1e-9
 
 
-def told(read):
-    """All that a reader found of the motion, to be compared: damage that moves its lines alone changes nothing."""
+def motion_of(readback):
+    """Return all that a reader gets of the motion, for comparison; damage that only moves lines
+    does not change it."""
 
     def plain(value):
         if dataclasses.is_dataclass(value):
@@ -173,26 +177,26 @@ def told(read):
             return value.shape, np.nan_to_num(value.astype(float), nan=1e99).tobytes()
         return tuple(map(plain, value)) if isinstance(value, (tuple, list)) else value
 
-    return plain(dataclasses.replace(read, lines=None))
+    return plain(dataclasses.replace(readback, lines=None))
 
 
 @pytest.mark.parametrize("cell", ALL, ids=IDS)
 def test_damaged_golden_files_are_not_read_as_the_same(root, cell):
     post = catalogue.load(cell[0])
     files = golden_files(root, *ALL[cell][1:])
-    whole, passed, tried = told(post.read(files)), [], set()
-    more = TRIGGERS.get(cell[0], {}) if cell in OPTIONAL else {}
-    for kind, (pattern, change) in (KINDS[cell[0]] | more).items():
+    intact, passed, kinds_done = motion_of(post.read(files)), [], set()
+    trigger_kinds = TRIGGERS.get(cell[0], {}) if cell in OPTIONAL else {}
+    for kind, (pattern, change) in (KINDS[cell[0]] | trigger_kinds).items():
         damaged = mutated(
             files, pattern, change, np.random.default_rng(zlib.crc32(repr((cell, kind)).encode()))
         )
         if damaged is None or NO_DAMAGE.get(cell) == kind:
             continue
-        tried.add(kind)
+        kinds_done.add(kind)
         try:
-            same = told(post.read(damaged)) == whole
+            same = motion_of(post.read(damaged)) == intact
         except InputError:
             continue
         passed += [kind] if same else []
     assert not passed
-    assert len(tried) >= LEAST and tried >= set(more)
+    assert len(kinds_done) >= MIN_DAMAGE_KINDS and kinds_done >= set(trigger_kinds)

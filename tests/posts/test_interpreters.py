@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Five-axis programs through interpreters that are not ours: they end where they should, as fast, with the deposit on."""
+"""Independent interpreters run five-axis programs: these reach their ends at the planned speed,
+with the deposit on."""
 
 import math
 import re
@@ -19,33 +20,38 @@ sinumerik_is_here = pytest.mark.skipif(
     nc_python() is None, reason="no nc-gcode-interpreter: `./freecad-am test` fetches it"
 )
 LETTERS = "XYZABC"
-# half of the last digit of a word, and what the interpreter of 0.1.9 loses, which counts in single precision
+# half of the last digit of a word, and the rounding of interpreter 0.1.9, which uses single
+# precision
 HALF, SINGLE = 5e-6 + 1e-9, 1.2e-7
 
 
-def columns(of, name):
-    return np.concatenate([getattr(run, name) for run in of.moves])
+def columns(source, name):
+    return np.concatenate([getattr(run, name) for run in source.moves])
 
 
-def wanted(of):
-    """(n, 6) X Y Z mm, A B C deg of all moves as LinuxCNC is to take them, 0 for axes that are not there."""
-    joints, values = columns(of, "joints"), np.zeros((len(columns(of, "joints")), 6))
-    for column, name in enumerate(of.axis_names):
+def expected_positions(source):
+    """Return (n, 6) X Y Z in mm and A B C in deg that LinuxCNC must reach in all moves; 0 for
+    missing axes."""
+    joints, values = columns(source, "joints"), np.zeros((len(columns(source, "joints")), 6))
+    for column, name in enumerate(source.axis_names):
         values[:, LETTERS.index(name)] = (
             joints[:, column] if name in "XYZ" else np.degrees(joints[:, column])
         )
-    if of.motion == "cartesian":
+    if source.motion == "cartesian":
         deposit = np.repeat(
-            [run.kind == "deposit" for run in of.moves], [len(run) for run in of.moves]
+            [run.kind == "deposit" for run in source.moves], [len(run) for run in source.moves]
         )
-        values[deposit, :3] = columns(of, "position")[deposit]
+        values[deposit, :3] = columns(source, "position")[deposit]
     return values
 
 
-def wires(of):
-    """Speed of the wire in each move, NaN where it is not told; and whether the move is the first of a bead."""
-    speeds = [np.full(len(run), np.nan) if run.wire is None else run.wire for run in of.moves]
-    return np.concatenate(speeds), np.concatenate([np.arange(len(run)) == 0 for run in of.moves])
+def wires(source):
+    """Return the wire speed in each move, NaN where not stated, and whether the move is the first
+    of a bead."""
+    speeds = [np.full(len(run), np.nan) if run.wire is None else run.wire for run in source.moves]
+    return np.concatenate(speeds), np.concatenate(
+        [np.arange(len(run)) == 0 for run in source.moves]
+    )
 
 
 @linuxcnc_is_here
@@ -55,46 +61,48 @@ def wires(of):
 )
 def test_linuxcnc_goes_where_it_should(tmp_path, seed, motion, feed):
     names = (("X", "Y", "Z", "A", "C"), ("X", "Y", "Z", "B", "C"))[seed % 2]
-    of = random_program(seed, motion, seed % 3 == 0, names, wire=seed % 2 == 0, deposit_output=4)
-    of = with_options(of, path_feed=feed, wire_output=7, wire_gain=2.5)
-    moves, complaints = run_rs274(tmp_path, linuxcnc.write(of), "random.ngc", 250.0)
+    source = random_program(
+        seed, motion, seed % 3 == 0, names, wire=seed % 2 == 0, deposit_output=4
+    )
+    source = with_options(source, path_feed=feed, wire_output=7, wire_gain=2.5)
+    moves, complaints = run_rs274(tmp_path, linuxcnc.write(source), "random.ngc", 250.0)
     assert not complaints and not any(move["rapid"] for move in moves)
-    at = np.array([move["at"] for move in moves])
+    positions = np.array([move["at"] for move in moves])
     assert (
-        np.abs(at - wanted(of)).max() <= 5e-6 + 5e-5 + 1e-9
-    )  # of the text, and of what rs274 prints
-    assert [move["deposit"] for move in moves] == deposit_of(of)
-    for move, wire, first in zip(moves, *wires(of), strict=True):
+        np.abs(positions - expected_positions(source)).max() <= 5e-6 + 5e-5 + 1e-9
+    )  # rounding of the text and of rs274's output
+    assert [move["deposit"] for move in moves] == deposit_of(source)
+    for move, wire, is_first in zip(moves, *wires(source), strict=True):
         if np.isfinite(wire):
             value, queued = move["analogue"][6]
-            assert value == pytest.approx(0.15 * wire, rel=5.1e-5) and not (first and queued)
-    # an exact stop at every point of a rapid, and corners rounded in beads alone
-    assert [move["corner"] for move in moves] == [0.05 if on else 0.0 for on in deposit_of(of)]
-    tip = [motion == "cartesian" and on for on in deposit_of(of)]
+            assert value == pytest.approx(0.15 * wire, rel=5.1e-5) and not (is_first and queued)
+    # rapids stop exactly at every point, and only beads round corners
+    assert [move["corner"] for move in moves] == [0.05 if on else 0.0 for on in deposit_of(source)]
+    tip = [motion == "cartesian" and on for on in deposit_of(source)]
     assert [move["kinematics"] for move in moves] == [428 if on else 429 for on in tip]
-    assert [move["offset"] for move in moves] == [of.user_frame if on else 9 for on in tip]
-    seconds, planned = np.array([move["seconds"] for move in moves]), columns(of, "duration")
-    way, feeds = (
+    assert [move["offset"] for move in moves] == [source.user_frame if on else 9 for on in tip]
+    seconds, planned = np.array([move["seconds"] for move in moves]), columns(source, "duration")
+    lengths, feeds = (
         np.array([move["way"] for move in moves]),
         np.array([move["feed"] for move in moves]),
     )
-    steps = np.abs(np.diff(np.round(wanted(of), 5), axis=0, prepend=0.0))
+    steps = np.abs(np.diff(np.round(expected_positions(source), 5), axis=0, prepend=0.0))
     slides = np.linalg.norm(steps[:, :3], axis=1)
-    # rs274 prints four decimals: too few of short ways and small feeds
-    told = (
-        (way > 0.05)
+    # rs274 prints four decimals, too few for short moves and small feeds
+    is_precise = (
+        (lengths > 0.05)
         & (feeds > 0.01)
         & ((slides > 0.05) | (slides == 0.0))
         & (np.arange(len(moves)) > 0)
     )
     off = np.abs(seconds / planned - 1.0) - (
-        2e-4 / np.maximum(way, 1e-9) + 1e-4 / np.maximum(feeds, 1e-9)
+        2e-4 / np.maximum(lengths, 1e-9) + 1e-4 / np.maximum(feeds, 1e-9)
     )
     if motion == "cartesian":
-        speed = columns(of, "speed")
+        speed = columns(source, "speed")
         assert (np.abs(feeds / 60.0 - speed) / (1e-6 * speed + 1e-6))[tip].max() < 1.0
-        told &= ~np.array(tip) & ~np.roll(tip, 1)
-    assert told.sum() > (0 if motion == "cartesian" else 10) and off[told].max() < 1e-6
+        is_precise &= ~np.array(tip) & ~np.roll(tip, 1)
+    assert is_precise.sum() > (0 if motion == "cartesian" else 10) and off[is_precise].max() < 1e-6
 
 
 @linuxcnc_is_here
@@ -102,7 +110,7 @@ def test_linuxcnc_goes_where_it_should(tmp_path, seed, motion, feed):
     (r" F[\d.]+\n", "\n"), (r"\nM2\n", "\n"), (r"G17", "G18 G19"), (r"M429", "M431"), (r"G43", "G143"),
 ])  # fmt: skip
 def test_linuxcnc_refuses_what_is_wrong(tmp_path, damage):
-    """The judge is one: it refuses texts that are not programs."""
+    """The interpreter is a real judge: it rejects texts that are not programs."""
     ((name, content),) = linuxcnc.write(random_program(1, max_points=10**5)).items()
     text = re.sub(damage[0], damage[1], content.decode(), count=0)
     assert text != content.decode()
@@ -117,36 +125,36 @@ def test_linuxcnc_refuses_what_is_wrong(tmp_path, damage):
 @pytest.mark.always
 def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
     continuous = seed % 2 == 1
-    of = random_program(seed, motion, continuous, wire=seed % 2 == 0, deposit_output=4)
-    of = with_options(of, path_feed=feed, wire_output=7, wire_gain=2.5)
-    files = siemens.write(of)
-    rows, places, names = {}, [], set()
-    order = sorted(files)  # the parts are called in the order of their names
-    for file, (found, calls, complaint) in zip(
+    source = random_program(seed, motion, continuous, wire=seed % 2 == 0, deposit_output=4)
+    source = with_options(source, path_feed=feed, wire_output=7, wire_gain=2.5)
+    files = siemens.write(source)
+    rows, positions, names = {}, [], set()
+    order = sorted(files)  # parts are called in the order of their names
+    for file, (rows_, calls, complaint) in zip(
         order, run_nc([files[file].decode() for file in order]), strict=True
     ):
         assert not complaint
         names |= set(calls)
-        for row in found:
+        for row in rows_:
             rows.setdefault((file, row["N"]), row)
-        places += [
+        positions += [
             (file, int(number)) for number in re.findall(r"\nN(\d+) .*G1 ", files[file].decode())
         ]
     assert names <= {"CLEAN", *(file.removesuffix(".SPF") for file in files)}
-    joints, deposit = columns(of, "joints"), np.array(deposit_of(of))
+    joints, deposit = columns(source, "joints"), np.array(deposit_of(source))
     tip = deposit & (motion == "cartesian")
-    assert len(places) == len(joints)
-    for place, axes, is_tip, position, run_on, wire, stops in zip(
-        places,
+    assert len(positions) == len(joints)
+    for position_row, axes, is_tip, position, run_on, wire, stops in zip(
+        positions,
         joints,
         tip,
-        columns(of, "position") if motion == "cartesian" else joints,
+        columns(source, "position") if motion == "cartesian" else joints,
         deposit,
-        wires(of)[0],
-        columns(of, "stops"),
+        wires(source)[0],
+        columns(source, "stops"),
         strict=True,
     ):
-        row = rows[place]
+        row = rows[position_row]
         assert np.isnan(wire) or row["O7"] == pytest.approx(0.15 * wire, rel=5.1e-5)
         if is_tip:
             assert np.all(
@@ -157,15 +165,15 @@ def test_a_sinumerik_goes_where_it_should(seed, motion, feed):
             assert np.all(
                 np.abs([row[name] for name in "XYZ"] - axes[:3]) <= HALF + SINGLE * np.abs(axes[:3])
             )
-            apart = np.array([row["A"], row["C"]]) - np.degrees(axes[3:])
-            apart[1] -= 360.0 * np.rint(apart[1] / 360.0) * continuous
-            assert np.abs(apart).max() <= HALF + 360.0 * SINGLE
+            angle_errors = np.array([row["A"], row["C"]]) - np.degrees(axes[3:])
+            angle_errors[1] -= 360.0 * np.rint(angle_errors[1] / 360.0) * continuous
+            assert np.abs(angle_errors).max() <= HALF + 360.0 * SINGLE
         assert (row["gg01_motion"], row["gg07_tool_radius"], row["gg06_plane_select"]) == (
             "G1",
             "G40",
             "G17",
         )
-        assert row["gg08_work_offset"] == (siemens._offset(of.user_frame) if is_tip else "G500")
+        assert row["gg08_work_offset"] == (siemens._offset(source.user_frame) if is_tip else "G500")
         assert (row.get("H4") == 1.0) == run_on
         assert (row["gg10_exact_stop_mode"], row["gg11_exact_stop_non_modal"] == "G9") == (
             "G642",
@@ -194,9 +202,9 @@ def test_a_sinumerik_refuses_what_is_wrong():
 
 
 def test_programs_end_with_what_their_controllers_want():
-    of = random_program(2, max_points=45)
+    source = random_program(2, max_points=45)
     for post, ends in ((siemens, ("M30", "M17")), (linuxcnc, ("M2", "M2"))):
-        files = post.write(of)
+        files = post.write(source)
         assert len(files) > 2
         lasts = [content.decode().split("\n")[-2].split()[-1] for content in files.values()]
         assert lasts == [ends[0]] + [ends[1]] * (len(files) - 1)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""ArcTech in KUKA modules: planned jobs are lit and ended by it and read back through two solvers; every line of it that is
-lost, doubled, of another number or in another place is refused, and so is a way onto a bead that was not looked at."""
+"""ArcTech in KUKA modules: it lights and ends the beads of planned jobs, which read back through
+two solvers. Any of its lines that is lost, doubled, moved or has another number is rejected, and so
+is an approach that was not checked."""
 
 import dataclasses
 import functools
@@ -35,90 +36,93 @@ NAMES = [
 
 
 @functools.cache
-def made(name):
-    """Cell, motion, program and files of a planned job, lit by ArcTech."""
+def plan_program(name):
+    """Return cell, motion, program and files of a planned job that ArcTech lights."""
     cell, _, motion = planned(name)
     motion = linear_approach.shorten_approaches(motion, cell)
     program = build(motion, cell, LIT, ARC, "job")
     return cell, motion, program, kuka.write(program)
 
 
-def said(name, text):
-    cell, motion, program, _ = made(name)
+def find_errors(name, text):
+    cell, motion, program, _ = plan_program(name)
     try:
-        found = verify(
+        result = verify(
             cell, motion, program, {"job.src": "\r\n".join(text).encode()}, kuka, CHORD_ERROR
         )
     except InputError as error:
         return {error.code}
-    return {issue.code for issue in found.issues if issue.level == ERROR}
+    return {issue.code for issue in result.issues if issue.level == ERROR}
 
 
 def text_of(name):
-    (content,) = made(name)[3].values()
+    (content,) = plan_program(name)[3].values()
     return content.decode().split("\r\n")
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_beads_are_lit_and_ended_and_their_speeds_are_told_again(name):
     text = text_of(name)
-    assert said(name, text) == set()
+    assert find_errors(name, text) == set()
     assert not [line for line in text if line.startswith("$OUT")]
     beads = [n for n, line in enumerate(text) if "(#ArcOnAfterMoveStd,WDAT7," in line]
     ends = [n for n, line in enumerate(text) if "(#ArcOffAfterMoveStd,WDATOFF7," in line]
     assert len(beads) == len(ends) == 6 and all(on < off for on, off in zip(beads, ends))
     for on, off in zip(beads, ends):
-        # the last move stops, its speed is told once more behind what may have set another one
+        # the last move stops, and its speed is stated again after an instruction that may have set
+        # another one
         assert text[off - 1].startswith("LIN") and text[off - 1].endswith("}")
         call = max(n for n in range(off) if "(#ArcOffBeforeMoveStd,WDATOFF7," in text[n])
         settings = text[call + 1 : off - 1]
         assert call > on and all(line.startswith("$VEL") for line in settings)
         assert any(line.startswith("$VEL.CP=") for line in settings)
-        first = next(n for n in range(on + 1, off) if text[n].startswith("LIN"))
-        assert any(line.startswith("$VEL.CP=") for line in text[on:first])
+        first_move = next(n for n in range(on + 1, off) if text[n].startswith("LIN"))
+        assert any(line.startswith("$VEL.CP=") for line in text[on:first_move])
         assert text[on - 1].startswith("LIN") and "C_DIS" not in text[on - 1]
-    read = kuka.read(made(name)[3])
-    switched = [(event.kind, *event.value) for event in read.events if event.kind in ("on", "off")]
+    readback = kuka.read(plan_program(name)[3])
+    switched = [
+        (event.kind, *event.value) for event in readback.events if event.kind in ("on", "off")
+    ]
     assert switched == [("on", 7.0, "ARC"), ("off", 7.0, "ARC")] * 6
 
 
 def test_every_line_of_it_that_is_lost_doubled_moved_or_of_other_data_is_refused():
     name = "kuka tool-on-robot"
     text = text_of(name)
-    places = [n for n, line in enumerate(text) if "ArcMainNG" in line]
-    assert len(places) == 6 * 9
-    for n in places[: 2 * 9]:
+    arc_lines = [n for n, line in enumerate(text) if "ArcMainNG" in line]
+    assert len(arc_lines) == 6 * 9
+    for n in arc_lines[: 2 * 9]:
         line = text[n]
-        other = [*text[:n], line.replace("7", "8"), *text[n + 1 :]]
+        changed = [*text[:n], line.replace("7", "8"), *text[n + 1 :]]
         assert (
-            said(name, other)
-            and said(name, [*text[:n], *text[n + 1 :]])
-            and said(name, [*text[:n], line, *text[n:]])
+            find_errors(name, changed)
+            and find_errors(name, [*text[:n], *text[n + 1 :]])
+            and find_errors(name, [*text[:n], line, *text[n:]])
         )
-        assert said(name, [*text[: n - 1], line, text[n - 1], *text[n + 1 :]])
-        assert said(
+        assert find_errors(name, [*text[: n - 1], line, text[n - 1], *text[n + 1 :]])
+        assert find_errors(
             name,
             [*text[:n], re.sub(r"DELAY=(0|\w+\(.*?\))", "DELAY=20", line) + " ", *text[n + 1 :]],
         )
-        assert said(name, [*text[:n], line.replace("WSEAM", "WOTHER"), *text[n + 1 :]])
+        assert find_errors(name, [*text[:n], line.replace("WSEAM", "WOTHER"), *text[n + 1 :]])
 
 
 def test_whole_instructions_that_are_lost_or_of_another_schedule_are_refused():
-    name, one = "kuka tool-on-robot", 9
+    name, line_count = "kuka tool-on-robot", 9
     text = text_of(name)
-    places = [n for n, line in enumerate(text) if "ArcMainNG" in line]
+    arc_lines = [n for n, line in enumerate(text) if "ArcMainNG" in line]
     for bead in (0, 3):
-        of_bead = places[bead * one : (bead + 1) * one]
-        for lines in (of_bead, of_bead[:5], of_bead[5:]):  # both, the arc's beginning, its end
-            assert said(name, [line for n, line in enumerate(text) if n not in lines])
-            other = [
+        of_bead = arc_lines[bead * line_count : (bead + 1) * line_count]
+        for lines in (of_bead, of_bead[:5], of_bead[5:]):  # both, the arc's start, its end
+            assert find_errors(name, [line for n, line in enumerate(text) if n not in lines])
+            changed = [
                 line.replace("7", "8", 2) if n in lines else line for n, line in enumerate(text)
             ]
             renumbered = [
                 re.sub(r"(WDAT(?:OFF)?)7\b", r"\g<1>8", line) if n in lines else line
                 for n, line in enumerate(text)
             ]
-            assert said(name, other) and said(name, renumbered)
+            assert find_errors(name, changed) and find_errors(name, renumbered)
 
 
 @pytest.mark.parametrize(("pattern", "new", "codes"), [
@@ -138,44 +142,51 @@ def test_other_moves_at_its_instructions_are_refused(pattern, new, codes):
     text = "\r\n".join(text_of(name))
     changed = re.sub(pattern, new, text, count=1)
     assert changed != text
-    found = said(name, changed.split("\r\n"))
-    assert found and found <= codes
+    error_codes = find_errors(name, changed.split("\r\n"))
+    assert error_codes and error_codes <= codes
 
 
 def test_the_way_onto_a_bead_stays_by_the_one_that_was_looked_at():
-    """The rows that are added lie on the way straight in the joints; what is told as a linear move leaves it by 0.2 mm at
-    most, by PyKDL; and not cut it would leave it by more, which building and reading back refuse."""
-    cell, _, whole = planned("kuka positioner")
-    motion = linear_approach.shorten_approaches(whole, cell)
-    added = len(motion) - len(whole)
-    assert added and motion.total_time == pytest.approx(whole.total_time, abs=1e-9)
-    solver, looked = kdl_chain.KdlArm(cell.machine), 0
+    """The added rows lie on the approach, straight in joint space. A linear move leaves it by at
+    most 0.2 mm, by PyKDL; without the rows it would leave it further, which building and reading
+    back reject."""
+    cell, _, motion_ = planned("kuka positioner")
+    motion = linear_approach.shorten_approaches(motion_, cell)
+    added = len(motion) - len(motion_)
+    assert added and motion.total_time == pytest.approx(motion_.total_time, abs=1e-9)
+    solver, checked_rows = kdl_chain.KdlArm(cell.machine), 0
     share = np.linspace(0.0, 1.0, 201)[:, None]
     for end in np.flatnonzero(~motion.deposit[:-1] & motion.deposit[1:]):
-        start = np.flatnonzero((whole.joints == motion.joints[end - 1]).all(axis=1))
-        if not len(start):  # one that was added: on the line of its neighbours
-            before, here, after = motion.joints[end - 2 : end + 1]
-            along = (here - before) @ (after - before) / ((after - before) @ (after - before))
-            np.testing.assert_allclose(here, before + along * (after - before), atol=1e-12)
-            looked += 1
+        start = np.flatnonzero((motion_.joints == motion.joints[end - 1]).all(axis=1))
+        if not len(start):  # an added row, on the line between its neighbours
+            previous, current, following = motion.joints[end - 2 : end + 1]
+            along = (
+                (current - previous)
+                @ (following - previous)
+                / ((following - previous) @ (following - previous))
+            )
+            np.testing.assert_allclose(
+                current, previous + along * (following - previous), atol=1e-12
+            )
+            checked_rows += 1
         joints = motion.joints[end - 1] + share * (motion.joints[end] - motion.joints[end - 1])
         tip = cell.tip_in_part(solver.forward(joints))[0]
         straight = motion.position[end - 1] + share * (
             motion.position[end] - motion.position[end - 1]
         )
         assert np.linalg.norm(tip - straight, axis=1).max() <= 0.2
-    assert looked == added
+    assert checked_rows == added
     with pytest.raises(InputError) as error:
-        build(whole, cell, LIT, ARC, "job")
+        build(motion_, cell, LIT, ARC, "job")
     assert error.value.code == "SCHEDULE" and "would leave the checked path" in error.value.message
 
 
 def test_a_way_that_was_not_looked_at_is_found_by_reading_back(monkeypatch):
-    cell, _, whole = planned("kuka positioner")
+    cell, _, motion_ = planned("kuka positioner")
     monkeypatch.setattr(linear_approach, "OFF_WAY_MM", 1.0)
-    program = build(whole, cell, LIT, ARC, "job")
-    found = verify(cell, whole, program, kuka.write(program), kuka, CHORD_ERROR)
-    assert {issue.code for issue in found.issues} == {"VERIFY_BETWEEN"}
+    program = build(motion_, cell, LIT, ARC, "job")
+    result = verify(cell, motion_, program, kuka.write(program), kuka, CHORD_ERROR)
+    assert {issue.code for issue in result.issues} == {"VERIFY_BETWEEN"}
 
 
 def test_a_document_cuts_the_ways_onto_beads_and_passes():
@@ -192,21 +203,22 @@ def test_a_document_cuts_the_ways_onto_beads_and_passes():
     job = Job(lambda: path, lambda: toolpath, SETUPS[name].cell, (), LIT, ARC, "job")
     made_of = posted(job)
     assert (
-        len(made_of.motion) == len(made(name)[1]) > len(motion) and made_of.files == made(name)[3]
+        len(made_of.motion) == len(plan_program(name)[1]) > len(motion)
+        and made_of.files == plan_program(name)[3]
     )
 
 
 def test_a_dry_run_moves_the_same_without_the_arc():
-    cell, motion, _, files = made("kuka tool-on-robot")
+    cell, motion, _, files = plan_program("kuka tool-on-robot")
     dry = kuka.write(build(motion, cell, LIT, dataclasses.replace(ARC, dry_run=True), "job"))
     assert b"Arc" not in dry["job.src"]
-    texts = [of["job.src"].decode().split("\r\n") for of in (files, dry)]
+    texts = [program_files["job.src"].decode().split("\r\n") for program_files in (files, dry)]
     moving = [[line for line in text if line.startswith(("LIN", "PTP"))] for text in texts]
     assert moving[0] == moving[1]
 
 
 def test_what_arctech_has_in_its_own_data_or_was_not_confirmed_is_refused():
-    cell, motion = made("kuka tool-on-robot")[:2]
+    cell, motion = plan_program("kuka tool-on-robot")[:2]
 
     def refusal(process, code, words):
         with pytest.raises(InputError) as error:
@@ -225,9 +237,10 @@ def test_what_arctech_has_in_its_own_data_or_was_not_confirmed_is_refused():
 
 def test_a_program_that_begins_at_a_bead_is_refused():
     cell, _, motion = planned("kuka tool-on-robot")
-    first = int(np.argmax(motion.deposit))
+    first_row = int(np.argmax(motion.deposit))
     columns = {
-        field.name: getattr(motion, field.name)[first - 1 :] for field in dataclasses.fields(motion)
+        field.name: getattr(motion, field.name)[first_row - 1 :]
+        for field in dataclasses.fields(motion)
     }
     with pytest.raises(InputError) as error:
         build(type(motion)(**columns), cell, LIT, ARC, "job")

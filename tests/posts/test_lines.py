@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The line that is shown of a move is the one that tells it: where it is changed, that move alone is another one."""
+"""The line shown for a move is the one that states it: a change of that line changes that move
+only."""
 
 import re
 
@@ -17,32 +18,33 @@ NUMBER = re.compile(rb"-?\d+\.\d+")
 INDEX = re.compile(rb"(?<=P\[)\d+|(?<=MOV[JL] C)\d+")
 
 
-def told(read):
-    """(n, k) all that a text says of where its moves go."""
-    places = (read.joints, read.position, read.direction)
+def targets_of(readback):
+    """Return (n, k) all that a text states about the targets of its moves."""
+    places = (readback.joints, readback.position, readback.direction)
     columns = [column.reshape(len(column), -1) for column in places if column is not None]
     return np.nan_to_num(np.concatenate(columns, axis=1), nan=-1.0)
 
 
 def another_end(post, files, name, number, k):
-    """The files with another place in that line: its first coordinate, or the number of the place before it."""
+    """Return the files with another target in that line: its first coordinate, or the number of the
+    previous point."""
     lines = files[name].split(b"\n")
     if post in ("fanuc", "yaskawa"):
         long = 5 if post == "yaskawa" else 1
         changed = INDEX.sub(
-            lambda found: b"%0*d" % (long, int(found[0]) - 1), lines[number], count=1
+            lambda match: b"%0*d" % (long, int(match[0]) - 1), lines[number], count=1
         )
     else:
         body = re.sub(
-            rb"^\s*(?:N\d+ )?(?:G9 )?\w+", lambda found: b"#" * len(found[0]), lines[number]
+            rb"^\s*(?:N\d+ )?(?:G9 )?\w+", lambda match: b"#" * len(match[0]), lines[number]
         )
-        found = NUMBER.search(body)
-        value = float(found[0]) + 0.25
-        digits = len(found[0].split(b".")[1])
+        match = NUMBER.search(body)
+        value = float(match[0]) + 0.25
+        digits = len(match[0].split(b".")[1])
         changed = (
-            lines[number][: found.start()]
+            lines[number][: match.start()]
             + f"{value:.{digits}f}".encode()
-            + lines[number][found.end() :]
+            + lines[number][match.end() :]
         )
     assert changed != lines[number]
     return {**files, name: b"\n".join([*lines[:number], changed, *lines[number + 1 :]])}
@@ -53,17 +55,17 @@ def another_end(post, files, name, number, k):
 def test_the_line_of_a_move_tells_that_move_and_no_other(way):
     _, motion, _, files = written(way)
     post = catalogue.load(way[0])
-    read, lines = post.read(files), lines_of(way[0], files)
-    assert len(lines) == len(read.deposit) == motion.moves.sum() > 20
+    readback, lines = post.read(files), lines_of(way[0], files)
+    assert len(lines) == len(readback.deposit) == motion.moves.sum() > 20
     for row in range(len(lines)):
-        (name, number), (file, found) = lines.of(row), read.lines.at(row)
-        if way[0] == "staubli":  # counted within the code, and of a loop the line that it begins on
+        (name, number), (file, file_line) = lines.of(row), readback.lines.at(row)
+        if way[0] == "staubli":  # counted within the code; for a loop, the line on which it begins
             head, code = files[name].split(b"<Code>")
             number -= head.count(b"\n") + code.split(b"\n")[
                 number - head.count(b"\n") - 1
             ].startswith(b"  for ")
-        assert (file, found) == (name, number + 1)
-    before = told(read)
+        assert (file, file_line) == (name, number + 1)
+    targets = targets_of(readback)
     for row in np.linspace(1, len(lines) - 1, 9).astype(int).tolist():
         name, number = lines.of(row)
         assert lines.move_at(name, number) == (
@@ -72,17 +74,17 @@ def test_the_line_of_a_move_tells_that_move_and_no_other(way):
             else np.flatnonzero((lines.file == lines.file[row]) & (lines.line == number))[0]
         )
         if way[0] == "staubli":
-            continue  # its lines tell the number in a list
+            continue  # its lines state the number in a list
         try:
-            after = told(post.read(another_end(way[0], files, name, number, row)))
+            new_targets = targets_of(post.read(another_end(way[0], files, name, number, row)))
         except (
             InputError
-        ) as error:  # such as two positions for one place, of which this line is named
+        ) as error:  # for example two positions for one point, and the error names this line
             assert f"{name} line {number + 1}" in str(error)
             continue
-        other = np.flatnonzero(np.abs(after - before).max(axis=1) > 1e-9)
-        assert other.tolist() in ([row], []) and (
-            len(other) or np.allclose(before[row], before[row - 1])
+        changed_rows = np.flatnonzero(np.abs(new_targets - targets).max(axis=1) > 1e-9)
+        assert changed_rows.tolist() in ([row], []) and (
+            len(changed_rows) or np.allclose(targets[row], targets[row - 1])
         )
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Names of programs that are proposed: taken by the controller, with the digits of parts, and as like as they can be."""
+"""Proposed program names are accepted by the controller, with the digits of parts, and as close to
+the label as possible."""
 
 import random
 import string
@@ -40,8 +41,10 @@ def test_what_is_proposed_is_taken_with_the_digits_of_parts(post):
         assert naming.parts(name, 99)
         plain = proposed_name(label)
         assert name == plain or not naming.fits(plain)
-        kept = taken_name(label, post)
-        assert refusal(kept, post) == "" and (kept == plain or refusal(plain, post))
+        accepted_name = taken_name(label, post)
+        assert refusal(accepted_name, post) == "" and (
+            accepted_name == plain or refusal(plain, post)
+        )
 
 
 def test_a_long_label_is_cut_for_controllers_of_few_characters_alone():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The window shows of `program.nc` what a post reads: the table is held against the sources of the posts."""
+"""The window shows those parameters of `program.nc` that a post reads: the test compares its table
+with the sources of the posts."""
 
 import ast
 import dataclasses
@@ -12,31 +13,33 @@ from freecad_am.posts import catalogue
 
 POSTS = Path(catalogue.__file__).parent
 NAMES = {field.name for field in dataclasses.fields(NcParameters)}
-PROPERTIES = {"path_feed": "feed"}  # what a post reads in place of a parameter
+PROPERTIES = {"path_feed": "feed"}  # a post reads this property in place of the parameter
 
 
 def read_in(folder, functions=None):
-    """Parameters read as `….nc.NAME` in a file or the files of a folder, or in some of its functions and classes."""
-    found = set()
+    """Return the parameters read as `….nc.NAME` in a file, the files of a folder, or some functions
+    and classes of a file."""
+    names = set()
     for file in [folder] if folder.is_file() else folder.glob("*.py"):
         tree = ast.parse(file.read_text(encoding="utf-8"))
-        parts = (
+        roots = (
             [tree]
             if functions is None
             else [node for node in ast.walk(tree) if getattr(node, "name", None) in functions]
         )
-        for node in (node for part in parts for node in ast.walk(part)):
+        for node in (node for root in roots for node in ast.walk(root)):
             if (
                 isinstance(node, ast.Attribute)
                 and isinstance(node.value, ast.Attribute)
                 and node.value.attr == "nc"
             ):
-                found.add(PROPERTIES.get(node.attr, node.attr))
-    return found & NAMES
+                names.add(PROPERTIES.get(node.attr, node.attr))
+    return names & NAMES
 
 
 def called(folder):
-    """Names of functions and classes of posts/nc_numbers.py that the files of a folder call."""
+    """Return the names of the functions and classes of posts/nc_numbers.py that the files of a
+    folder call."""
     trees = (ast.parse(file.read_text(encoding="utf-8")) for file in folder.glob("*.py"))
     return {
         node.attr
@@ -50,9 +53,9 @@ def called(folder):
 
 @pytest.mark.parametrize("post", catalogue.NAMES)
 def test_the_table_names_what_a_post_reads(post):
-    own = read_in(POSTS / post)
-    shared = read_in(POSTS / "nc_numbers.py", called(POSTS / post)) if own else set()
-    assert own | shared == set(catalogue.NC_PARAMETERS.get(post, ()))
+    own_parameters = read_in(POSTS / post)
+    shared = read_in(POSTS / "nc_numbers.py", called(POSTS / post)) if own_parameters else set()
+    assert own_parameters | shared == set(catalogue.NC_PARAMETERS.get(post, ()))
 
 
 def test_of_an_unknown_post_all_is_shown():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is written for SINUMERIK and LinuxCNC: files to the byte, feeds, parts, names, and what is refused."""
+"""SINUMERIK and LinuxCNC programs: exact bytes, feeds, parts, names and refusals."""
 
 import dataclasses
 import math
@@ -23,18 +23,18 @@ def text(files):
     return content.decode("ascii")
 
 
-def column(of, key):
-    return np.concatenate([getattr(run, key) for run in of.moves])
+def column(source, key):
+    return np.concatenate([getattr(run, key) for run in source.moves])
 
 
-def refusal(post, of, *, code, where=None):
+def refusal(post, source, *, code, where=None):
     with pytest.raises(InputError) as raised:
-        post.write(of)
+        post.write(source)
     assert raised.value.code == code and where in (None, raised.value.where)
     return raised.value.message
 
 
-# a ring on a cone: only C turns; then a line along it: C stands still
+# a ring on a cone, where only C turns, then a line along the cone, where C stands still
 RING = [[10.0, 0.00001 * (n % 2), 5.0, -20.0, 15.0 * n] for n in range(4)]
 LINE = [[12.0 + n, 0.25 * n, 5.0, -20.0, 60.0] for n in range(3)]
 JOINT = program(
@@ -66,8 +66,8 @@ def tip_bead(layer):
 
 
 def as_arrays(block):
-    told = isinstance(block, Moves) and block.position
-    return dataclasses.replace(block, position=np.array(block.position)) if told else block
+    has_position = isinstance(block, Moves) and block.position
+    return dataclasses.replace(block, position=np.array(block.position)) if has_position else block
 
 
 TIP = program(*map(as_arrays, [*tip_bead(0), *tip_bead(1)]), name="tip", motion="cartesian", max_points=5, user_frame=2,
@@ -88,102 +88,113 @@ def test_golden_programs_to_the_byte(root, name, post):
     ("motion", "feed"), [("joint", False), ("joint", True), ("cartesian", False)]
 )
 def test_random_programs_come_back(post, seed, motion, feed):
-    of = with_options(random_program(seed, motion, seed % 2 == 1), path_feed=feed)
-    files = post.write(of)
-    assert files == post.write(of)  # the same bytes
-    read = post.read(files)
-    joints, duration, speed = (column(of, key) for key in ("joints", "duration", "speed"))
-    deposit = np.repeat([run.kind == "deposit" for run in of.moves], [len(run) for run in of.moves])
+    source = with_options(random_program(seed, motion, seed % 2 == 1), path_feed=feed)
+    files = post.write(source)
+    assert files == post.write(source)  # the same bytes
+    readback = post.read(files)
+    joints, duration, speed = (column(source, key) for key in ("joints", "duration", "speed"))
+    deposit = np.repeat(
+        [run.kind == "deposit" for run in source.moves], [len(run) for run in source.moves]
+    )
     tip = deposit & (motion == "cartesian")
-    assert read.deposit.tolist() == deposit.tolist()
-    assert (read.linear_digits, read.digits) == pytest.approx((5e-6, math.radians(5e-6)))
-    apart = read.joints - joints
-    if post is siemens:  # an endless axis tells no turns
-        assert read.shorter_way.tolist() == list(of.continuous)
-        apart[:, 4] -= 2.0 * np.pi * np.rint(apart[:, 4] / (2.0 * np.pi)) * of.continuous[4]
-    told = np.isfinite(apart)
-    assert (told[~tip].all(), told[tip, :3].any(), told[tip, 3:].all()) == (
+    assert readback.deposit.tolist() == deposit.tolist()
+    assert (readback.linear_digits, readback.digits) == pytest.approx((5e-6, math.radians(5e-6)))
+    joint_errors = readback.joints - joints
+    if post is siemens:  # a continuous axis states no turns
+        assert readback.shorter_way.tolist() == list(source.continuous)
+        joint_errors[:, 4] -= (
+            2.0 * np.pi * np.rint(joint_errors[:, 4] / (2.0 * np.pi)) * source.continuous[4]
+        )
+    is_stated = np.isfinite(joint_errors)
+    assert (is_stated[~tip].all(), is_stated[tip, :3].any(), is_stated[tip, 3:].all()) == (
         True,
         False,
         post is linuxcnc or not tip.any(),
     )
     assert (
-        np.abs(apart[:, :3][told[:, :3]]).max() <= 5e-6 + 1e-9
-        and np.abs(apart[:, 3:][told[:, 3:]]).max() < 8.8e-8
+        np.abs(joint_errors[:, :3][is_stated[:, :3]]).max() <= 5e-6 + 1e-9
+        and np.abs(joint_errors[:, 3:][is_stated[:, 3:]]).max() < 8.8e-8
     )
-    timed = np.isfinite(read.duration)
+    timed = np.isfinite(readback.duration)
     assert (timed == ~tip).all()
     moving = timed & (np.abs(np.diff(np.round(joints, 9), axis=0, prepend=0.0)).max(axis=1) > 0.0)
-    assert (np.abs(read.duration - duration) <= read.duration_digits + 1e-9 * duration)[
+    assert (np.abs(readback.duration - duration) <= readback.duration_digits + 1e-9 * duration)[
         moving
     ].all()
-    assert (read.duration_digits / duration)[moving].max() <= 5.1e-7  # seven digits
+    assert (readback.duration_digits / duration)[moving].max() <= 5.1e-7  # seven digits
     if motion == "cartesian":
-        position, direction = column(of, "position"), column(of, "direction")
+        position, direction = column(source, "position"), column(source, "direction")
         assert (
-            np.abs(read.position - position)[tip].max() <= 5e-6 + 1e-9
-            and np.isnan(read.position[~tip]).all()
+            np.abs(readback.position - position)[tip].max() <= 5e-6 + 1e-9
+            and np.isnan(readback.position[~tip]).all()
         )
-        assert (np.abs(read.speed - speed) / speed)[tip].max() < 1e-6 and np.isnan(
-            read.speed[~tip]
+        assert (np.abs(readback.speed - speed) / speed)[tip].max() < 1e-6 and np.isnan(
+            readback.speed[~tip]
         ).all()
         if post is siemens:
-            assert np.abs(read.direction - direction)[
+            assert np.abs(readback.direction - direction)[
                 tip
-            ].max() < 1.5e-6 and read.direction_digits == pytest.approx(5e-7)
+            ].max() < 1.5e-6 and readback.direction_digits == pytest.approx(5e-7)
 
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
 def test_the_parts_of_a_program_are_the_program(post):
     for seed, motion in ((0, "joint"), (1, "cartesian"), (2, "joint")):
-        files = [post.write(random_program(seed, motion, max_points=most)) for most in (10**5, 45)]
+        files = [
+            post.write(random_program(seed, motion, max_points=max_points))
+            for max_points in (10**5, 45)
+        ]
         assert len(files[0]) == 1 and len(files[1]) > 2
-        whole, parts = map(post.read, files)
-        for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
+        complete, in_parts = map(post.read, files)
+        for field in (
+            candidate for candidate in dataclasses.fields(complete) if candidate.name != "lines"
+        ):
             np.testing.assert_array_equal(
-                getattr(parts, field.name), getattr(whole, field.name), field.name
+                getattr(in_parts, field.name), getattr(complete, field.name), field.name
             )
 
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
 @pytest.mark.parametrize("motion", ["joint", "cartesian"])
 def test_a_dry_run_moves_the_same_and_switches_nothing(post, motion):
-    of = random_program(5, motion, max_points=10**4, deposit_output=7)
-    wet, dry = text(post.write(of)), text(post.write(dataclasses.replace(of, dry_run=True)))
+    source = random_program(5, motion, max_points=10**4, deposit_output=7)
+    wet, dry = text(post.write(source)), text(post.write(dataclasses.replace(source, dry_run=True)))
     assert "dry run: no deposit" in dry and not re.search(
         r"H7=|M6[2-5]|G4 [FP](?:0\.[2-9]|1\.250)", dry
     )
     assert [line.partition("G1 ")[2] for line in wet.split("\n") if "G1 " in line] == [
         line.partition("G1 ")[2] for line in dry.split("\n") if "G1 " in line
     ]
-    assert not post.read(post.write(dataclasses.replace(of, dry_run=True))).deposit.any()
+    assert not post.read(post.write(dataclasses.replace(source, dry_run=True))).deposit.any()
 
 
 def test_only_speeds_are_compressed():
-    """Compressed blocks have the F of the last one: right for a speed, wrong for a time."""
+    """Compressed blocks have the F of the last one, which is right for a speed and wrong for a
+    time."""
     for motion, feed, compress in (
         ("joint", False, True),
         ("cartesian", False, True),
         ("cartesian", False, False),
     ):
-        of = with_options(
+        source = with_options(
             random_program(3, motion, max_points=10**4), path_feed=feed, compress=compress
         )
-        written = text(siemens.write(of))
+        written = text(siemens.write(source))
         assert ("COMPCAD" in written) == (compress and (motion == "cartesian"))
         for inside in re.findall(r"COMPCAD\n(.*?)COMPOF", written, re.DOTALL):
             assert re.fullmatch(
                 r"(?:N\d+ (?:G9 )?G1 X\S+ Y\S+ Z\S+ A3=\S+ B3=\S+ C3=\S+ F\S+\n)+N\d+ $", inside
             )
     line = with_options(JOINT, path_feed=True)
-    assert text(siemens.write(line)).count("COMPCAD") == 1  # the ring tells times, the line speeds
+    assert text(siemens.write(line)).count("COMPCAD") == 1  # the ring states times, the line speeds
     assert "COMPCAD" not in text(
         siemens.write(dataclasses.replace(line, nc=dataclasses.replace(line.nc, compress=False)))
     )
 
 
 def test_path_feeds_are_speeds_of_the_linear_axes():
-    """Dai 2020, section 3: V_s; by hand from the line of the golden program."""
+    """A path feed is V_s of Dai 2020, section 3, computed by hand from the line of the golden
+    program."""
     step = math.hypot(1.0, 0.25)
     for post in POSTS:
         feeds = re.findall(
@@ -196,7 +207,8 @@ def test_path_feeds_are_speeds_of_the_linear_axes():
 
 
 def test_linuxcnc_is_told_the_speed_of_slow_moves():
-    """Its interpreter takes 0.1 mm/min where the time asks for less: on a ring the linear axes go 0.00001 mm."""
+    """LinuxCNC's interpreter uses 0.1 mm/min if the time implies less: on a ring the linear axes
+    move by 0.00001 mm."""
     written = text(linuxcnc.write(JOINT))
     ring = re.findall(
         r"\n((?:G9[34] )?)G1 X10.00000 \S+ Z5.00000 \S+ C(?:15|30|45)\.\S+ F(\S+)", written
@@ -245,20 +257,20 @@ def test_times_and_speeds_that_cannot_be_written(post):
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
 def test_words_that_switch_the_deposit(post):
-    of = with_options(random_program(2, max_points=10**4), deposit_on="M7", deposit_off="M9")
-    written = text(post.write(of))
+    source = with_options(random_program(2, max_points=10**4), deposit_on="M7", deposit_off="M9")
+    written = text(post.write(source))
     assert "M7\n" in written and "M9\n" in written and not re.search(r"H\d+=|M6[45]", written)
-    assert post.read(post.write(of)).deposit.tolist() == deposit_of(of)
+    assert post.read(post.write(source)).deposit.tolist() == deposit_of(source)
     for on, off in (("M7", ""), ("", "M9"), ("M7", "M7"), ("on", "off"), ("M7 M8", "M9")):
-        refusal(post, with_options(of, deposit_on=on, deposit_off=off), code="DEPOSIT_WORD")
+        refusal(post, with_options(source, deposit_on=on, deposit_off=off), code="DEPOSIT_WORD")
     for word in ("M30", "M02", "M6"):
-        other = with_options(of, deposit_on=word, deposit_off="M9")
-        refusal(post, other, code="DEPOSIT_WORD", where="program.nc.deposit_on")
-    other = with_options(of, deposit_on="H2=1", deposit_off="H2=0")
+        changed = with_options(source, deposit_on=word, deposit_off="M9")
+        refusal(post, changed, code="DEPOSIT_WORD", where="program.nc.deposit_on")
+    changed = with_options(source, deposit_on="H2=1", deposit_off="H2=0")
     if post is linuxcnc:
-        refusal(post, other, code="DEPOSIT_WORD")
+        refusal(post, changed, code="DEPOSIT_WORD")
     else:
-        assert "H2=1\n" in text(post.write(other))
+        assert "H2=1\n" in text(post.write(changed))
 
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
@@ -270,9 +282,9 @@ def test_what_cannot_be_said_is_refused(post):
         code="UNSUPPORTED_SETUP",
         where="cell.setup",
     )
-    for last in "DA":
-        other = dataclasses.replace(still, axis_names=("X", "Y", "Z", "A", last))
-        refusal(post, other, code="UNSUPPORTED_AXES", where="cell.machine")
+    for last_axis in "DA":
+        changed = dataclasses.replace(still, axis_names=("X", "Y", "Z", "A", last_axis))
+        refusal(post, changed, code="UNSUPPORTED_AXES", where="cell.machine")
     refusal(
         post,
         dataclasses.replace(still, axis_names=()),
@@ -299,7 +311,8 @@ def test_what_cannot_be_said_is_refused(post):
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
 def test_a_bead_longer_than_a_part_is_a_part_by_itself(post):
-    """These controllers read files of any length: `max_points` cuts between beads and refuses none."""
+    """These controllers read files of any length, so `max_points` cuts between beads and rejects
+    none."""
     sizes = (2, 40, 3, 3, 25)
     blocks = [
         block
@@ -313,9 +326,9 @@ def test_a_bead_longer_than_a_part_is_a_part_by_itself(post):
     ]
     files = post.write(program(*blocks, max_points=10))
     counts = [content.decode().count("G1 ") for _, content in sorted(files.items())]
-    assert counts == [0, 3, 41, 8, 26]  # the main program; both short beads together
-    read = post.read(files)
-    assert read.deposit.tolist() == [on for size in sizes for on in (False, *[True] * size)]
+    assert counts == [0, 3, 41, 8, 26]  # the main program; both short beads are in one part
+    readback = post.read(files)
+    assert readback.deposit.tolist() == [on for size in sizes for on in (False, *[True] * size)]
 
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
@@ -325,38 +338,40 @@ def test_a_bead_longer_than_a_part_is_a_part_by_itself(post):
 )
 def test_the_speed_of_the_wire_comes_back(post, seed, motion, feed):
     plain = with_options(random_program(seed, motion), path_feed=feed)
-    of = with_options(
+    source = with_options(
         random_program(seed, motion, wire=True), path_feed=feed, wire_output=3, wire_gain=400.0
     )
-    files = post.write(of)
-    read, deposit = post.read(files), np.array(deposit_of(of))
-    wanted = np.concatenate(
-        [np.full(len(run), np.nan) if run.wire is None else run.wire for run in of.moves]
+    files = post.write(source)
+    readback, deposit = post.read(files), np.array(deposit_of(source))
+    expected = np.concatenate(
+        [np.full(len(run), np.nan) if run.wire is None else run.wire for run in source.moves]
     )
-    told = wanted[deposit] * 0.06 * 400.0  # at a gain of 400 a value of 400 is 1 m/min
-    assert np.abs(read.wire[deposit] / told - 1.0).max() <= 5.1e-5
-    assert (np.abs(read.wire[deposit] - told) <= read.wire_digits[deposit] + 1e-9).all()
-    assert (read.wire_digits[deposit] <= 5.1e-5 * told).all()
+    written_values = expected[deposit] * 0.06 * 400.0  # at a gain of 400 a value of 400 is 1 m/min
+    assert np.abs(readback.wire[deposit] / written_values - 1.0).max() <= 5.1e-5
+    assert (
+        np.abs(readback.wire[deposit] - written_values) <= readback.wire_digits[deposit] + 1e-9
+    ).all()
+    assert (readback.wire_digits[deposit] <= 5.1e-5 * written_values).all()
     written = "".join(content.decode() for _, content in sorted(files.items()))
-    within, before = (
+    within, switches_before = (
         (r"DO \$A_OUTA\[3\]=", r"N\d+ \$A_OUTA\[3\]=")
         if post is siemens
         else (r"M67 E2 Q", r"M68 E2 Q")
     )
-    beads = [run.wire for run in of.moves if run.wire is not None]
-    assert len(re.findall(before, written)) == len(beads)
+    beads = [run.wire for run in source.moves if run.wire is not None]
+    assert len(re.findall(switches_before, written)) == len(beads)
     assert len(re.findall(within, written)) == sum(
         int((np.diff(wire) != 0.0).sum()) for wire in beads
     )
-    # nothing else is different, but that blocks with a value of their own are not compressed
+    # the only other difference: blocks with a wire value are not compressed
     ours, theirs = (
         [
             re.sub(r"^N\d+ ", "", line)
-            for _, content in sorted(some.items())
+            for _, content in sorted(program_files.items())
             for line in content.decode().split("\n")
             if not re.search(r"OUTA|M6[78]|COMP", line)
         ]
-        for some in (files, post.write(plain))
+        for program_files in (files, post.write(plain))
     )
     assert ours == theirs
     for inside in re.findall(r"COMPCAD\n(.*?)COMPOF", written, re.DOTALL):
@@ -365,27 +380,27 @@ def test_the_speed_of_the_wire_comes_back(post, seed, motion, feed):
 
 @pytest.mark.parametrize("post", POSTS, ids=["siemens", "linuxcnc"])
 def test_the_wire_of_a_dry_run_and_of_outputs_that_are_not_there(post):
-    of = random_program(5, wire=True, max_points=10**4)
-    last = {siemens: 8, linuxcnc: 64}[post]
-    post.write(with_options(of, wire_output=last))
+    source = random_program(5, wire=True, max_points=10**4)
+    last_output = {siemens: 8, linuxcnc: 64}[post]
+    post.write(with_options(source, wire_output=last_output))
     where = "program.nc.wire_output"
-    assert f"1 to {last}" in refusal(
-        post, with_options(of, wire_output=last + 1), code="WIRE_OUTPUT", where=where
+    assert f"1 to {last_output}" in refusal(
+        post, with_options(source, wire_output=last_output + 1), code="WIRE_OUTPUT", where=where
     )
     still = text(
-        post.write(with_options(random_program(5, max_points=10**4), wire_output=last + 1))
+        post.write(with_options(random_program(5, max_points=10**4), wire_output=last_output + 1))
     )
     assert "OUTA" not in still and not re.search(r"M6[78]", still)
     dry = text(
         post.write(
             dataclasses.replace(
-                of,
+                source,
                 dry_run=True,
                 blocks=tuple(
                     dataclasses.replace(block, wire=None)
                     if isinstance(block, (Moves, DepositOn))
                     else block
-                    for block in of.blocks
+                    for block in source.blocks
                 ),
             )
         )
@@ -396,8 +411,8 @@ def test_the_wire_of_a_dry_run_and_of_outputs_that_are_not_there(post):
 
 def test_what_one_controller_alone_cannot_say():
     for number in (0, 9):
-        other = dataclasses.replace(TIP, user_frame=number)
-        refusal(linuxcnc, other, code="UNSUPPORTED_FRAME", where="program.user_frame")
+        changed = dataclasses.replace(TIP, user_frame=number)
+        refusal(linuxcnc, changed, code="UNSUPPORTED_FRAME", where="program.user_frame")
     tilted = dataclasses.replace(TIP, carried=(0.0, 0.0, 0.0, 0.1, 0.0, 0.0))
     assert "cell.platform: [0, 0, 0, 0, 0, 0]" in refusal(
         linuxcnc, tilted, code="UNSUPPORTED_FRAME", where="program.origin"
@@ -418,13 +433,14 @@ def test_what_one_controller_alone_cannot_say():
     ("user_frame", "word"), [(0, "G500"), (1, "G54"), (4, "G57"), (5, "G505"), (61, "G561")]
 )
 def test_work_offsets_of_sinumerik(user_frame, word):
-    of = dataclasses.replace(TIP, user_frame=user_frame, max_points=100)
-    written = text(siemens.write(of))
-    assert f" {word}\nN" in written and siemens.read(siemens.write(of)).position is not None
+    source = dataclasses.replace(TIP, user_frame=user_frame, max_points=100)
+    written = text(siemens.write(source))
+    assert f" {word}\nN" in written and siemens.read(siemens.write(source)).position is not None
 
 
 def test_the_angles_of_a_work_offset_are_the_controllers():
-    """Z, then the new Y, then the new X, against rotations multiplied here."""
+    """The angles turn about Z, then the new Y, then the new X; the expected rotations are
+    multiplied here."""
     from scipy.spatial.transform import Rotation
 
     rng = np.random.default_rng(3)
@@ -433,12 +449,14 @@ def test_the_angles_of_a_work_offset_are_the_controllers():
         np.array([0.3, math.pi / 2.0, 0.2]),
         np.zeros(3),
     ]:
-        of = dataclasses.replace(TIP, carried=(1.0, 2.0, 3.0, *bryant))
-        found = re.search(
-            r"then Z (\S+) Y (\S+) X (\S+) deg", siemens.write(of)["TIP.MPF"].decode()
+        source = dataclasses.replace(TIP, carried=(1.0, 2.0, 3.0, *bryant))
+        match = re.search(
+            r"then Z (\S+) Y (\S+) X (\S+) deg", siemens.write(source)["TIP.MPF"].decode()
         )
-        told = Rotation.from_euler("ZYX", [float(angle) for angle in found.groups()], degrees=True)
-        assert (told.inv() * Rotation.from_euler("XYZ", bryant)).magnitude() < 3e-6
+        rotation = Rotation.from_euler(
+            "ZYX", [float(angle) for angle in match.groups()], degrees=True
+        )
+        assert (rotation.inv() * Rotation.from_euler("XYZ", bryant)).magnitude() < 3e-6
 
 
 @pytest.mark.parametrize(("post", "name", "why", "proposal"), [
@@ -461,21 +479,21 @@ def test_names_the_controllers_refuse(post, name, why, proposal):
 def test_names_of_parts_and_calls_of_own_programs():
     for post, longest in ((siemens, 24), (linuxcnc, 30)):
         post.write(dataclasses.replace(TIP, name="x" * (longest - 2)))
-        other = dataclasses.replace(TIP, name="x" * (longest - 1))
-        assert "2 digits" in refusal(post, other, code="PROGRAM_NAME", where="name")
+        renamed = dataclasses.replace(TIP, name="x" * (longest - 1))
+        assert "2 digits" in refusal(post, renamed, code="PROGRAM_NAME", where="name")
         for called in ("Tip", "tip02", "two words"):
-            of = dataclasses.replace(TIP, blocks=(*TIP.blocks, Call(called)))
-            refusal(post, of, code="PROGRAM_NAME", where="process.between_layers.call")
+            source = dataclasses.replace(TIP, blocks=(*TIP.blocks, Call(called)))
+            refusal(post, source, code="PROGRAM_NAME", where="process.between_layers.call")
         post.write(dataclasses.replace(TIP, blocks=(*TIP.blocks, Call("tip03"))))
 
 
 def test_remarks_are_plain_and_carry_nothing_out():
-    of = dataclasses.replace(JOINT, remarks=("msg, (debug, x) Größe\n; M30", "py,import os"))
+    source = dataclasses.replace(JOINT, remarks=("msg, (debug, x) Größe\n; M30", "py,import os"))
     for post in POSTS:
-        written = text(post.write(of))
+        written = text(post.write(source))
         assert all(len(line) < 120 for line in written.split("\n")) and "Grosse" in written
-        assert post.read(post.write(of)).deposit.any()
-    assert "(remark: msg, [debug, x] Grosse ; M30)" in text(linuxcnc.write(of))
+        assert post.read(post.write(source)).deposit.any()
+    assert "(remark: msg, [debug, x] Grosse ; M30)" in text(linuxcnc.write(source))
 
 
 def test_the_catalogue():

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Starts and ends of beads at speeds of their own, in every post, motion and set-up: planned where the way along the bead
-says, and a text that lays them at the bead's speed, or one move of them a little faster, is refused."""
+"""Starts and ends of beads have their own speeds in every post, motion and set-up. The plan follows
+the distance along the bead, and a text that prints an end at the bead's speed, or one move of it a
+little faster, is rejected."""
 
 import dataclasses
 import functools
@@ -27,63 +28,73 @@ from tests.programs import build
 
 pytestmark = pytest.mark.any_version
 
-FASTER = 1.05  # more than the coarsest steps of a text explain, of a hundredth of VJ
+FASTER = 1.05  # more than the coarsest step of a text, a hundredth of VJ, explains
 
 
-def laid_at(way, speed):
-    """Codes of errors of the text of a job that is laid at these speeds (n,), against the job as it is planned."""
-    cell, motion, program, _ = written(way)
+def verify_at_speed(variant, speed):
+    """Return the error codes of a text with these speeds (n,), verified against the planned job."""
+    cell, motion, program, _ = written(variant)
     moves = motion.deposit & (motion.point > 0)
     duration = np.where(moves, motion.duration * motion.speed / speed, motion.duration)
-    post, kind, feed, _ = way
+    post, kind, feed, _ = variant
     parameters = ProgramParameters(post=post, motion=kind, nc=NcParameters(feed=feed))
-    other = build(
+    changed = build(
         dataclasses.replace(motion, speed=speed, duration=duration),
         cell,
         PROCESS,
         parameters,
         "job",
     )
-    found = verify(
-        cell, motion, program, catalogue.load(post).write(other), catalogue.load(post), CHORD_ERROR
+    result = verify(
+        cell,
+        motion,
+        program,
+        catalogue.load(post).write(changed),
+        catalogue.load(post),
+        CHORD_ERROR,
     )
-    return {issue.code for issue in found.issues if issue.level == ERROR}
+    return {issue.code for issue in result.issues if issue.level == ERROR}
 
 
 def speeds(motion):
-    """(n,) mm/s that rows are to have, by the way along their beads alone."""
-    wanted = np.array(motion.speed)
+    """Return the expected speeds (n,) in mm/s of the rows, from the distance along their beads
+    only."""
+    expected = np.array(motion.speed)
     for layer in range(2):
         for side in range(SIDES):
             rows = np.flatnonzero(motion.deposit & (motion.layer == layer) & (motion.bead == side))
             along = np.r_[
                 0.0, np.cumsum(np.linalg.norm(np.diff(motion.position[rows], axis=0), axis=1))
             ]
-            wanted[rows[1:]] = wanted_speeds(side, along)
+            expected[rows[1:]] = wanted_speeds(side, along)
             if AT_ENDS[side]:
-                first, _, last, _ = AT_ENDS[side]
+                start_length, _, end_length, _ = AT_ENDS[side]
                 assert (
-                    max(np.abs(along - border).min() for border in (first, along[-1] - last)) < 2e-3
+                    max(
+                        np.abs(along - border).min()
+                        for border in (start_length, along[-1] - end_length)
+                    )
+                    < 2e-3
                 )
-    return wanted
+    return expected
 
 
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
 def test_another_speed_at_a_start_or_an_end_is_refused(way):
     motion = written(way)[1]
-    wanted, moves = speeds(motion), motion.deposit & (motion.point > 0)
-    np.testing.assert_allclose(motion.speed[moves], wanted[moves], rtol=1e-9)
-    assert laid_at(way, motion.speed) == set()
-    differ = moves & (wanted != SPEED)
-    assert set(wanted[differ]) == {5.0, 11.0, 4.0}
+    expected, moves = speeds(motion), motion.deposit & (motion.point > 0)
+    np.testing.assert_allclose(motion.speed[moves], expected[moves], rtol=1e-9)
+    assert verify_at_speed(way, motion.speed) == set()
+    differ = moves & (expected != SPEED)
+    assert set(expected[differ]) == {5.0, 11.0, 4.0}
     refused = {"VERIFY_SPEED", "VERIFY_TIME"}
     assert (
-        laid_at(way, np.where(differ, SPEED, motion.speed)) & refused
-    )  # laid as the rest of the bead
+        verify_at_speed(way, np.where(differ, SPEED, motion.speed)) & refused
+    )  # printed at the speed of the rest of the bead
     for row in (np.flatnonzero(differ)[0], np.flatnonzero(differ)[-1]):
         assert (
-            laid_at(
-                way, np.where(np.arange(len(wanted)) == row, FASTER * motion.speed, motion.speed)
+            verify_at_speed(
+                way, np.where(np.arange(len(expected)) == row, FASTER * motion.speed, motion.speed)
             )
             & refused
         )
@@ -92,58 +103,58 @@ def test_another_speed_at_a_start_or_an_end_is_refused(way):
 OWN_SCHEDULES = dataclasses.replace(
     PROCESS, schedule=9, start=BeadStart(4.0, 5.0, 4), end=BeadEnd(2.5, 11.0, 5)
 )
-LINUXCNC = [way for way in WAYS if way[0] == "linuxcnc"]
+LINUXCNC = [variant for variant in WAYS if variant[0] == "linuxcnc"]
 
 
 @functools.cache
-def scheduled(way):
-    cell, motion, _, _ = written(way)
-    post, kind, feed, _ = way
-    told = ScheduleParameters(output=20)
+def plan_schedules(variant):
+    cell, motion, _, _ = written(variant)
+    post, kind, feed, _ = variant
+    schedule = ScheduleParameters(output=20)
     parameters = ProgramParameters(
-        post=post, motion=kind, nc=NcParameters(feed=feed), schedule=told
+        post=post, motion=kind, nc=NcParameters(feed=feed), schedule=schedule
     )
     program = build(motion, cell, OWN_SCHEDULES, parameters, "job")
     return cell, motion, program, catalogue.load(post).write(program)
 
 
-def refused(way, text):
-    cell, motion, program, files = scheduled(way)
+def find_errors(variant, text):
+    cell, motion, program, files = plan_schedules(variant)
     (name,) = files
     try:
-        found = verify(
-            cell, motion, program, {name: text.encode()}, catalogue.load(way[0]), CHORD_ERROR
+        result = verify(
+            cell, motion, program, {name: text.encode()}, catalogue.load(variant[0]), CHORD_ERROR
         )
     except InputError as error:
         return {error.code}
-    return {issue.code for issue in found.issues if issue.level == ERROR}
+    return {issue.code for issue in result.issues if issue.level == ERROR}
 
 
 @pytest.mark.parametrize("way", LINUXCNC, ids=" ".join)
 def test_another_schedule_within_a_bead_another_place_or_way_of_telling_it_is_refused(way):
-    (content,) = scheduled(way)[3].values()
+    (content,) = plan_schedules(way)[3].values()
     text = content.decode()
-    assert refused(way, text) == set()
+    assert find_errors(way, text) == set()
     lines = text.split("\n")
-    told = [k for k, line in enumerate(lines) if line.startswith("M67 E19 Q")]
-    ends = sum(bool(one) * (1 + (one[:1] != (0.0,))) for one in AT_ENDS)
-    assert len(told) == 2 * ends  # into the bead from its start, and into its end
-    for at in told:
-        line = lines[at]
-        move = next(k for k in range(at, len(lines)) if "G1 " in lines[k]) + 1
-        last = next(k for k in range(at, 0, -1) if "G1 " in lines[k])
-        moved = [*lines[:at], *lines[at + 1 : move], line, *lines[move:]]
-        before = [*lines[:last], line, *lines[last:at], *lines[at + 1 :]]
+    schedule_lines = [k for k, line in enumerate(lines) if line.startswith("M67 E19 Q")]
+    ends = sum(bool(end_speeds) * (1 + (end_speeds[:1] != (0.0,))) for end_speeds in AT_ENDS)
+    assert len(schedule_lines) == 2 * ends  # after the bead's start, and before its end
+    for number in schedule_lines:
+        line = lines[number]
+        move = next(k for k in range(number, len(lines)) if "G1 " in lines[k]) + 1
+        last_move = next(k for k in range(number, 0, -1) if "G1 " in lines[k])
+        moved = [*lines[:number], *lines[number + 1 : move], line, *lines[move:]]
+        moved_up = [*lines[:last_move], line, *lines[last_move:number], *lines[number + 1 :]]
         for changed in (
-            [*lines[:at], line.replace("Q", "Q1"), *lines[at + 1 :]],
-            [*lines[:at], line.replace("E19", "E18"), *lines[at + 1 :]],
-            [*lines[:at], line.replace("M67", "M68"), *lines[at + 1 :]],
-            [*lines[:at], *lines[at + 1 :]],
-            [*lines[:at], line, *lines[at:]],
+            [*lines[:number], line.replace("Q", "Q1"), *lines[number + 1 :]],
+            [*lines[:number], line.replace("E19", "E18"), *lines[number + 1 :]],
+            [*lines[:number], line.replace("M67", "M68"), *lines[number + 1 :]],
+            [*lines[:number], *lines[number + 1 :]],
+            [*lines[:number], line, *lines[number:]],
             moved,
-            before,
+            moved_up,
         ):
-            assert refused(way, "\n".join(changed)), (line, at)
+            assert find_errors(way, "\n".join(changed)), (line, number)
     ahead = next(k for k, line in enumerate(lines) if line.startswith("M68 E19 Q"))
     later = [*lines[:ahead], lines[ahead].replace("M68", "M67"), *lines[ahead + 1 :]]
-    assert refused(way, "\n".join(later))  # with the next move is after the deposit is on
+    assert find_errors(way, "\n".join(later))  # with the next move, the deposit is already on

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A text that resumes at a layer or a bead: driven from its words alone it comes from where it is safe, over what the whole
-text has laid until then, and goes on as that one does."""
+"""A text that resumes at a layer or a bead starts from a safe position above what the complete text
+has printed until then, and continues like the complete text. Only its own words drive it."""
 
 import dataclasses
 
@@ -30,10 +30,10 @@ from tests.programs import build
 pytestmark = pytest.mark.any_version
 
 ONE_OF_EACH = {
-    way[0]: way for way in WAYS if way[3].endswith(("tool-on-robot", "table"))
-}.values()  # post
+    variant[0]: variant for variant in WAYS if variant[3].endswith(("tool-on-robot", "table"))
+}.values()  # one for each post
 STARTS = {"layer": StartParameters(layer=1), "bead": StartParameters(layer=1, bead=1)}
-TOLD = (
+MOVE_COLUMNS = (
     "joints",
     "duration",
     "share",
@@ -50,13 +50,16 @@ TOLD = (
     "user_frame",
     "tool_frame",
 )  # of each move
-SLOW = 5.0  # s that the first move takes at least, or the text says by what share of the speeds it goes
-LEAST = 0.5  # of the retract distance: how far above its bead the first move ends
+MIN_FIRST_MOVE_S = (
+    5.0  # minimum time of the first move, unless the text states a share of the axis speeds
+)
+# height of the end of the first move above its bead, as a share of the retract distance
+MIN_START_SHARE = 0.5
 
 
-def resumed(way, start):
-    """The cell, the rows that are run, and the files."""
-    post, kind, feed, name = way
+def resumed(variant, start):
+    """Return the cell, the rows that run, and the files."""
+    post, kind, feed, name = variant
     cell, beads, motion = planned(name)
     if post == "staubli" and kind == "cartesian" and cell.setup == "part-on-robot":
         motion = steps.refined_to_chord_error(motion, cell, CHORD_ERROR, beads)
@@ -78,33 +81,36 @@ def after(events, row):
 
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
 @pytest.mark.parametrize("start", STARTS)
-@pytest.mark.always(*(f"layer-{' '.join(way)}" for way in ONE_OF_EACH))
+@pytest.mark.always(*(f"layer-{' '.join(variant)}" for variant in ONE_OF_EACH))
 def test_it_is_the_rest_of_the_whole_text(way, start):
     _, motion, rows, _, _, files = resumed(way, STARTS[start])
     post = catalogue.load(way[0])
-    rest, whole = post.read(files), post.read(written(way)[3])
-    first = len(whole.deposit) - len(
-        rest.deposit
-    )  # the row of the whole text that the other one begins with
-    assert first > 0 and int(motion.moves[~rows].sum()) <= first + 1
-    # every move as in the whole text, but for how long the first one takes
-    for name in TOLD:
-        mine, theirs = getattr(rest, name), getattr(whole, name)
-        if theirs is None:
+    resumed_text, complete = post.read(files), post.read(written(way)[3])
+    first_row = len(complete.deposit) - len(
+        resumed_text.deposit
+    )  # the row of the complete text at which the resumed text begins
+    assert first_row > 0 and int(motion.moves[~rows].sum()) <= first_row + 1
+    # every move equals the complete text, except for the duration of the first
+    for name in MOVE_COLUMNS:
+        resumed_values, complete_values = getattr(resumed_text, name), getattr(complete, name)
+        if complete_values is None:
             continue
-        mine, theirs = (
-            np.asarray(one, float)[skip:] for one, skip in ((mine, 1), (theirs, first + 1))
+        resumed_values, complete_values = (
+            np.asarray(values, float)[skip:]
+            for values, skip in ((resumed_values, 1), (complete_values, first_row + 1))
         )
-        np.testing.assert_array_equal(mine, theirs, err_msg=name)
-    assert after(rest.events, 0) == after(whole.events, first)
+        np.testing.assert_array_equal(resumed_values, complete_values, err_msg=name)
+    assert after(resumed_text.events, 0) == after(complete.events, first_row)
     assert not [
         event
-        for event in rest.events
+        for event in resumed_text.events
         if event.row == 0 and event.kind in ("on", "input", "call", "wait")
     ]
-    # slow to its first place, the deposit off until its first bead
-    assert not rest.deposit[0] and (np.isnan(rest.duration[0]) or rest.duration[0] >= SLOW)
-    assert 1 <= int(np.argmax(rest.deposit)) <= 6
+    # slow to its first position, with the deposit off until its first bead
+    assert not resumed_text.deposit[0] and (
+        np.isnan(resumed_text.duration[0]) or resumed_text.duration[0] >= MIN_FIRST_MOVE_S
+    )
+    assert 1 <= int(np.argmax(resumed_text.deposit)) <= 6
 
 
 @pytest.mark.parametrize("way", WAYS, ids=" ".join)
@@ -113,21 +119,24 @@ def test_it_is_the_rest_of_the_whole_text(way, start):
 def test_it_comes_from_over_what_was_laid_before(way, start):
     cell, motion, _, run, program, files = resumed(way, STARTS[start])
     post = catalogue.load(way[0])
-    rest, whole = post.read(files), post.read(written(way)[3])
-    first, begins = len(whole.deposit) - len(rest.deposit), int(np.argmax(rest.deposit))
-    drive, before = (
-        Drive(cell, rest, run.joints[np.flatnonzero(run.moves)[0]]),
-        Drive(cell, whole, motion.joints[np.flatnonzero(motion.moves)[0]]),
+    resumed_text, complete = post.read(files), post.read(written(way)[3])
+    first_row, begins = (
+        len(complete.deposit) - len(resumed_text.deposit),
+        int(np.argmax(resumed_text.deposit)),
     )
-    bodies = np.concatenate(bodies_of(before, whole.deposit)[: first + 1])
-    assert len(bodies) > 100  # a layer at least lies there
+    drive, printed_bodies = (
+        Drive(cell, resumed_text, run.joints[np.flatnonzero(run.moves)[0]]),
+        Drive(cell, complete, motion.joints[np.flatnonzero(motion.moves)[0]]),
+    )
+    bodies = np.concatenate(bodies_of(printed_bodies, complete.deposit)[: first_row + 1])
+    assert len(bodies) > 100  # there is at least one layer below
     setup, nozzle = SETUPS[way[3]], cell.nozzle
     tip, axis = drive.ends(0)
-    assert np.linalg.norm(tip - drive.ends(begins - 1)[0]) > LEAST * LIFT
+    assert np.linalg.norm(tip - drive.ends(begins - 1)[0]) > MIN_START_SHARE * LIFT
     for row in range(begins):
         tips, axes = (tip[None], axis[None]) if row == 0 else drive.way(row)
         deep, height = depths_in_nozzle(tips, axes, nozzle, bodies)
-        if row == begins - 1:  # where the bead begins it stands on the one below
+        if row == begins - 1:  # the bead touches the one below at its start
             deep = np.minimum(deep, height - HEIGHT)
         assert (
             max(float(deep.max()), depth_in_hub(tips, axes, nozzle, setup.hub, setup.top)) < DEEP

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Schedules in the texts of every post: each bead is told its own before the deposit is on, by output, arc instruction or
-call; another one, none, or one too many is refused; so is what a controller cannot be told."""
+"""Schedules in the texts of every post: each bead gets its own before the deposit is on, by output,
+arc instruction or call. A wrong, missing or extra one is rejected, and so is a schedule that a
+controller cannot set."""
 
 import dataclasses
 import functools
@@ -33,8 +34,8 @@ ONE_EACH = (
     ("siemens", "joint", "time", "table"),
     ("linuxcnc", "cartesian", "time", "table"),
 )
-# the number of a schedule as the text of each controller tells it; {} is the output
-TOLD = {
+# the number of a schedule in the text of each controller; {} is the output
+SCHEDULE_PATTERNS = {
     ("fanuc", "output"): r"GO\[20\]=(\d+) ;",
     ("fanuc", "arc"): r"Arc Start\[(\d+)\]    ;",
     ("abb", "output"): r"SetGO go20,(\d+);",
@@ -47,16 +48,17 @@ TOLD = {
     ("siemens", "output"): r"H20=(\d+)",
     ("linuxcnc", "output"): r"M68 E19 Q(\d+)",
 }
-ON = re.compile(
+DEPOSIT_ON = re.compile(
     r"DO\[1\]=ON|Arc Start\[|SetDO do1,1|digital_out\(0, True\)|\$OUT\[1\]=TRUE|OT#\(1\) ON|ARCON|"
     r"#ArcOnAfter|H1=1|M64 P0|doDeposit=true|ArcLStart"
 )
-OF = {"contour": 3, "fill": 12}  # schedules, and 7 of the rest
+CLASS_SCHEDULES = {"contour": 3, "fill": 12}  # schedules of two classes; the others have 7
 WAYS = [
-    (way, by)
-    for way in ONE_EACH
+    (variant, by)
+    for variant in ONE_EACH
     for by in ("output", "arc", "call")
-    if by not in catalogue.load(way[0]).NO_SCHEDULE and (*way[:2], by) != ("abb", "joint", "arc")
+    if by not in catalogue.load(variant[0]).NO_SCHEDULE
+    and (*variant[:2], by) != ("abb", "joint", "arc")
 ]
 
 
@@ -65,28 +67,29 @@ def test_every_post_is_in_the_lists():
     assert not missing, f"add a way of {missing} to ONE_EACH, see docs/contributing/post.md"
 
 
-def classed(motion):
-    """The motion with beads of three classes in turn."""
+def assign_classes(motion):
+    """Return the motion with beads of three classes in turn."""
     number = (motion.layer + motion.bead) % 3
     return dataclasses.replace(
-        motion, bead_class=np.array([CLASSES.index(name) for name in ("wall", *OF)])[number]
+        motion,
+        bead_class=np.array([CLASSES.index(name) for name in ("wall", *CLASS_SCHEDULES)])[number],
     )
 
 
-def process_of(**more):
-    own = "contour: schedule 3, lead_on 0.75; fill: schedule 12, lead_off 1.5"
-    return dataclasses.replace(PROCESS, **{"schedule": 7, "classes": own, **more})
+def process_of(**options):
+    class_options = "contour: schedule 3, lead_on 0.75; fill: schedule 12, lead_off 1.5"
+    return dataclasses.replace(PROCESS, **{"schedule": 7, "classes": class_options, **options})
 
 
-# post-flow is in the weld data of ArcTech, and refused
+# ArcTech has post-flow in its weld data, so the post rejects it here
 NO_POST_FLOW = {"lead_off": 0.0, "classes": "contour: schedule 3, lead_on 0.75; fill: schedule 12"}
 
 
 @functools.cache
-def written(way, by):
-    post, kind, feed, name = way
+def write_program(variant, by):
+    post, kind, feed, name = variant
     cell, _, motion = planned(name)
-    motion = classed(motion)
+    motion = assign_classes(motion)
     parameters = ProgramParameters(
         post=post,
         motion=kind,
@@ -98,21 +101,21 @@ def written(way, by):
     return cell, motion, program, catalogue.load(post).write(program)
 
 
-def codes(way, by, files):
-    cell, motion, program, _ = written(way, by)
+def codes(variant, by, files):
+    cell, motion, program, _ = write_program(variant, by)
     try:
-        found = verify(cell, motion, program, files, catalogue.load(way[0]), CHORD_ERROR)
+        result = verify(cell, motion, program, files, catalogue.load(variant[0]), CHORD_ERROR)
     except InputError as error:
         return {error.code}
-    return {issue.code for issue in found.issues if issue.level == ERROR}
+    return {issue.code for issue in result.issues if issue.level == ERROR}
 
 
-def pattern(way, by):
-    return TOLD.get((way[0], by)) or r"(?i)schedule(\d+)(?=[:()>;\s]|$)"
+def pattern(variant, by):
+    return SCHEDULE_PATTERNS.get((variant[0], by)) or r"(?i)schedule(\d+)(?=[:()>;\s]|$)"
 
 
 def lines_of(files):
-    """All lines, program files after each other."""
+    """Return all lines, one program file after the other."""
     programs = [
         files[name].decode("latin-1")
         for name in sorted(files)
@@ -123,44 +126,50 @@ def lines_of(files):
 
 @pytest.mark.parametrize(("way", "by"), WAYS, ids=str)
 def test_every_bead_is_told_its_schedule_before_the_deposit_is_on(way, by):
-    _, motion, _, files = written(way, by)
+    _, motion, _, files = write_program(way, by)
     assert codes(way, by, files) == set()
     begins = np.flatnonzero(motion.deposit & (motion.point == 0))
-    wanted = [OF.get(CLASSES[number], 7) for number in motion.bead_class[begins]]
-    assert len(set(wanted)) == 3
-    told, of_bead = [], []
+    expected = [CLASS_SCHEDULES.get(CLASSES[number], 7) for number in motion.bead_class[begins]]
+    assert len(set(expected)) == 3
+    schedules, of_bead = [], []
     for line in lines_of(files):
-        found = re.search(pattern(way, by), line)
-        told += [int(found[1])] if found else []
-        if ON.search(line):
-            of_bead.append(told[-1])
-    assert of_bead == wanted and told == wanted
+        match = re.search(pattern(way, by), line)
+        schedules += [int(match[1])] if match else []
+        if DEPOSIT_ON.search(line):
+            of_bead.append(schedules[-1])
+    assert of_bead == expected and schedules == expected
 
 
 @pytest.mark.parametrize(("way", "by"), WAYS, ids=str)
 def test_another_schedule_none_or_one_more_is_refused(way, by):
-    files = written(way, by)[3]
+    files = write_program(way, by)[3]
     for name, content in files.items():
         if name.endswith((".dtx", ".pjx")):
             continue
         text = content.decode("latin-1")
-        places = list(re.finditer(pattern(way, by), text))
-        for number, place in enumerate(places):
-            line = text.rfind("\n", 0, place.start()) + 1, text.find("\n", place.end()) + 1
-            other = text[: place.start(1)] + str(int(place[1]) + 1 + number) + text[place.end(1) :]
+        matches = list(re.finditer(pattern(way, by), text))
+        for number, match in enumerate(matches):
+            line = text.rfind("\n", 0, match.start()) + 1, text.find("\n", match.end()) + 1
+            changed_text = (
+                text[: match.start(1)] + str(int(match[1]) + 1 + number) + text[match.end(1) :]
+            )
             twice = text[: line[1]] + text[line[0] : line[1]] + text[line[1] :]
-            damaged = [other, text[: line[0]] + text[line[1] :], twice] if number < 2 else [other]
+            damaged = (
+                [changed_text, text[: line[0]] + text[line[1] :], twice]
+                if number < 2
+                else [changed_text]
+            )
             for changed in damaged:
-                assert codes(way, by, {**files, name: changed.encode("latin-1")}), (name, place[0])
+                assert codes(way, by, {**files, name: changed.encode("latin-1")}), (name, match[0])
 
 
-@pytest.mark.parametrize("way", [way for way, by in WAYS if by == "output"], ids=str)
+@pytest.mark.parametrize("way", [variant for variant, by in WAYS if by == "output"], ids=str)
 def test_another_output_is_refused(way):
-    files = written(way, "output")[3]
+    files = write_program(way, "output")[3]
     renamed = {
         name: re.sub(
             rb"GO\[20\]|go20,|register\(20|\$OUT\[20\] TO|OG#\(20\)|H20=|E19 ",
-            lambda found: re.sub(rb"20|19", b"24", found[0]),
+            lambda match: re.sub(rb"20|19", b"24", match[0]),
             content,
         )
         for name, content in files.items()
@@ -181,13 +190,14 @@ def test_another_output_is_refused(way):
 def test_what_a_controller_cannot_be_told_is_refused_and_its_page_says_so(
     post, by, motion, setup, why, root
 ):
-    """Before anything is planned; whatever else is switched on, no word of it comes into a text."""
+    """The post rejects such a schedule before planning, and its page says so; no other option
+    brings a schedule into the text."""
     cell, reason = planned(setup)[0], catalogue.load(post).NO_SCHEDULE[by]
-    asked = ProgramParameters(
+    parameters = ProgramParameters(
         post=post, motion=motion, schedule=ScheduleParameters(by=by, output=20)
     )
     with pytest.raises(InputError) as error:
-        refuse(cell, process_of(), asked)
+        refuse(cell, process_of(), parameters)
     assert error.value.code == "SCHEDULE" and reason in error.value.message and why in reason
     page = (root / "docs" / "posts" / f"{post}.md").read_text(encoding="utf-8")
     assert ("(`SCHEDULE`)" in page or "rc instructions there are none" in page) and why in page
@@ -215,13 +225,15 @@ def test_what_a_controller_cannot_be_told_is_refused_and_its_page_says_so(
 )
 def test_numbers_that_cannot_be_told_are_refused(process, program, code, words):
     post = program.pop("post", "fanuc")
-    way = next(way for way in ONE_EACH if way[0] == post)
-    cell, _, motion = planned(way[3])
-    parameters = ProgramParameters(post=post, motion=way[1], schedule=ScheduleParameters(**program))
+    variant = next(variant for variant in ONE_EACH if variant[0] == post)
+    cell, _, motion = planned(variant[3])
+    parameters = ProgramParameters(
+        post=post, motion=variant[1], schedule=ScheduleParameters(**program)
+    )
 
     def write():
         return catalogue.load(post).write(
-            build(classed(motion), cell, process_of(**process), parameters, "job")
+            build(assign_classes(motion), cell, process_of(**process), parameters, "job")
         )
 
     if not code:
@@ -233,14 +245,14 @@ def test_numbers_that_cannot_be_told_are_refused(process, program, code, words):
 
 
 def test_a_dry_run_and_a_job_without_schedules_tell_none():
-    way = ONE_EACH[0]
-    cell, _, motion = planned(way[3])
+    variant = ONE_EACH[0]
+    cell, _, motion = planned(variant[3])
     plain = build(motion, cell, PROCESS, ProgramParameters(), "job")
     assert (motion.bead_class == UNKNOWN).all()
-    same = build(classed(motion), cell, PROCESS, ProgramParameters(), "job")
+    same = build(assign_classes(motion), cell, PROCESS, ProgramParameters(), "job")
     assert catalogue.load("fanuc").write(plain) == catalogue.load("fanuc").write(same)
     for by in ("output", "arc", "call"):
         parameters = ProgramParameters(dry_run=True, schedule=ScheduleParameters(by=by))
-        program = build(classed(motion), cell, process_of(), parameters, "job")
+        program = build(assign_classes(motion), cell, process_of(), parameters, "job")
         text = b"".join(catalogue.load("fanuc").write(program).values())
         assert not re.search(rb"GO\[|Arc |SCHEDULE", text)

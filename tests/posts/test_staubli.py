@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is written for a VAL 3 controller: files to the byte, splitting, speeds, and what is refused."""
+"""VAL 3 applications: exact bytes, splitting, speeds and refusals."""
 
 import dataclasses
 import math
@@ -49,7 +49,7 @@ def program(*blocks, name="part", **options):
 
 
 def beads(count, points, layers=1, **options):
-    """Beads of so many points each, each with two rapid moves before it."""
+    """Return beads of `points` points each, each after two rapid moves."""
     blocks = []
     for layer in range(layers):
         blocks.append(LayerStart(layer))
@@ -74,9 +74,9 @@ def values(files, name, array):
     return [dict(re.findall(r'(\w+)="([^"]*)"', line)) for line in block.split("\n")[1:-1]]
 
 
-def refusal(of, *, code, where=None):
+def refusal(source, *, code, where=None):
     with pytest.raises(InputError) as raised:
-        staubli.write(of)
+        staubli.write(source)
     assert raised.value.code == code and where in (None, raised.value.where)
     return raised.value.message
 
@@ -103,19 +103,25 @@ TURNED = np.array(
 
 
 def gauge_bead(layer):
-    places = np.array([[10.0, 0.25, 105.0], [12.0, 0.25, 105.0 + layer], [14.0, 0.5, 105.0]])
-    at = [[0.5 * layer, -30.0, 120.0, 0.0, 60.0, 10.0 * n] for n in range(3)]
+    positions = np.array([[10.0, 0.25, 105.0], [12.0, 0.25, 105.0 + layer], [14.0, 0.5, 105.0]])
+    joints = [[0.5 * layer, -30.0, 120.0, 0.0, 60.0, 10.0 * n] for n in range(3)]
     return [
         LayerStart(layer),
-        moves("rapid", [at[0], at[0]], layer=layer, position=places[:2], rotation=TURNED[:2]),
+        moves(
+            "rapid",
+            [joints[0], joints[0]],
+            layer=layer,
+            position=positions[:2],
+            rotation=TURNED[:2],
+        ),
         DepositOn(),
         moves(
             "deposit",
-            at,
+            joints,
             [0.3, 0.4, 0.5],
             layer=layer,
             speed=5.0,
-            position=places,
+            position=positions,
             rotation=TURNED,
             interpolation="linear",
         ),
@@ -140,7 +146,8 @@ def test_golden_applications_to_the_byte(root, name, assert_applications):
 
 
 def test_the_gauge_is_the_papers():
-    """One target, the deposition point; each tool is the point of the part, X Y Z Rx Ry Rz (Chalvin 2019, III.A)."""
+    """One target is the deposition point; each tool is the point of the part, X Y Z Rx Ry Rz
+    (Chalvin 2019, III.A)."""
     files = staubli.write(dataclasses.replace(GAUGE, max_points=20))
     assert [line for line in lines(files, "gauge/start.pgx") if "movel" in line] == [
         "movel(pTarget,tPath[l_nI],mPath[2])", "movel(pTarget,tPath[l_nI],mPath[5])",
@@ -201,21 +208,21 @@ def test_a_dry_run_moves_the_same_and_switches_nothing(random_application, motio
     assert moving[0] == moving[1] and len(moving[0]) > 10
 
 
-# speeds
+# ---- speeds
 
 
 def test_percent_of_the_fastest_axis_gives_the_time_of_the_move():
     files = staubli.write(JOINT)
-    first, rapid, *deposit, last = [
+    first_speed, rapid, *deposit, last_speed = [
         float(speed["vel"]) for speed in values(files, "Joint/Joint.dtx", "mPath")
     ]
-    assert first == 10.0  # where the robot comes from is not known
+    assert first_speed == 10.0  # the robot's start is unknown
     assert rapid == pytest.approx(100.0 * 5.0 / 700.0 / 0.8, abs=1e-5)
-    # axis 6 leads although axis 3 is slower; at the end axis 1 does
+    # axis 6 decides although axis 3 is slower; at the end axis 1 does
     assert deposit == pytest.approx(
         [100.0 * 1.0 / 700.0 / 0.2, 100.0 * 1.4 / 700.0 / 0.25], abs=1e-5
     )
-    assert last == pytest.approx(100.0 * 1.25 / 287.0, abs=1e-5)
+    assert last_speed == pytest.approx(100.0 * 1.25 / 287.0, abs=1e-5)
 
 
 def test_moves_too_fast_or_too_slow_for_a_percentage_are_refused():
@@ -230,8 +237,8 @@ def test_moves_too_fast_or_too_slow_for_a_percentage_are_refused():
 def test_blending_never_reaches_past_half_a_move():
     for blend, share in ((0, 0.0), (50, 0.25), (100, 0.5)):
         files = staubli.write(dataclasses.replace(JOINT, blend=blend))
-        rapid, _, *deposit, last = values(files, "Joint/Joint.dtx", "mPath")
-        assert rapid["blend"] == last["blend"] == "off"
+        rapid, _, *deposit, last_move = values(files, "Joint/Joint.dtx", "mPath")
+        assert rapid["blend"] == last_move["blend"] == "off"
         # moves of 6 mm/s in 0.2 s and 0.25 s: the shorter one is 1.2 mm long
         assert {(d["blend"], d["leave"], d["reach"]) for d in deposit} == {
             ("joint" if blend else "off", f"{1.2 * share:.3f}", f"{1.2 * share:.3f}")
@@ -256,7 +263,7 @@ def test_path_speeds_that_cannot_be_written_are_refused(speed):
     refusal(dataclasses.replace(GAUGE, blocks=blocks), code="MOVE_SPEED", where="layer 0 bead 0")
 
 
-# parts
+# ---- parts
 
 
 def test_parts_hold_whole_beads_and_are_loaded_away_from_them(assert_applications):
@@ -265,13 +272,16 @@ def test_parts_hold_whole_beads_and_are_loaded_away_from_them(assert_application
     assert lines(files, "part/start.pgx")[:5] == [
         'if prog:libLoad("./part01")!=0', 'popUpMsg("part01 cannot be loaded")', "return", "endIf", "call prog:start()",
     ]  # fmt: skip
-    parts = [lines(files, f"part/part{n:02d}/start.pgx") for n in (1, 2, 3)]
-    for number, part in enumerate(parts):
-        assert part.count("doDeposit=true") == part.count("doDeposit=false") == 2
-        # the first move away from the last bead belongs to its part: what follows is loaded with the nozzle in the air
-        last = [line for line in part if line.startswith(("movej", "for"))][-1]
-        after = part[max(n for n, line in enumerate(part) if line == "doDeposit=false") :]
-        assert (last in after) == (number < 2)
+    part_lines = [lines(files, f"part/part{n:02d}/start.pgx") for n in (1, 2, 3)]
+    for number, statements in enumerate(part_lines):
+        assert statements.count("doDeposit=true") == statements.count("doDeposit=false") == 2
+        # the first move away from the last bead belongs to its part, so the next part loads while
+        # the nozzle is in the air
+        last_move = [line for line in statements if line.startswith(("movej", "for"))][-1]
+        after_deposit = statements[
+            max(n for n, line in enumerate(statements) if line == "doDeposit=false") :
+        ]
+        assert (last_move in after_deposit) == (number < 2)
         points = len(values(files, f"part/part{number + 1:02d}/part{number + 1:02d}.dtx", "jPath"))
         assert points == (45, 44, 43)[number] <= 50
 
@@ -279,15 +289,17 @@ def test_parts_hold_whole_beads_and_are_loaded_away_from_them(assert_application
 def test_the_parts_of_a_program_are_the_program(random_application):
     for seed in range(6):
         for motion, setup in VARIANTS:
-            whole = staubli.read(
+            complete = staubli.read(
                 staubli.write(random_application(seed, motion, setup, max_points=10**5))
             )
-            parts = staubli.read(
+            in_parts = staubli.read(
                 staubli.write(random_application(seed, motion, setup, max_points=50))
             )
-            for field in (one for one in dataclasses.fields(whole) if one.name != "lines"):
+            for field in (
+                candidate for candidate in dataclasses.fields(complete) if candidate.name != "lines"
+            ):
                 np.testing.assert_array_equal(
-                    getattr(parts, field.name), getattr(whole, field.name), field.name
+                    getattr(in_parts, field.name), getattr(complete, field.name), field.name
                 )
 
 
@@ -309,7 +321,7 @@ def test_a_bead_that_goes_on_through_layers_is_no_place_to_cut():
     staubli.write(through)
 
 
-# names and refusals
+# ---- names and refusals
 
 
 @pytest.mark.parametrize(("name", "why", "proposal"), [

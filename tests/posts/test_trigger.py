@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The deposit switched on the move itself, ahead of its place: on which beads, as the text of each controller that can tells
-it; another time, place or output, or none, is refused; so is what a controller cannot do."""
+"""The deposit switched on the move itself, ahead of its position: on which beads, and in the text
+of each controller that can do it. Another time, position or output, or none, is rejected, and so is
+the option for other controllers."""
 
 import dataclasses
 import re
@@ -42,8 +43,8 @@ CELL = {
 CANNOT = [post for post in catalogue.NAMES if catalogue.load(post).NO_TRIGGER]
 
 
-def switched(process, **program):
-    """DepositOn and DepositOff of a job with beads of three classes in turn, by class."""
+def find_switches(process, **program):
+    """Return DepositOn and DepositOff of a job with beads of three classes in turn, by class."""
     cell, _, motion = planned("fanuc tool-on-robot")
     names = ("wall", "contour", "fill")
     number = (motion.layer + motion.bead) % 3
@@ -53,32 +54,32 @@ def switched(process, **program):
     )
     parameters = ProgramParameters(trigger=TriggerParameters(lead=0.05), **program)
     blocks = build(motion, cell, dataclasses.replace(PROCESS, **process), parameters, "job").blocks
-    found = {}
-    for before, block, after in zip(blocks, blocks[1:], blocks[2:]):
+    events = {}
+    for previous, block, following in zip(blocks, blocks[1:], blocks[2:]):
         if isinstance(block, (DepositOn, DepositOff)):
-            moves = after if isinstance(block, DepositOn) else before
+            moves = following if isinstance(block, DepositOn) else previous
             assert isinstance(moves, Moves) and moves.kind == "deposit"
-            found.setdefault(names[(moves.layer + moves.bead) % 3], set()).add(
+            events.setdefault(names[(moves.layer + moves.bead) % 3], set()).add(
                 (type(block).__name__, block.ahead)
             )
-    return found
+    return events
 
 
 def test_what_waits_is_switched_where_the_robot_stands():
-    own = "contour: lead_on 0, lead_off 0; fill: lead_on 0"
-    assert switched({"classes": own, "lead_on": 0.5, "lead_off": 0.25}) == {
+    class_options = "contour: lead_on 0, lead_off 0; fill: lead_on 0"
+    assert find_switches({"classes": class_options, "lead_on": 0.5, "lead_off": 0.25}) == {
         "wall": {("DepositOn", None), ("DepositOff", None)},
         "contour": {("DepositOn", 0.05), ("DepositOff", 0.05)},
         "fill": {("DepositOn", 0.05), ("DepositOff", None)},
     }
     bare = {"lead_on": 0.0, "lead_off": 0.0, "schedule": 3}
-    told = {
+    leads = {
         ("DepositOn", None),
         ("DepositOff", 0.05),
-    }  # the schedule is told where it stands, before the deposit is on
-    assert switched(bare) == dict.fromkeys(("wall", "contour", "fill"), told)
-    assert switched(bare, schedule=ScheduleParameters(by="call")) == dict.fromkeys(
-        ("wall", "contour", "fill"), told
+    }  # the schedule is set at the standstill, before the deposit is on
+    assert find_switches(bare) == dict.fromkeys(("wall", "contour", "fill"), leads)
+    assert find_switches(bare, schedule=ScheduleParameters(by="call")) == dict.fromkeys(
+        ("wall", "contour", "fill"), leads
     )
 
 
@@ -86,20 +87,23 @@ def test_what_waits_is_switched_where_the_robot_stands():
 def test_controllers_that_cannot_refuse_it_before_planning_and_by_themselves(post):
     cell, _, motion = planned(CELL[post])
     for kind in ("joint", "cartesian"):
-        asked = ProgramParameters(post=post, motion=kind, trigger=TriggerParameters(lead=0.0))
+        parameters = ProgramParameters(post=post, motion=kind, trigger=TriggerParameters(lead=0.0))
         try:
-            refuse(cell, PROCESS, dataclasses.replace(asked, trigger=TriggerParameters()))
+            refuse(cell, PROCESS, dataclasses.replace(parameters, trigger=TriggerParameters()))
         except InputError:
             continue
         with pytest.raises(InputError) as error:
-            refuse(cell, PROCESS, asked)
+            refuse(cell, PROCESS, parameters)
         assert (error.value.code, error.value.where) == ("TRIGGER", "program.trigger.lead")
         assert catalogue.load(post).NO_TRIGGER in error.value.message
-        refuse(cell, PROCESS, dataclasses.replace(asked, dry_run=True))  # nothing is switched
+        # a dry run switches nothing
+        refuse(cell, PROCESS, dataclasses.replace(parameters, dry_run=True))
         if kind == "joint" or post in ("abb", "kuka"):
             with pytest.raises(InputError) as error:
                 catalogue.load(post).write(
-                    build(motion, cell, dataclasses.replace(PROCESS, lead_off=0.0), asked, "job")
+                    build(
+                        motion, cell, dataclasses.replace(PROCESS, lead_off=0.0), parameters, "job"
+                    )
                 )
             assert error.value.code == "TRIGGER"
 
@@ -122,8 +126,8 @@ def test_a_lead_longer_than_the_move_it_stands_on_is_refused_with_its_bead():
             assert error.value.code == "TRIGGER_LEAD" and error.value.where.startswith("layer ")
             ends = [
                 run.duration[-1]
-                for run, after in zip(program.blocks, program.blocks[1:], strict=False)
-                if isinstance(run, Moves) and isinstance(after, (DepositOn, DepositOff))
+                for run, following in zip(program.blocks, program.blocks[1:], strict=False)
+                if isinstance(run, Moves) and isinstance(following, (DepositOn, DepositOff))
             ]
             assert (
                 f"takes {min(ends):.4g} s" in error.value.message
@@ -133,8 +137,8 @@ def test_a_lead_longer_than_the_move_it_stands_on_is_refused_with_its_bead():
             refuse_triggers(program, "")
 
 
-def largest(error):
-    """s, of the lead that a refusal says is the largest."""
+def largest_lead(error):
+    """Return the largest lead, in s, that a refusal states."""
     return float(re.search(r"program\.trigger\.lead of at most ([\d.]+) s", error.value.message)[1])
 
 
@@ -151,48 +155,57 @@ def largest(error):
 )
 @pytest.mark.parametrize("only", [None, DepositOn, DepositOff])
 def test_the_largest_lead_is_told_and_read_back_and_more_is_refused(post, motion, blend, only):
-    """Of all that is switched, of starts of beads alone, and of ends. More is a millisecond, or what is written as more."""
+    """The largest lead of all switches, of starts only and of ends only is written and read back.
+    One millisecond more, or the next writable value, is rejected."""
     cell, _, motion_ = planned(CELL[post])
     process = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
     if post == "abb":
         motion_ = linear_approach.shorten_approaches(motion_, cell)
 
-    def made(lead):
-        asked = ProgramParameters(
+    def build_with_lead(lead):
+        parameters = ProgramParameters(
             post=post, motion=motion, blend=blend, trigger=TriggerParameters(lead=lead)
         )
-        program = build(motion_, cell, process, asked, "job")
-        kept = [
+        program = build(motion_, cell, process, parameters, "job")
+        blocks = [
             dataclasses.replace(block, ahead=None)
             if isinstance(block, (DepositOn, DepositOff)) and only not in (None, type(block))
             else block
             for block in program.blocks
         ]
-        return dataclasses.replace(program, blocks=tuple(kept))
+        return dataclasses.replace(program, blocks=tuple(blocks))
 
     with pytest.raises(InputError) as error:
-        catalogue.load(post).write(made(0.5))
+        catalogue.load(post).write(build_with_lead(0.5))
     assert error.value.code == "TRIGGER_LEAD"
-    most = largest(error)
-    assert 0.0 < most < 0.499
-    program = made(most)
+    largest_s = largest_lead(error)
+    assert 0.0 < largest_s < 0.499
+    program = build_with_lead(largest_s)
     files = catalogue.load(post).write(program)
     if (
         post == "fanuc"
     ):  # it writes hundredths of a second: none is longer than its move, and one more would be
         ends = [run.duration[-1] for run, block in switching(program) if block.ahead is not None]
         written = [
-            float(one) for text in files.values() for one in re.findall(rb"TB +([\d.]+)sec", text)
+            float(value)
+            for text in files.values()
+            for value in re.findall(rb"TB +([\d.]+)sec", text)
         ]
         assert (
-            len(written) == len(ends) and set(written) == {most} and most <= min(ends) < most + 0.01
+            len(written) == len(ends)
+            and set(written) == {largest_s}
+            and largest_s <= min(ends) < largest_s + 0.01
         )
-        assert catalogue.load(post).write(made(most + 0.004)) == files  # written the same
-    read = verify(cell, motion_, program, files, catalogue.load(post), CHORD_ERROR)
-    assert not [issue for issue in read.issues if issue.level == ERROR]
+        assert (
+            catalogue.load(post).write(build_with_lead(largest_s + 0.004)) == files
+        )  # written the same
+    result = verify(cell, motion_, program, files, catalogue.load(post), CHORD_ERROR)
+    assert not [issue for issue in result.issues if issue.level == ERROR]
     with pytest.raises(InputError) as error:
-        catalogue.load(post).write(made(most + (0.006 if post == "fanuc" else 0.001)))
-    assert largest(error) == most
+        catalogue.load(post).write(
+            build_with_lead(largest_s + (0.006 if post == "fanuc" else 0.001))
+        )
+    assert largest_lead(error) == largest_s
 
 
 def test_a_controller_of_linear_triggers_goes_straight_onto_beads_and_waits_for_cooling_before():
@@ -213,7 +226,7 @@ def test_a_controller_of_linear_triggers_goes_straight_onto_beads_and_waits_for_
                 1,
                 0.02,
             )
-    # the same moves, waits and places as without, but for the points put in on the way
+    # the same moves, waits and points as without, except for the points added on the approach
     plain = build(
         motion,
         cell,
@@ -223,12 +236,12 @@ def test_a_controller_of_linear_triggers_goes_straight_onto_beads_and_waits_for_
         returns=returns,
     )
     assert all(run.interpolation == "joint" for run in plain.moves if run.kind == "rapid")
-    before = [
+    waits_before = [
         plain.blocks[k - 1].joints[-1]
         for k, block in enumerate(plain.blocks)
         if isinstance(block, WaitBelow)
     ]
-    np.testing.assert_array_equal([blocks[k - 1].joints[-1] for k in waits], before)
+    np.testing.assert_array_equal([blocks[k - 1].joints[-1] for k in waits], waits_before)
     assert sum(map(len, plain.moves)) <= sum(
         len(block) for block in blocks if isinstance(block, Moves)
     )
@@ -236,11 +249,11 @@ def test_a_controller_of_linear_triggers_goes_straight_onto_beads_and_waits_for_
 
 def test_a_program_that_begins_at_a_bead_cannot_go_straight_onto_it():
     cell, _, motion = planned("abb tool-on-robot")
-    first = int(np.argmax(motion.deposit))
+    first_row = int(np.argmax(motion.deposit))
     bare = dataclasses.replace(
         motion,
         **{
-            field.name: getattr(motion, field.name)[first - 1 :]
+            field.name: getattr(motion, field.name)[first_row - 1 :]
             for field in dataclasses.fields(motion)
         },
     )
@@ -254,32 +267,33 @@ def test_a_program_that_begins_at_a_bead_cannot_go_straight_onto_it():
 def test_a_bead_onto_which_nothing_moves_or_that_the_program_begins_at_is_switched_on_where_the_robot_stands(
     post,
 ):
-    """How long the first move takes is not known, and a move to where the robot stands takes no time to be ahead by."""
+    """The deposit is switched at the standstill, because the duration of the first move is unknown,
+    and a move to the current position takes no time."""
     cell, _, motion = planned(CELL[post])
-    first, last = (
+    first_switch, last_switch = (
         int(np.argmax(motion.deposit)),
         int(np.flatnonzero(motion.deposit & (motion.point == 0))[-1]),
     )
     bare = dataclasses.replace(
         motion,
         **{
-            field.name: getattr(motion, field.name)[first - 1 :]
+            field.name: getattr(motion, field.name)[first_switch - 1 :]
             for field in dataclasses.fields(motion)
         },
     )
     assert not bare.deposit[0] and bare.deposit[1]
     joints = bare.joints.copy()
-    joints[last - first] = joints[
-        last - first - 1
-    ]  # there already, where the way onto the last bead begins
+    joints[last_switch - first_switch] = joints[
+        last_switch - first_switch - 1
+    ]  # already at the position where the approach to the last bead begins
     bare = dataclasses.replace(bare, joints=joints)
     process = dataclasses.replace(PROCESS, lead_on=0.0, lead_off=0.0)
-    asked = ProgramParameters(
+    parameters = ProgramParameters(
         post=post,
         motion="cartesian" if post == "kuka" else "joint",
         trigger=TriggerParameters(lead=0.02),
     )
-    program = build(bare, cell, process, asked, "job")
+    program = build(bare, cell, process, parameters, "job")
     on = [block.ahead for block in program.blocks if isinstance(block, DepositOn)]
     assert on == [None, *(0.02,) * (len(on) - 2), None] and len(on) > 3
     assert {block.ahead for block in program.blocks if isinstance(block, DepositOff)} == {0.02}
@@ -298,12 +312,12 @@ def test_a_bead_onto_which_nothing_moves_or_that_the_program_begins_at_is_switch
     ],
 )
 def test_how_long_ahead_is_told_to_its_last_digit(found, due, alike):
-    one, other = (Event(3, "on", (1.0,), 0.0005, value) for value in (found, due))
-    assert _alike(_Robot, one, other) is alike
+    event, expected_event = (Event(3, "on", (1.0,), 0.0005, value) for value in (found, due))
+    assert _alike(_Robot, event, expected_event) is alike
 
 
 class _Robot:
-    """What is asked of a program whose deposit a digital output switches."""
+    """A stub of a program whose deposit a digital output switches."""
 
     class nc:
         deposit_on = ""

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Statements of the languages of controllers that readers do not understand, at every line of a program: each is refused on
-its own line. And what is understood but not known - numbers of frames and tools, programs of the controller - is reported."""
+"""Statements of controller languages that a reader does not understand are rejected on their own
+line, at every line of a program. Understood but unknown items (numbers of frames and tools,
+programs on the controller) are reported."""
 
 import re
 from pathlib import Path
@@ -18,7 +19,7 @@ from freecad_am.read_back.selected import selection_findings
 from tests.posts.planned_jobs import written
 
 GOLDEN = Path(__file__).parents[1] / "golden"
-# folder or file of a program, and which lines of it may have a statement before them
+# folder or file of a program, and the lines that a statement may precede
 PROGRAMS = {
     "abb": ("abb/both", r"PROC \w+\(\)$"),
     "ur": ("ur/TABLE.script", r"global platform"),
@@ -222,16 +223,17 @@ F100
 
 
 def program(post):
-    """The files of a program that its reader understands, and by file the numbers of lines, from 1, of its statements."""
-    place, begins = PROGRAMS[post]
-    path = GOLDEN / place
+    """Return the files of a program that its reader understands, and by file the line numbers, from
+    1, of its statements."""
+    location, begins = PROGRAMS[post]
+    path = GOLDEN / location
     paths = sorted(path.iterdir()) if path.is_dir() else [path]
-    files = {one.name: one.read_bytes().decode("ascii") for one in paths}
+    files = {path.name: path.read_bytes().decode("ascii") for path in paths}
     lines = {}
     for name, text in files.items():
         rows = [row.strip() for row in text.splitlines()]
-        first = next(k for k, row in enumerate(rows) if re.match(begins, row)) + 2
-        lines[name] = range(first, len(rows) + 1 - (2 if post == "abb" else 1))
+        first_row = next(k for k, row in enumerate(rows) if re.match(begins, row)) + 2
+        lines[name] = range(first_row, len(rows) + 1 - (2 if post == "abb" else 1))
     return files, lines
 
 
@@ -242,7 +244,7 @@ def encoded(files):
 def inserted(text, line, statement):
     rows = text.splitlines(keepends=True)
     end = "\r\n" if "\r\n" in text else "\n"
-    # indented as the line before, where that means something
+    # indented like the line before, where indentation matters
     ahead = re.match(r" *", rows[line - 2])[0] or re.match(r" *", rows[line - 1])[0]
     return "".join([*rows[: line - 1], ahead, statement, end, *rows[line - 1 :]])
 
@@ -250,8 +252,8 @@ def inserted(text, line, statement):
 @pytest.mark.parametrize("post", PROGRAMS)
 def test_a_statement_that_is_not_understood_is_refused_on_its_line(post):
     files, lines = program(post)
-    read = catalogue.load(post).read
-    assert len(read(encoded(files)).deposit)
+    read_files = catalogue.load(post).read
+    assert len(read_files(encoded(files)).deposit)
     statements = STATEMENTS[post].strip().splitlines()
     assert len(statements) >= 25
     for name, numbers in lines.items():
@@ -259,12 +261,12 @@ def test_a_statement_that_is_not_understood_is_refused_on_its_line(post):
             for statement in statements:
                 changed = encoded({**files, name: inserted(files[name], line, statement)})
                 try:
-                    read(changed)
+                    read_files(changed)
                 except InputError as error:
-                    shown = _add_statement(error, changed)
-                    assert shown.code == "UNREADABLE_PROGRAM"
-                    assert shown.where == f"{name} line {line}", (statement, shown.message)
-                    assert repr(statement.strip()) in shown.message
+                    message = _add_statement(error, changed)
+                    assert message.code == "UNREADABLE_PROGRAM"
+                    assert message.where == f"{name} line {line}", (statement, message.message)
+                    assert repr(statement.strip()) in message.message
                 else:
                     raise AssertionError((name, line, statement))
 
@@ -280,11 +282,11 @@ def test_a_statement_that_is_not_understood_is_refused_on_its_line(post):
 def test_a_second_output_is_refused_with_the_place_of_the_first(post, file, statement):
     path = GOLDEN / post / file
     text, name = path.read_text(encoding="ascii"), path.name
-    at = next(k for k, row in enumerate(text.splitlines(), 1) if "G1 " in row)
-    changed = encoded({name: inserted(text, at, statement)})
+    line_number = next(k for k, row in enumerate(text.splitlines(), 1) if "G1 " in row)
+    changed = encoded({name: inserted(text, line_number, statement)})
     with pytest.raises(InputError) as raised:
         catalogue.load(post).read(changed)
-    assert f"the first is {name} line {at}" in raised.value.message
+    assert f"the first is {name} line {line_number}" in raised.value.message
 
 
 @pytest.mark.parametrize("statement", ["WVON WEV#(1)", "WVOF"])
@@ -309,14 +311,16 @@ FRAMES = [
 ]
 
 
-def findings(way, files, expected):
-    cell, _, _, _ = written(way)
-    read = catalogue.load(way[0]).read(files)
-    kept = build_header(cell, ProgramParameters(post=way[0]), catalogue.controller(way[0]), "check")
-    motion = followed.drive(cell, kept, read)
+def findings(variant, files, expected):
+    cell, _, _, _ = written(variant)
+    readback = catalogue.load(variant[0]).read(files)
+    header = build_header(
+        cell, ProgramParameters(post=variant[0]), catalogue.controller(variant[0]), "check"
+    )
+    motion = followed.drive(cell, header, readback)
     return [
-        one for one in selection_findings(motion, read, expected)
-        if one.issue.code == "FRAME_NUMBER"
+        finding for finding in selection_findings(motion, readback, expected)
+        if finding.issue.code == "FRAME_NUMBER"
     ]  # fmt: skip
 
 
@@ -326,26 +330,28 @@ def test_another_frame_or_tool_than_the_job_s_is_reported(way, old, new, words):
     assert any(old.encode() in content for content in files.values())
     changed = {name: content.replace(old.encode(), new.encode()) for name, content in files.items()}
     assert findings(way, files, (1, 1)) == []
-    (found,) = findings(way, changed, (1, 1))
-    assert found.issue.level == WARNING and words in found.issue.message
+    (finding,) = findings(way, changed, (1, 1))
+    assert finding.issue.level == WARNING and words in finding.issue.message
 
 
 def test_a_frame_or_tool_that_changes_on_the_way_is_an_error():
-    way = ("linuxcnc", "cartesian", "time", "table")
-    ((name, content),) = written(way)[3].items()
+    variant = ("linuxcnc", "cartesian", "time", "table")
+    ((name, content),) = written(variant)[3].items()
     for old, new in ((b"G54", b"G55"), (b"M428", b"G49\nM428")):
-        places = [found.start() for found in re.finditer(rb"\b" + old, content)]
-        assert len(places) > 2
-        at = places[1]
-        changed = {name: content[:at] + new + content[at + len(old) :]}
-        (found,) = findings(way, changed, None)
-        assert found.issue.level == ERROR and found.row is not None
+        positions = [finding.start() for finding in re.finditer(rb"\b" + old, content)]
+        assert len(positions) > 2
+        position = positions[1]
+        changed = {name: content[:position] + new + content[position + len(old) :]}
+        (finding,) = findings(variant, changed, None)
+        assert finding.issue.level == ERROR and finding.row is not None
 
 
 def test_a_program_that_is_not_among_the_files_is_reported_once():
-    way = ("siemens", "joint", "time", "table")
-    _, motion, _, files = written(way)
-    found = selection_findings(motion, catalogue.load(way[0]).read(files), None)
-    assert [(one.issue.level, one.issue.code) for one in found] == [(WARNING, "OTHER_PROGRAM")]
-    assert "calls CLEAN" in found[0].issue.message
-    assert np.isfinite(motion.position[found[0].row]).all()
+    variant = ("siemens", "joint", "time", "table")
+    _, motion, _, files = written(variant)
+    reported = selection_findings(motion, catalogue.load(variant[0]).read(files), None)
+    assert [(finding.issue.level, finding.issue.code) for finding in reported] == [
+        (WARNING, "OTHER_PROGRAM")
+    ]
+    assert "calls CLEAN" in reported[0].issue.message
+    assert np.isfinite(motion.position[reported[0].row]).all()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The controller's own weave in the texts: each bead has that of its class between its start and its end, and no other one;
-whatever else a text says is refused, and so is what a controller cannot be told."""
+"""The controller's own weave: each bead has that of its class between its start and end, and no
+other. Any other text is rejected, and so is a weave that a controller cannot run."""
 
 import dataclasses
 import functools
@@ -27,23 +27,27 @@ pytestmark = pytest.mark.any_version
 SETUPS = {"fanuc": "fanuc tool-on-robot", "yaskawa": "yaskawa tool-on-robot"}
 BEGINS = {"fanuc": r"Weave Sine\[(\d+)\]", "yaskawa": r"WVON WEV#\((\d+)\)"}
 ENDS = {"fanuc": r"Weave End", "yaskawa": r"WVOF"}
-ON, OFF = (
+WEAVE_ON, WEAVE_OFF = (
     {"fanuc": r"DO\[1\]=ON", "yaskawa": r"OT#\(1\) ON"},
     {"fanuc": r"DO\[1\]=OFF", "yaskawa": r"OT#\(1\) OFF"},
 )
 MOVE = {"fanuc": r"^ *\d+:([JL]) P\[", "yaskawa": r"^MOV([JL]) "}
 REFUSED_BY_READER = {
     "yaskawa": ["UNREADABLE_PROGRAM"]
-}  # whose reader pairs the beginnings and ends of weaves itself
-OF = {"wall": 4, "contour": 2, "fill": None}  # that of the process, one of its own, straight
+}  # their readers pair the starts and ends of weaves
+CLASS_WEAVES = {
+    "wall": 4,
+    "contour": 2,
+    "fill": None,
+}  # the weave of the process, another one, and none
 
 
 @functools.cache
-def written(post, dry_run=False):
+def write_program(post, dry_run=False):
     cell, _, motion = planned(SETUPS[post])
     number = (motion.layer + motion.bead) % 3
     motion = dataclasses.replace(
-        motion, bead_class=np.array([CLASSES.index(name) for name in OF])[number]
+        motion, bead_class=np.array([CLASSES.index(name) for name in CLASS_WEAVES])[number]
     )
     process = dataclasses.replace(PROCESS, weave=4, classes="contour: weave 2; fill: weave 0")
     program = build(
@@ -57,12 +61,12 @@ def written(post, dry_run=False):
 
 
 def codes(post, files):
-    cell, motion, program, _ = written(post)
+    cell, motion, program, _ = write_program(post)
     try:
-        found = verify(cell, motion, program, files, catalogue.load(post), CHORD_ERROR)
+        result = verify(cell, motion, program, files, catalogue.load(post), CHORD_ERROR)
     except InputError as error:
         return {error.code}
-    return {issue.code for issue in found.issues if issue.level == ERROR}
+    return {issue.code for issue in result.issues if issue.level == ERROR}
 
 
 def instructions(files):
@@ -72,19 +76,19 @@ def instructions(files):
 @pytest.mark.parametrize("post", SETUPS)
 @pytest.mark.parametrize("dry_run", [False, True])
 def test_every_linear_move_of_a_bead_is_woven_as_its_class_says_and_no_rapid_is(post, dry_run):
-    _, motion, _, files = written(post, dry_run)
+    _, motion, _, files = write_program(post, dry_run)
     assert dry_run or codes(post, files) == set()
     weave, on, of_bead, moved = None, dry_run, [], False
     for line in instructions(files):
-        if begun := re.search(BEGINS[post], line):
+        if match := re.search(BEGINS[post], line):
             assert weave is None and on
-            weave = int(begun[1])
+            weave = int(match[1])
         elif re.search(ENDS[post], line):
             assert weave is not None and on
             weave = None
-        elif re.search(ON[post], line):
+        elif re.search(WEAVE_ON[post], line):
             on = True
-        elif re.search(OFF[post], line):
+        elif re.search(WEAVE_OFF[post], line):
             assert weave is None
             on = False
         elif move := re.match(MOVE[post], line):
@@ -94,79 +98,85 @@ def test_every_linear_move_of_a_bead_is_woven_as_its_class_says_and_no_rapid_is(
             assert weave == (of_bead[-1] if straight else None)
             moved = straight
     begins = np.flatnonzero(motion.deposit & (motion.point == 0))
-    assert of_bead == [OF[CLASSES[number]] for number in motion.bead_class[begins]]
+    assert of_bead == [CLASS_WEAVES[CLASSES[number]] for number in motion.bead_class[begins]]
     assert set(of_bead) == {4, 2, None} and weave is None
 
 
 @pytest.mark.parametrize("post", SETUPS)
 def test_a_text_with_another_weave_is_refused(post):
-    files = written(post)[3]
+    files = write_program(post)[3]
     begin, end = (rf"(?m)^[^\n]*{pattern[post]}[^\n]*\n" for pattern in (BEGINS, ENDS))
     move = rf"(?m){MOVE[post]}[^\n]*\n"
-    tried = 0
+    attempts = 0
     for name, content in files.items():
         text = content.decode("latin-1")
         for pattern in (begin, end):
-            for place in list(re.finditer(pattern, text))[:4]:
-                line, before, after = place[0], text[: place.start()], text[place.end() :]
-                following = re.compile(move).search(after)
-                earlier = list(re.finditer(move, before))
-                changed = [before + after, before + line + line + after]
+            for match in list(re.finditer(pattern, text))[:4]:
+                line, text_before, text_after = match[0], text[: match.start()], text[match.end() :]
+                following = re.compile(move).search(text_after)
+                earlier = list(re.finditer(move, text_before))
+                changed = [text_before + text_after, text_before + line + line + text_after]
                 if following:
                     changed.append(
-                        before + after[: following.end()] + line + after[following.end() :]
+                        text_before
+                        + text_after[: following.end()]
+                        + line
+                        + text_after[following.end() :]
                     )
                 if earlier:
                     changed.append(
-                        before[: earlier[-1].start()] + line + before[earlier[-1].start() :] + after
+                        text_before[: earlier[-1].start()]
+                        + line
+                        + text_before[earlier[-1].start() :]
+                        + text_after
                     )
                 if number := re.search(BEGINS[post], line):
                     changed.append(
-                        before
+                        text_before
                         + line.replace(number[1] + number[0][-1], f"9{number[0][-1]}")
-                        + after
+                        + text_after
                     )
                 for damaged in changed:
-                    tried += 1
+                    attempts += 1
                     assert codes(post, {**files, name: damaged.encode("latin-1")}) & {
                         "VERIFY_WEAVE",
                         "VERIFY_ORDER",
                         *REFUSED_BY_READER.get(post, ()),
                     }, line
-    assert tried > 20
+    assert attempts > 20
 
 
-def woven(of, number):
-    """A program with the weave in its beads."""
+def add_weave(source, number):
+    """Return the program with the weave in its beads."""
     blocks = []
-    for block in of.blocks:
+    for block in source.blocks:
         ends = [Weave(0)] if isinstance(block, DepositOff) else []
         blocks += [*ends, block, *([Weave(number)] if isinstance(block, DepositOn) else [])]
-    return dataclasses.replace(of, blocks=tuple(blocks), name="woven")
+    return dataclasses.replace(source, blocks=tuple(blocks), name="woven")
 
 
 def test_golden_programs_to_the_byte(root, assert_listings):
-    listing = catalogue.load("fanuc").write(woven(GOLDEN_TABLE, 12))
+    listing = catalogue.load("fanuc").write(add_weave(GOLDEN_TABLE, 12))
     assert listing == {"WOVEN.LS": (root / "tests/golden/fanuc/WOVEN.LS").read_bytes()}
     assert_listings(listing)
-    job = catalogue.load("yaskawa").write(woven(GOLDENS["linear"], 255))
+    job = catalogue.load("yaskawa").write(add_weave(GOLDENS["linear"], 255))
     assert job == {"WOVEN.JBI": (root / "tests/golden/yaskawa/WOVEN.JBI").read_bytes()}
     assert list(faults("WOVEN.JBI", job["WOVEN.JBI"])) == []
 
 
 @pytest.mark.parametrize("post", SETUPS)
 def test_a_woven_bead_is_not_cut_apart_and_a_straight_one_is(post):
-    program = written(post)[2]
-    most = int(max(len(run) for run in program.moves)) - 1
+    program = write_program(post)[2]
+    max_points = int(max(len(run) for run in program.moves)) - 1
     with pytest.raises(InputError) as error:
-        catalogue.load(post).write(dataclasses.replace(program, max_points=most))
+        catalogue.load(post).write(dataclasses.replace(program, max_points=max_points))
     assert (error.value.code, error.value.where) == ("BEAD_TOO_LONG", "program.max_points")
     assert "woven" in error.value.message
     straight = tuple(block for block in program.blocks if not isinstance(block, Weave))
     assert (
         len(
             catalogue.load(post).write(
-                dataclasses.replace(program, blocks=straight, max_points=most)
+                dataclasses.replace(program, blocks=straight, max_points=max_points)
             )
         )
         > 1
@@ -196,7 +206,7 @@ def test_what_cannot_be_woven_is_refused_before_planning(
     parameters = ProgramParameters(post=post, motion=motion)
     refuse(
         cell, ProcessParameters(weave=0, classes="fill: weave 0"), parameters
-    )  # straight can be said by all
+    )  # every controller can print straight beads
     with pytest.raises(InputError) as error:
         refuse(cell, process, parameters)
     assert (error.value.code, error.value.where) == ("WEAVE", where)
@@ -208,7 +218,7 @@ def test_what_cannot_be_woven_is_refused_before_planning(
 
 @pytest.mark.parametrize("post", SETUPS)
 def test_posts_refuse_what_they_are_given_wrongly(post):
-    program = written(post)[2]
+    program = write_program(post)[2]
     joint = dataclasses.replace(program, motion="joint")
     large = tuple(
         Weave(256) if isinstance(block, Weave) and block.number else block
