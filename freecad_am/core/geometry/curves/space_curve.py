@@ -15,6 +15,7 @@ from ..walls.surface import dot
 
 CORNER = 1e-5  # rad; smaller angles between adjacent arcs are smooth joints
 CANDIDATES = 4  # nearest samples at which the search for the nearest point starts
+ADJACENT = 2.5  # samples next to a nearest point, to either side, that lead to this point
 STEPS = 30  # maximum Newton steps; only points near a centre of curvature need many
 
 
@@ -283,8 +284,8 @@ class SpaceCurve:
     def nearest(self, points: Array) -> tuple[Array, Array, Array]:
         """Return the curve points nearest to given points.
 
-        Newton's method starts at the nearest samples and stays on their smooth pieces. The
-        nearest result counts.
+        Newton's method starts at the nearest samples and stays on their smooth pieces, but not at
+        samples next to a result. The nearest result counts.
 
         Parameters
         ----------
@@ -303,13 +304,28 @@ class SpaceCurve:
         tree, arcs, sample_t = self._samples
         count = min(CANDIDATES, len(arcs))
         candidates = tree.query(points, k=count)[1].reshape(len(points), count)
-        start = self.w[arcs[candidates]] + sample_t[candidates] * self.span[arcs[candidates]]
-        w = self.descend(np.broadcast_to(points[:, None], start.shape + (3,)), start)
+        samples = self.w[arcs] + sample_t * self.span[arcs]
+        w = self.wrap(self.descend(points, samples[candidates[:, 0]]))
         foot = self.at(w)[0]
-        distance = lengths((points[:, None] - foot).reshape(-1, 3)).reshape(w.shape)
-        best = np.argmin(distance, axis=1)
-        row = np.arange(len(points))
-        return distance[row, best], foot[row, best], self.wrap(w[row, best])
+        distance = lengths(points - foot)
+        # samples next to the foot, on its smooth piece, lead to the same foot
+        apart = np.abs(candidates - (samples.searchsorted(w) - 0.5)[:, None])
+        if self.closed:
+            apart = np.minimum(apart, len(samples) - apart)
+        piece = self._pieces[0][arcs[candidates]]
+        row, column = np.nonzero((apart > ADJACENT) | (piece != piece[:, :1]))
+        if len(row):
+            other_w = self.descend(points[row], samples[candidates[row, column]])
+            other_w = self.wrap(other_w)
+            other_foot = self.at(other_w)[0]
+            other_distance = lengths(points[row] - other_foot)
+            # the nearest one of a point comes last
+            order = np.argsort(-other_distance, kind="stable")
+            order = order[other_distance[order] < distance[row[order]]]
+            nearer = row[order]
+            distance[nearer], foot[nearer] = other_distance[order], other_foot[order]
+            w[nearer] = other_w[order]
+        return distance, foot, w
 
     def descend(self, points: Array, w: Array) -> Array:
         """Descend along the curve to the points nearest to given points.

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ...types import Array, Index, Mask
+from ..columns import lengths
 from ..walls.surface import dot
 from .refine import Edges
 
@@ -88,9 +89,8 @@ class SmoothMesh:
         feet = points.astype(np.float64, copy=True)
         normals = np.zeros_like(feet)
         busy = np.arange(len(feet))
+        neighbours = self._neighbours(feet)
         for step in range(STEPS):
-            if step < 2:  # far from the surface, the first step changes the neighbours
-                neighbours = self._neighbours(feet[busy])
             value, slope = self._level(feet[busy], neighbours)
             size = np.maximum((slope * slope).sum(axis=1), 0.04)
             most = 4.0 * self.reach
@@ -98,6 +98,9 @@ class SmoothMesh:
             feet[busy] -= move
             normals[busy] = slope
             still = np.abs(move).max(axis=1) < MIN_MOVE_MM
+            if step == 0:  # far from the surface, the first step changes the neighbours
+                stale = np.flatnonzero(neighbours.may_change(lengths(move), self.reach))
+                neighbours.replace(stale, self._neighbours(feet[stale]))
             if step == 0 or not still.any():
                 continue
             busy, neighbours = busy[~still], neighbours.select(~still)
@@ -108,13 +111,19 @@ class SmoothMesh:
     def _neighbours(self, points: Array) -> _Neighbours:
         """Return the samples nearest to points (k, 3)."""
         count = min(NEIGHBOUR_COUNT, len(self.samples))
-        nearest = np.asarray(self._tree.query(points, k=count)[1]).reshape(len(points), count)
+        distances, nearest = (
+            np.asarray(column).reshape(len(points), count)
+            for column in self._tree.query(points, k=count)
+        )
         normals, areas = self._facets
-        return _Neighbours(self.samples[nearest], normals[nearest], areas[nearest])
+        ends = distances[:, [0, -1]]
+        if count == len(self.samples):
+            ends[:, 1] = np.inf
+        return _Neighbours(self.samples[nearest], normals[nearest], areas[nearest], ends)
 
     def _level(self, points: Array, neighbours: _Neighbours) -> tuple[Array, Array]:
         """Return approximate heights (k,) of points above the surface, and gradients (k, 3)."""
-        samples, normal, area = neighbours
+        samples, normal, area, _ = neighbours
         offset = points[:, None] - samples
         square = np.einsum("klc,klc->kl", offset, offset)
         reach = np.maximum(self.reach**2, 2.0 * square.min(axis=1))[:, None]
@@ -142,11 +151,27 @@ class SmoothMesh:
 
 
 class _Neighbours(NamedTuple):
-    """Samples near points (k, l, 3), their normals (k, l, 3) and areas (k, l)."""
+    """Samples near points (k, l, 3), their normals (k, l, 3) and areas (k, l).
+
+    ends: (k, 2) distances of the nearest and the farthest sample, mm; infinite if there are no others.
+    """
 
     sample: Array
     normal: Array
     area: Array
+    ends: Array
+
+    def may_change(self, moved: Array, reach: float) -> Mask:
+        """Return whether other samples may influence points after moves (k,), mm."""
+        nearest, farthest = self.ends.T
+        needed = np.maximum(reach, np.sqrt(2.0) * (nearest + moved))
+        changed: Mask = farthest - moved < needed
+        return changed
+
+    def replace(self, rows: Index, others: _Neighbours) -> None:
+        """Replace the neighbours of some points."""
+        for column, new in zip(self, others, strict=True):
+            column[rows] = new
 
     def select(self, rows: Mask) -> _Neighbours:
         """Return the neighbours of selected points."""

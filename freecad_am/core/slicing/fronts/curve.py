@@ -306,6 +306,12 @@ class _Offset(NamedTuple):
         Returns the arcs with a corner (k,), and the corners as nodes.
         """
         ends = [nodes.select(arcs), nodes.select((arcs + 1) % len(nodes.points))]
+        middle, _ = self.wall.project(0.5 * (ends[0].points + ends[1].points))
+        feet = [self._walked(middle, end.foot).point for end in ends]
+        has_branches = np.linalg.norm(feet[0] - feet[1], axis=1) > SAME_PLACE
+        arcs, ends = arcs[has_branches], [end.select(has_branches) for end in ends]
+        if not len(arcs):
+            return arcs, ends[0]
         end_feet = [end.foot for end in ends]
         chord = np.linalg.norm(ends[1].points - ends[0].points, axis=1)
         middle = 0.5 * (ends[0].points + ends[1].points)
@@ -349,12 +355,13 @@ class _Offset(NamedTuple):
         rims: directions of the rims at the ends of an open line; these ends move along the rims.
         """
         points, normal = self.wall.project(points)
+        foot = nearest_feet(self.below, points)
         for _ in range(STEPS):
-            foot = nearest_feet(self.below, points)
-            slope = foot.away - dot(foot.away, normal)[:, None] * normal
             off = self.height - foot.distance
-            if np.abs(off).max(initial=0.0) < 1e-11 * self.height:
-                return points, normal, foot
+            moving = np.flatnonzero(np.abs(off) >= 1e-11 * self.height)
+            if not len(moving):
+                break
+            slope = foot.away - dot(foot.away, normal)[:, None] * normal
             step = (off / np.maximum(dot(slope, slope), 0.05))[:, None] * slope
             if rims is not None:
                 rate = dot(foot.away[[0, -1]], rims)
@@ -362,8 +369,10 @@ class _Offset(NamedTuple):
                 step[[0, -1]] = (off[[0, -1]] / np.where(np.abs(rate) < 0.1, min_rate, rate))[
                     :, None
                 ] * rims
-            points, normal = self.wall.project(points + step)
-        return points, normal, nearest_feet(self.below, points)
+            points[moving], normal[moving] = self.wall.project(points[moving] + step[moving])
+            for column, new in zip(foot, nearest_feet(self.below, points[moving]), strict=True):
+                column[moving] = new
+        return points, normal, foot
 
     def _walked(self, points: Array, foot: Feet) -> Feet:
         """Return the feet of points on given branches; foot: nearby feet that define the branches."""

@@ -456,7 +456,10 @@ class Rims:
         if front.closed or not any(self.end):
             return False
         ends = front.points[[0, -1]]
-        distance = np.stack([curve.nearest(ends)[0] for curve in self.curves])
+        distance = np.full((len(self.curves), 2), np.inf)
+        for k, curve in enumerate(self.curves):
+            if (curve.beyond_box(ends) < ON_RIM).any():
+                distance[k] = curve.nearest(ends)[0]
         end = np.array(self.end)
         elsewhere = distance[~end].min(axis=0, initial=np.inf) < ON_RIM
         return bool(((distance[end].min(axis=0) < ON_RIM) & ~elsewhere).any())
