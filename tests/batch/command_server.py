@@ -26,17 +26,25 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 import freecad_am
 from freecad_am.batch import cli, host
 
-# what a command imports beside our own modules; a part of it may not be there
-BESIDE = ("Part", "Mesh", "MeshPart", "PyKDL", "yaml", "shapely", "matplotlib.backends.backend_svg")
+# what a command imports besides the package's modules; some of it may be missing
+EXTERNAL_MODULES = (
+    "Part",
+    "Mesh",
+    "MeshPart",
+    "PyKDL",
+    "yaml",
+    "shapely",
+    "matplotlib.backends.backend_svg",
+)
 NOT_OF_COMMANDS = (
     "freecad_am.gui",
     "freecad_am.batch.boot",
-)  # a window's, and what starts a command
+)  # those of a window, and those that start a command
 
 
 def load_all():
-    """Every module a command may import: a second of each otherwise."""
-    for name in BESIDE:
+    """Import every module that a command may import; each takes a second otherwise."""
+    for name in EXTERNAL_MODULES:
         with contextlib.suppress(ImportError):
             importlib.import_module(name)
     for module in pkgutil.walk_packages(freecad_am.__path__, "freecad_am."):
@@ -52,17 +60,17 @@ def draw_first_chart():
 
         quantity = chart.Quantity("x", "mm")
         curve = chart.Curve("z", numpy.arange(3.0), numpy.arange(3.0))
-        first = chart.Chart("First", quantity, quantity, (curve,))
-        files.inline(draw.figure([first], chart.PAGE, 460, 230)[0], first.title)
+        first_chart = chart.Chart("First", quantity, quantity, (curve,))
+        files.inline(draw.figure([first_chart], chart.PAGE, 460, 230)[0], first_chart.title)
 
 
 def be_command(folder, environment, out, err, words, seconds, memory):
-    """Run a command and end."""
+    """Run a command and exit."""
     status = 1
     try:
-        for kind, most in ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_AS, memory)):
-            if most:
-                resource.setrlimit(kind, (most, most))
+        for kind, limit in ((resource.RLIMIT_CPU, seconds), (resource.RLIMIT_AS, memory)):
+            if limit:
+                resource.setrlimit(kind, (limit, limit))
         os.environ.clear()
         os.environ.update(environment)
         nothing = os.open(os.devnull, os.O_RDONLY)
@@ -85,16 +93,16 @@ def main():
     import FreeCAD  # noqa: F401  before Part
 
     load_all()
-    gc.set_threshold(300_000, 50, 50)  # and no copy looks through what all of them have
+    gc.set_threshold(300_000, 50, 50)  # and no copy may scan the objects that all of them share
     gc.freeze()
     answer = int(sys.argv[1])
     for line in sys.stdin:
         assert len(os.listdir("/proc/self/task")) == 1, "this process is to have one thread"
-        *asked, apart = json.loads(line)
+        *request, own_group = json.loads(line)
         process = os.fork()
         if not process:
-            be_command(*asked)
-        if apart:
+            be_command(*request)
+        if own_group:
             os.setpgid(process, process)
         os.write(answer, f"{process}\n".encode())
         _, status, used = os.wait4(process, 0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A small part and job in a folder of their own, and the launcher to run them."""
+"""A small part and its job in a folder of their own, and the launcher to run them."""
 
 import atexit
 import contextlib
@@ -33,33 +33,34 @@ program:
   post: fanuc
 """
 SERVER = Path(__file__).with_name("command_server.py")
-PATIENCE = 300  # s for a command in which it computes, or does not even want to
+# seconds of computing, or of not even waiting for the processor, before a command counts as hanging
+PATIENCE = 300
 
 
 def used_by(process: int) -> tuple[float, bool]:
-    """s of the processor that a process and those it started have used, with those that ended, and whether one of them
-    computes, or waits for the processor or for a disk."""
+    """Return the processor time in s that a process and its children have used, including ended
+    ones, and whether any of them computes or waits for the processor or a disk."""
     ticks, wants = 0, False
     waiting = [str(process)]
     while waiting:
-        place = Path("/proc", waiting.pop())
-        with contextlib.suppress(OSError):  # it has just ended
-            told = (
-                (place / "stat")
+        folder = Path("/proc", waiting.pop())
+        with contextlib.suppress(OSError):  # the process has just ended
+            stat_fields = (
+                (folder / "stat")
                 .read_text(encoding="utf-8", errors="replace")
                 .rpartition(")")[2]
                 .split()
             )
-            ticks += sum(map(int, told[11:15]))
-            wants = wants or told[0] in "RD"
-            for thread in (place / "task").iterdir():
+            ticks += sum(map(int, stat_fields[11:15]))
+            wants = wants or stat_fields[0] in "RD"
+            for thread in (folder / "task").iterdir():
                 waiting += (thread / "children").read_text(encoding="ascii").split()
     return ticks / os.sysconf("SC_CLK_TCK"), wants
 
 
 def ended(process: subprocess.Popen, patience: float = PATIENCE) -> int:
-    """The exit status of a process. TimeoutError where it does not end: after `patience` s in which it did not even wait for
-    the processor, or of computing."""
+    """Return the exit status of a process. Raise TimeoutError if it does not end after `patience`
+    seconds of computing, or of not even waiting for the processor."""
     idle = 0
     while True:
         with contextlib.suppress(subprocess.TimeoutExpired):
@@ -72,7 +73,8 @@ def ended(process: subprocess.Popen, patience: float = PATIENCE) -> int:
 
 @dataclass
 class Ended:
-    """How a command ended; s of the processor and MB of its largest process where the server ran it."""
+    """The end of a command, with processor seconds and the MB of its largest process if the server
+    ran it."""
 
     status: int
     out: str
@@ -82,11 +84,12 @@ class Ended:
 
 
 class Commands:
-    """The process of command_server.py, started when it is first needed, and again after a command that took too long."""
+    """The process of command_server.py. It starts when first needed, and again after a command that
+    took too long."""
 
     def __init__(self) -> None:
         self.process: subprocess.Popen | None = None
-        self.copy = 0  # the number of the one at work
+        self.copy = 0  # the number of the running copy
 
     def run(
         self,
@@ -96,19 +99,21 @@ class Commands:
         most_bytes: int = 0,
         patience: int = PATIENCE,
     ) -> Ended:
-        """Limits of 0 are none. TimeoutError where the command does not end: after `patience` s in which it did not even
-        wait for the processor, or computed where there is no limit to that. A machine that is busy is none of its."""
-        with tempfile.TemporaryDirectory() as place:
-            out, err = Path(place) / "out", Path(place) / "err"
+        """Run a command; a limit of 0 means no limit. Raise TimeoutError if the command does not
+        end after `patience` seconds in which it did not even wait for the processor, or computed
+        without a limit. Waiting for a busy machine does not count."""
+        with tempfile.TemporaryDirectory() as folder_:
+            out, err = Path(folder_) / "out", Path(folder_) / "err"
             self._ask(folder, out, err, words, most_seconds, most_bytes)
             status, seconds, memory = self._answered(
                 " ".join(words), patience, computes=not most_seconds
             )
-            told = (stream.read_text(encoding="utf-8") for stream in (out, err))
-            return Ended(status, *told, seconds, memory)
+            texts = (stream.read_text(encoding="utf-8") for stream in (out, err))
+            return Ended(status, *texts, seconds, memory)
 
     def start(self, folder: Path, words: list[str]) -> int:
-        """The number of a copy at work that nobody listens to, the leader of a group; `waited` tells how it ended."""
+        """Start a command without waiting for it, and return the number of its copy, the leader of
+        a group; `waited` returns how it ended."""
         self._ask(folder, Path(os.devnull), Path(os.devnull), words, 0, 0, apart=True)
         return self.copy
 
@@ -116,12 +121,14 @@ class Commands:
         return not select.select([self.answer], [], [], 0.0)[0]
 
     def waited(self) -> tuple[int, float]:
-        """Exit status, negative for a signal, and s of the processor of the copy that was started."""
+        """Return the exit status (negative for a signal) and the processor seconds of the started
+        copy."""
         status, seconds, _ = self._answered("a command", PATIENCE, computes=True)
         return status, seconds
 
     def _answered(self, what: str, patience: int, computes: bool) -> tuple[int, float, float]:
-        """Status, s and MB of the copy at work, once it has ended; `computes`: for no longer than `patience`."""
+        """Return status, s and MB of the running copy after its end; with `computes`, it may
+        compute for at most `patience`."""
         idle, began = 0, used_by(self.process.pid)[0]
         while not select.select([self.answer], [], [], 1.0)[0]:
             used, wants = used_by(self.process.pid)
@@ -144,8 +151,8 @@ class Commands:
         if self.process is None:
             self._start()
         environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
-        asked = json.dumps([str(folder), environment, str(out), str(err), words, *limits, apart])
-        self.process.stdin.write(f"{asked}\n".encode())
+        request = json.dumps([str(folder), environment, str(out), str(err), words, *limits, apart])
+        self.process.stdin.write(f"{request}\n".encode())
         self.process.stdin.flush()
         self.copy = int(self.answer.readline())
 
@@ -163,7 +170,7 @@ class Commands:
 
     def _kill(self) -> None:
         assert self.process is not None
-        with contextlib.suppress(ProcessLookupError):  # its own group, where it leads one
+        with contextlib.suppress(ProcessLookupError):  # its own group, if it leads one
             if self.copy and os.getpgid(self.copy) == self.copy:
                 os.killpg(self.copy, signal.SIGKILL)
         os.killpg(self.process.pid, signal.SIGKILL)
@@ -171,7 +178,7 @@ class Commands:
         self.process = None
 
     def end(self) -> None:
-        """Let it end, and wait for it: what it took counts as taken by the tests."""
+        """End the server and wait for it, so that its time counts as time of the tests."""
         if self.process is not None:
             self.process.stdin.close()
             self.process.wait()
@@ -183,7 +190,7 @@ atexit.register(COMMANDS.end)
 
 @dataclass
 class Workshop:
-    """A folder with a part and a job, and the commands run in it."""
+    """A folder with a part and a job, in which commands run."""
 
     folder: Path
     launcher: Path
@@ -206,8 +213,8 @@ class Workshop:
         return {**os.environ, "FREECAD_USER_HOME": str(self.folder), "PYTHONDONTWRITEBYTECODE": "1"}
 
     def launch(self, *words: object) -> Ended:
-        """A command as its users give it, by the launcher."""
-        done = subprocess.run(
+        """Run a command as users do, with the launcher."""
+        process = subprocess.run(
             [str(self.launcher), *map(str, words)],
             cwd=self.folder,
             env=self.environment(),
@@ -218,15 +225,16 @@ class Workshop:
             check=False,
             stdin=subprocess.DEVNULL,
         )
-        return Ended(done.returncode, done.stdout, done.stderr)
+        return Ended(process.returncode, process.stdout, process.stderr)
 
     def run(self, *words: object) -> Ended:
-        """The same in a copy of a process that has FreeCAD and what commands need already: a second less. User folder of
-        FreeCAD, modules and the order of sets are the same for all: what is about these asks the launcher."""
+        """Run a command in a copy of a process that has already loaded FreeCAD and the modules,
+        which saves a second. All such commands share FreeCAD's user folder, the modules and the
+        order of sets; tests about these use `launch`."""
         return COMMANDS.run(self.folder, list(map(str, words)))
 
     def files(self, folder: str = "out/cup") -> dict[str, bytes]:
-        """Every file below a folder, hidden ones too, by its name relative to it."""
+        """Return every file below a folder by its relative name, including hidden files."""
         top = self.folder / folder
         return {
             str(path.relative_to(top)): path.read_bytes()
@@ -236,7 +244,7 @@ class Workshop:
 
 
 def make_cup(folder: Path) -> None:
-    """A hemisphere of 40 mm radius as STEP."""
+    """Write a hemisphere of 40 mm radius as STEP."""
     Part.makeSphere(40.0, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 0, 90, 360).exportStep(
         str(folder / "cup.step")
     )
@@ -244,7 +252,7 @@ def make_cup(folder: Path) -> None:
 
 @pytest.fixture
 def workshop(tmp_path, root):
-    """A hemisphere as STEP, and its job."""
+    """Return a workshop with a hemisphere as STEP and its job."""
     make_cup(tmp_path)
     shop = Workshop(tmp_path, root / "freecad-am")
     shop.write_job()

@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A scheduler and two workers of Dask, which cannot read what belongs to the tests where these run as root.
-
-Argument: a folder of their own. Tells the address by stdout, then, for each line of stdin, the processes of the workers.
-A second argument is the version that it says to have.
-"""
+"""Run a scheduler and two workers of Dask, which cannot read the files of tests that run as root.
+The first argument is a folder for them. The script prints the address, then the processes of the
+workers for each line of stdin. A second argument is the version that it pretends to have."""
 
 import asyncio
 import json
@@ -37,10 +35,10 @@ async def serve(folder, distributed):
         local_directory=folder,
         host="127.0.0.1",
     ) as cluster:
-        told(cluster.scheduler.address)
+        run_on_workers(cluster.scheduler.address)
         loop = asyncio.get_running_loop()
         while await loop.run_in_executor(None, sys.stdin.readline):
-            told(
+            run_on_workers(
                 [
                     worker.process.pid
                     for worker in cluster.workers.values()
@@ -49,7 +47,7 @@ async def serve(folder, distributed):
             )
 
 
-def told(what):
+def run_on_workers(what):
     print(json.dumps(what), flush=True)
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts that cannot be deposited as they are, by the command line: what is told, and the exit status."""
+"""The command reports parts that cannot be deposited as they are, with a message and an exit
+status."""
 
 import numpy as np
 import pytest
@@ -21,8 +22,8 @@ SIDES = [
 ]
 
 
-def box(size, at=(0.0, 0.0, 0.0)):
-    return (CORNERS * size + at)[np.array(SIDES)]
+def box(size, corner=(0.0, 0.0, 0.0)):
+    return (CORNERS * size + corner)[np.array(SIDES)]
 
 
 def stl(path, triangles):
@@ -35,7 +36,7 @@ def stl(path, triangles):
     path.write_text(f"solid part\n{facets}endsolid part\n", encoding="ascii")
 
 
-CASES = {  # triangles, keys of the strategy, exit status, and what is told
+CASES = {  # triangles, keys of the strategy, exit status, messages
     "open": (box((40, 30, 20))[2:], "", 2, ("OPEN_MESH", "(20, 15, 0)")),
     "empty": (np.empty((0, 3, 3)), "", 2, ("EMPTY_FILE",)),
     "flat": (box((40, 30, 0)), "", 2, ("OPEN_MESH",)),
@@ -95,8 +96,8 @@ def test_what_is_told_of_a_part_and_the_exit_status(workshop, name):
     text = "part: {file: part.stl}\nstrategy: {kind: solid, layers: planes%s}\nprocess: {bead_width: 5 mm}\n"
     keys = keys if "layer_height" in keys else f", layer_height: 2 mm{keys}"
     (workshop.folder / "job.yaml").write_text(text % keys, encoding="utf-8")
-    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
-    assert done.status == status and all(word in done.err for word in words), done.err
-    assert "Traceback" not in done.err and (workshop.folder / "out" / "report.json").is_file() == (
-        status == 0
-    )
+    command = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+    assert command.status == status and all(word in command.err for word in words), command.err
+    assert "Traceback" not in command.err and (
+        workshop.folder / "out" / "report.json"
+    ).is_file() == (status == 0)

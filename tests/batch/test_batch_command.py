@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`batch`: a table of jobs."""
+"""The command `batch` plans a table of jobs."""
 
 import csv
 import io
@@ -14,8 +14,8 @@ from freecad_am.batch import rows
 SPHERE = "part.set.Ball.Radius"
 
 
-def summary(done):
-    return list(csv.DictReader(io.StringIO(done.out)))
+def summary(command):
+    return list(csv.DictReader(io.StringIO(command.out)))
 
 
 @pytest.mark.parametrize("processes", [pytest.param(1, marks=pytest.mark.long), 3])
@@ -25,9 +25,11 @@ def test_one_plan_per_row(workshop, processes):
         '4 mm,"[front, up, flip]",6 mm/s\n8,,360 mm/min\n10 mm,auto,\n',
         encoding="utf-8",
     )
-    done = workshop.launch("batch", "rows.csv", "--job", "cup.yaml", "-o", "all", "-j", processes)
-    assert done.status == 0, done.err
-    rows = summary(done)
+    command = workshop.launch(
+        "batch", "rows.csv", "--job", "cup.yaml", "-o", "all", "-j", processes
+    )
+    assert command.status == 0, command.err
+    rows = summary(command)
     assert [row["row"] for row in rows] == ["1", "2", "3"]
     assert [row["layers"] for row in rows] == ["16", "8", "7"]
     assert [row["strategy.layer_height"] for row in rows] == ["4 mm", "8", "10 mm"]
@@ -69,12 +71,12 @@ def test_ends_with_the_worst_row(workshop, ends, statuses, worst):
         height, shift = row.split(",")
         table.append(f'{height},"[{1045.747 + float(shift)}, -630.155, 653.167, 0, 0, 0]"')
     (workshop.folder / "rows.csv").write_text("\n".join(table))
-    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-j", "2")
-    assert done.status == worst
-    found = summary(done)
-    assert [row["exit"] for row in found] == statuses
-    assert all(row["message"] for row in found if row["exit"] != "0")
-    assert all("row" in line for line in done.err.splitlines())
+    command = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-j", "2")
+    assert command.status == worst
+    row_statuses = summary(command)
+    assert [row["exit"] for row in row_statuses] == statuses
+    assert all(row["message"] for row in row_statuses if row["exit"] != "0")
+    assert all("row" in line for line in command.err.splitlines())
 
 
 @pytest.mark.parametrize(
@@ -90,7 +92,8 @@ def test_ends_with_the_worst_row(workshop, ends, statuses, worst):
     ],
 )
 def test_rows_that_were_interrupted_count(workshop, monkeypatch, ends, worst):
-    """Those whose process was asked to end: a batch of them came back with 0, or with an internal error."""
+    """Rows whose process was told to end count as interrupted; such a batch once returned 0, or an
+    internal error."""
     (workshop.folder / "rows.csv").write_text("process.travel_speed\n5 mm/s\n6 mm/s\n")
     monkeypatch.setattr(
         rows,
@@ -99,8 +102,10 @@ def test_rows_that_were_interrupted_count(workshop, monkeypatch, ends, worst):
             (row, {"exit": end, "message": ""}) for row, end in zip(waiting, ends, strict=True)
         ),
     )
-    told = []
-    session = SimpleNamespace(outcome="", say=told.append, progress=told.append, out=told.append)
+    messages = []
+    session = SimpleNamespace(
+        outcome="", say=messages.append, progress=messages.append, out=messages.append
+    )
     assert (
         rows.run(
             str(workshop.folder / "rows.csv"),
@@ -111,7 +116,7 @@ def test_rows_that_were_interrupted_count(workshop, monkeypatch, ends, worst):
         )
         == worst
     )
-    assert [line.split(",")[0] for line in told[-1].splitlines()[1:]] == ["1", "2"]
+    assert [line.split(",")[0] for line in messages[-1].splitlines()[1:]] == ["1", "2"]
 
 
 def test_sets_properties_of_a_document(workshop):
@@ -121,15 +126,15 @@ def test_sets_properties_of_a_document(workshop):
     document.recompute()
     document.saveAs(str(workshop.folder / "model.FCStd"))
     FreeCAD.closeDocument(document.Name)
-    before = (workshop.folder / "model.FCStd").read_bytes()
+    original = (workshop.folder / "model.FCStd").read_bytes()
     workshop.change("part: {file: cup.step}", "part: {file: model.FCStd, object: Ball}")
     (workshop.folder / "rows.csv").write_text(f"name,{SPHERE}\nsmall,20 mm\nlarge,4 cm\nasis,\n")
-    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "out", "-j", "2")
-    assert done.status == 0, done.err
-    rows = summary(done)
+    command = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "out", "-j", "2")
+    assert command.status == 0, command.err
+    rows = summary(command)
     assert [row["folder"] for row in rows] == ["small", "large", "asis"]
     assert [int(row["layers"]) for row in rows] == [8, 16, 12]
-    assert (workshop.folder / "model.FCStd").read_bytes() == before
+    assert (workshop.folder / "model.FCStd").read_bytes() == original
     for column, cell, says in (
         ("part.set.Bowl.Radius", "20 mm", "Bowl"),
         ("part.set.Ball.Size", "20 mm", "no property 'Size'"),
@@ -138,9 +143,9 @@ def test_sets_properties_of_a_document(workshop):
         ("part.set.Ball", "1", "object"),
     ):
         (workshop.folder / "bad.csv").write_text(f"{column}\n{cell}\n")
-        done = workshop.run("batch", "bad.csv", "--job", "cup.yaml")
-        assert done.status == 2, (column, done.err)
-        assert says in done.err and "error[" in done.err
+        command = workshop.run("batch", "bad.csv", "--job", "cup.yaml")
+        assert command.status == 2, (column, command.err)
+        assert says in command.err and "error[" in command.err
 
 
 @pytest.mark.parametrize(
@@ -163,10 +168,10 @@ def test_sets_properties_of_a_document(workshop):
 )
 def test_tables_that_are_wrong(workshop, table, says):
     (workshop.folder / "rows.csv").write_text(table, encoding="utf-8")
-    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml")
-    assert done.status == 2
-    assert says in done.err and done.err.startswith("error[")
-    assert "Traceback" not in done.err
+    command = workshop.run("batch", "rows.csv", "--job", "cup.yaml")
+    assert command.status == 2
+    assert says in command.err and command.err.startswith("error[")
+    assert "Traceback" not in command.err
 
 
 def test_a_table_that_is_not_text(workshop):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jobs with a bead model: widths, heights and wire from the job to the program, and what is told of them."""
+"""Jobs with a bead model: widths, heights and wire feed from the job to the program, and the
+messages about them."""
 
 import csv
 import json
@@ -26,7 +27,8 @@ program: {post: siemens, motion: cartesian, max_points: 10}
 
 @pytest.fixture
 def fin(workshop):
-    """A fin on a cylinder of 60 mm, and its job, run with changes: status, messages, report, waypoints and programs."""
+    """Return a function that runs the job of a fin on a cylinder of 60 mm with changes, and returns
+    status, messages, report, waypoints and programs."""
     hub = Part.makeCylinder(60.0, 120.0)
     hub.exportStep(str(workshop.folder / "hub.step"))
     Part.makeSphere(60.0).exportStep(str(workshop.folder / "ball.step"))
@@ -39,23 +41,23 @@ def fin(workshop):
             assert old in text
             text = text.replace(old, new)
         (workshop.folder / "fin.yaml").write_text(text, encoding="utf-8")
-        done = workshop.run("plan", "fin.yaml", "-o", "out", *(() if page else ("--no-page",)))
-        if done.status:
-            return done, {"status": done.err}, [], {}
+        command = workshop.run("plan", "fin.yaml", "-o", "out", *(() if page else ("--no-page",)))
+        if command.status:
+            return command, {"status": command.err}, [], {}
         out = workshop.folder / "out"
         with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
             rows = list(csv.DictReader(stream))
         texts = {
             path.name: path.read_text(encoding="ascii") for path in (out / "program").iterdir()
         }
-        return done, json.loads((out / "report.json").read_text(encoding="utf-8")), rows, texts
+        return command, json.loads((out / "report.json").read_text(encoding="utf-8")), rows, texts
 
     return run
 
 
 def test_wire_in_proportion_from_the_job_to_the_program(fin):
-    done, report, rows, texts = fin()
-    assert done.status == 0, done.err
+    command, report, rows, texts = fin()
+    assert command.status == 0, command.err
     assert list(rows[0])[-2] == "wire_feed_mm_s"
     assert {row["wire_feed_mm_s"] for row in rows if row["kind"] == "rapid"} == {""}
     deposit = [row for row in rows if row["kind"] == "deposit"]
@@ -63,36 +65,38 @@ def test_wire_in_proportion_from_the_job_to_the_program(fin):
         np.array([float(row[name]) for row in deposit]) for name in ("speed_mm_s", "wire_feed_mm_s")
     )
     assert speed.max() > 1.3 * speed.min()
-    straight = (85.55 / (9.5 + 1.7542)) ** 3 / 60.0  # where the wire runs at 6.5 m/min
+    straight = (85.55 / (9.5 + 1.7542)) ** 3 / 60.0  # the width at a wire feed of 6.5 m/min
     np.testing.assert_allclose(wire / speed, 6500.0 / 60.0 / straight, rtol=2e-4)
-    told = "".join(texts[name] for name in sorted(texts) if name.endswith(".SPF"))
-    values = np.array([float(value) for value in re.findall(r"A_OUTA\[1\]=(\S+)", told)])
+    program_text = "".join(texts[name] for name in sorted(texts) if name.endswith(".SPF"))
+    values = np.array([float(value) for value in re.findall(r"A_OUTA\[1\]=(\S+)", program_text)])
     np.testing.assert_allclose(
         [values.min(), values.max()], 0.06 * np.array([wire.min(), wire.max()]), rtol=6e-5
     )
     main = texts["FIN.MPF"]
     low, high = re.search(r"; Travel speed (\S+) to (\S+) mm/s\n", main).groups()
-    first = [row["point"] == "0" for row in deposit]
-    moved = speed[~np.array(first)]
+    is_first = [row["point"] == "0" for row in deposit]
+    moved = speed[~np.array(is_first)]
     np.testing.assert_allclose([float(low), float(high)], [moved.min(), moved.max()], rtol=5.1e-4)
     assert "; Wire in proportion to it" in main
     assert (
         len(texts) == 1 + report["counts"]["beads"]
-    )  # every bead is longer than max_points: a part of its own
+    )  # every bead exceeds max_points and is a part of its own
     heights = [issue["message"] for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT"]
     assert "wire feed follows the speed, at" in heights[0]
 
 
 def test_layers_far_higher_than_beads_are_planned_and_told(fin):
-    done, report, rows, texts = fin("20 mm")
-    assert done.status == 0, done.err
+    command, report, rows, texts = fin("20 mm")
+    assert command.status == 0, command.err
     assert (
         report["counts"]["layers"] == 2
         and {int(row["layer"]) for row in rows} == {0, 1}
         and len(texts) > 2
     )
-    (told,) = [issue for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT"]
-    assert told["level"] == "warning" and "for layers of 20 mm" in told["message"]
+    (height_issue,) = [
+        candidate for candidate in report["issues"] if candidate["code"] == "BEAD_HEIGHT"
+    ]
+    assert height_issue["level"] == "warning" and "for layers of 20 mm" in height_issue["message"]
 
 
 @pytest.mark.parametrize(
@@ -101,63 +105,76 @@ def test_layers_far_higher_than_beads_are_planned_and_told(fin):
 @pytest.mark.parametrize("fill", ["contours", "zigzag"])
 @pytest.mark.always
 def test_feeds_of_a_program_change_no_faster_than_asked_for(fin, post, motion, fill):
-    """From the text: times of blocks, or their speeds, over the lengths of the beads that they run. No block is so short
-    that a controller could not take it in time, and from block to block the speed changes by no more than the
-    acceleration asked for."""
-    done, _, rows, texts = fin(
+    """The text gives times or speeds of blocks and the lengths of their beads. No block is shorter
+    than a controller can process, and between blocks the speed changes by at most the requested
+    acceleration."""
+    command, _, rows, texts = fin(
         "10 mm",
         ("siemens, motion: cartesian, max_points: 10", f"{post}, motion: {motion}"),
         ("chord_error", f"fill: {fill}, chord_error"),
     )
-    assert done.status == 0, done.err
-    read = catalogue.load(post).read({name: text.encode() for name, text in texts.items()})
+    assert command.status == 0, command.err
+    readback = catalogue.load(post).read({name: text.encode() for name, text in texts.items()})
     moved = [k for k, row in enumerate(rows) if row["kind"] == "rapid" or row["point"] != "0"]
-    assert len(moved) == len(read.deposit)
-    at = np.array([[float(row[name]) for name in ("x_mm", "y_mm", "z_mm")] for row in rows])
-    length = np.linalg.norm(np.diff(at, axis=0, prepend=at[:1]), axis=1)[moved]
-    time = read.duration
+    assert len(moved) == len(readback.deposit)
+    points = np.array([[float(row[name]) for name in ("x_mm", "y_mm", "z_mm")] for row in rows])
+    length = np.linalg.norm(np.diff(points, axis=0, prepend=points[:1]), axis=1)[moved]
+    time = readback.duration
     if motion == "cartesian":
-        time = np.where(read.deposit, length / np.where(read.deposit, read.speed, 1.0), time)
-    told = np.flatnonzero(read.deposit)
-    assert length[told].min() > 0.01 and time[told].min() > 1e-3
-    within = told[1:][np.diff(told) == 1]  # blocks that follow another of the same bead
+        time = np.where(
+            readback.deposit, length / np.where(readback.deposit, readback.speed, 1.0), time
+        )
+    deposit_rows = np.flatnonzero(readback.deposit)
+    assert length[deposit_rows].min() > 0.01 and time[deposit_rows].min() > 1e-3
+    within = deposit_rows[1:][
+        np.diff(deposit_rows) == 1
+    ]  # blocks after another block of the same bead
     speed = length / time
     change = np.abs(speed[within] - speed[within - 1]) / (0.5 * (time[within] + time[within - 1]))
-    assert speed[told].max() > 1.3 * speed[told].min() and change.max() <= 20.0 * (1.0 + 1e-4)
+    assert speed[deposit_rows].max() > 1.3 * speed[deposit_rows].min() and change.max() <= 20.0 * (
+        1.0 + 1e-4
+    )
 
 
 def mean_heights(rows, height):
-    """Of each layer, by the model's own numbers and the waypoints alone: the height over the length."""
-    found = {}
-    for before, row in zip(rows, rows[1:]):
+    """Return the mean height of each layer, height over length, from the model's own numbers and
+    the waypoints only."""
+    heights = {}
+    for previous, row in zip(rows, rows[1:]):
         if row["kind"] == "deposit" and row["point"] != "0":
-            way = math.dist(
-                *([float(one[name]) for name in ("x_mm", "y_mm", "z_mm")] for one in (before, row))
+            distance = math.dist(
+                *(
+                    [float(end[name]) for name in ("x_mm", "y_mm", "z_mm")]
+                    for end in (previous, row)
+                )
             )
-            pair = [height(one) for one in (before, row)]
-            found.setdefault(int(row["layer"]), []).append((way, sum(pair) / 2.0))
+            pair = [height(end) for end in (previous, row)]
+            heights.setdefault(int(row["layer"]), []).append((distance, sum(pair) / 2.0))
     return [
-        sum(way * value for way, value in some) / sum(way for way, _ in some)
-        for _, some in sorted(found.items())
+        sum(length * value for length, value in sections) / sum(length for length, _ in sections)
+        for _, sections in sorted(heights.items())
     ]
 
 
 def test_predicted_heights_are_reported_and_drawn(fin, workshop):
-    """With the wire in proportion, height times width is one number; the drift adds up over the layers of the solid."""
+    """With wire in proportion, height times width is constant; the drift adds up over the layers of
+    the solid."""
     _, report, rows, _ = fin(page=True)
-    told = report["beads"]
+    figures = report["beads"]
     straight = (85.55 / (9.5 + 1.7542)) ** 3 / 60.0
-    assert told["layer_height_mm"] == 10.0 and told["wire_feed_mm_s"]["mean"] > 6500.0 / 60.0
-    section = told["height_mm"]["max"] * 9.5  # where it is as narrow as asked for
-    wanted = mean_heights(rows, lambda row: section / float(row["width_mm"]))
+    assert figures["layer_height_mm"] == 10.0 and figures["wire_feed_mm_s"]["mean"] > 6500.0 / 60.0
+    section = figures["height_mm"]["max"] * 9.5  # where the bead has the requested width
+    expected = mean_heights(rows, lambda row: section / float(row["width_mm"]))
     np.testing.assert_allclose(
-        [row["height_mm"]["mean"] for row in told["layers"]], wanted, rtol=1e-5
+        [row["height_mm"]["mean"] for row in figures["layers"]], expected, rtol=1e-5
     )
     np.testing.assert_allclose(
-        [row["drift_mm"] for row in told["layers"]], np.cumsum(np.array(wanted) - 10.0), rtol=1e-5
+        [row["drift_mm"] for row in figures["layers"]],
+        np.cumsum(np.array(expected) - 10.0),
+        rtol=1e-5,
     )
     m, _, t = _fitted("height_mm")
-    assert told["height_mm"]["max"] == pytest.approx(
+    assert figures["height_mm"]["max"] == pytest.approx(
         m * (60.0 * straight) ** (-1.0 / 3.0) + t, rel=1e-4
     )
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
@@ -179,17 +196,17 @@ def test_predicted_heights_are_reported_and_drawn(fin, workshop):
 
 
 def test_heights_where_axes_cannot_follow_are_those_of_the_speed_as_run(fin):
-    """The message tells what the report's figures do, which are of the waypoints' speeds."""
+    """The message states the figures of the report, which belong to the speeds of the waypoints."""
     fast = (
         ("strategy:", "build_direction: {max_turn: inf}\nstrategy:"),
         ("chord_error", "deflection: 20 deg, chord_error"),
     )
     _, report, rows, _ = fin("10 mm", *fast, ("proportional", "constant"))
     assert "SLOWED" in {issue["code"] for issue in report["issues"]}
-    (told,) = (issue["message"] for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT")
+    (message,) = (issue["message"] for issue in report["issues"] if issue["code"] == "BEAD_HEIGHT")
     low, high, mean = (
         float(value)
-        for value in re.search(r"predicted (\S+) to (\S+) mm high, (\S+) mm", told).groups()
+        for value in re.search(r"predicted (\S+) to (\S+) mm high, (\S+) mm", message).groups()
     )
     figures = report["beads"]["height_mm"]
     assert (low, high, mean) == tuple(
@@ -201,12 +218,12 @@ def test_heights_where_axes_cannot_follow_are_those_of_the_speed_as_run(fin):
     m, _, t = _fitted("height_mm")
     assert speed < 4.0 and high > 1.05 * (
         m * (60.0 * 5.0) ** (-1.0 / 3.0) + t
-    )  # slower than the table knows
-    assert told.startswith("limited to the speed of the axes, ")
+    )  # below the slowest speed of the table
+    assert message.startswith("limited to the speed of the axes, ")
 
 
 def _fitted(column):
-    """Coefficients of a column of the built-in table, by the normal equations."""
+    """Return the coefficients of a column of the built-in table, by the normal equations."""
     path = FOLDER / BUILT_IN["csw"]
     lines = [
         line for line in path.read_text(encoding="utf-8").splitlines() if not line.startswith("#")
@@ -220,11 +237,11 @@ def _fitted(column):
 
 def test_what_cannot_follow_the_wire(fin):
     plain = ("feed_mode: proportional", "feed_mode: constant")
-    done, report, rows, texts = fin(
+    command, report, rows, texts = fin(
         "30 mm", plain, ("post: siemens", "post: linuxcnc"), ("setup", "limits: maker, setup")
     )
     assert (
-        done.status == 0
+        command.status == 0
         and "wire_feed_mm_s" not in rows[0]
         and not re.search(r"M6[78]", "".join(texts.values()))
     )
@@ -234,18 +251,18 @@ def test_what_cannot_follow_the_wire(fin):
         "machine: table-xyzac, setup: rotary-table",
         "machine: fanuc-arcmate120ic, setup: tool-on-robot",
     )
-    done, *_ = fin("30 mm", robot, ("siemens, motion: cartesian", "fanuc"))
-    assert done.status == 2 and done.err.startswith(
+    command, *_ = fin("30 mm", robot, ("siemens, motion: cartesian", "fanuc"))
+    assert command.status == 2 and command.err.startswith(
         "error[NO_WIRE_OUTPUT] fin.yaml: process.wire.feed_mode: FANUC sets AO[]"
-    ), done.err
-    done, *_ = fin("30 mm", ("bead_model: csw, ", ""))
-    assert done.status == 2 and done.err.startswith(
+    ), command.err
+    command, *_ = fin("30 mm", ("bead_model: csw, ", ""))
+    assert command.status == 2 and command.err.startswith(
         "error[NOT_FOR_FAMILY] fin.yaml: process.wire.feed_mode: "
-    ), done.err
+    ), command.err
 
 
 def test_messages_name_the_keys_of_the_job(fin):
-    for changes, told in (
+    for changes, message in (
         (
             (("hub.step}", "hub.step, faces: [Face99]}"),),
             "error[BAD_FACES] fin.yaml: substrate.faces: Face99 is not a face",
@@ -259,8 +276,8 @@ def test_messages_name_the_keys_of_the_job(fin):
             "error[NO_HUB] fin.yaml: substrate: the hub, a cylinder or cone",
         ),
     ):
-        done, *_ = fin("10 mm", *changes)
-        assert done.status == 2 and done.err.startswith(told), done.err
+        command, *_ = fin("10 mm", *changes)
+        assert command.status == 2 and command.err.startswith(message), command.err
 
 
 def test_notes_of_single_layers_and_of_what_a_table_does_not_use(fin):
@@ -285,50 +302,56 @@ def test_notes_of_single_layers_and_of_what_a_table_does_not_use(fin):
 def test_widths_outside_of_the_table_are_told_with_their_number_and_the_worst(fin):
     lines = ("chord_error", "fill: lines, contour: false, chord_error")
     _, report, rows, _ = fin("20 mm", ("bead_width: 9.5 mm", "bead_width: 12.7 mm"), lines)
-    (told,) = (issue["message"] for issue in report["issues"] if issue["code"] == "OUTSIDE_TABLE")
+    (message,) = (
+        issue["message"] for issue in report["issues"] if issue["code"] == "OUTSIDE_TABLE"
+    )
     deposit = [row for row in rows if row["kind"] == "deposit" and row["point"] != "0"]
     speed, width = (
         np.array([float(row[name]) for row in deposit]) for name in ("speed_mm_s", "width_mm")
     )
-    # beads of the model at 300 mm/min, the slowest of the table: narrower than asked for, straight ones most
+    # beads of the model at 300 mm/min, the slowest speed of the table, are narrower than requested,
+    # most of all straight ones
     straight = 85.55 / 300.0 ** (1.0 / 3.0) - 1.7542
     assert straight <= width.min() < straight + 0.1 and speed.min() * 60.0 == pytest.approx(
         300.0, rel=1e-6
     )
-    beads, of, segments, worst = re.search(
-        r"in (\d+) of (\d+) beads and (\d+) segments.*it is (\S+) mm at", told
+    beads, bead_count, segments, worst = re.search(
+        r"in (\d+) of (\d+) beads and (\d+) segments.*it is (\S+) mm at", message
     ).groups()
-    assert (int(of), float(worst)) == (
+    assert (int(bead_count), float(worst)) == (
         report["counts"]["beads"],
         pytest.approx(width.min(), abs=0.05),
     )
-    assert 0 < int(beads) <= int(of) and 0 < int(segments) <= len(deposit)
-    # the table's speeds, what is as wide at them, and what to do
-    least, most = (
+    assert 0 < int(beads) <= int(bead_count) and 0 < int(segments) <= len(deposit)
+    # the table's speeds, their bead widths, and the remedy
+    narrowest, widest = (
         float(text)
-        for text in re.search(r"are (\S+) to (\S+) mm wide: set process.bead_width", told).groups()
+        for text in re.search(
+            r"are (\S+) to (\S+) mm wide: set process.bead_width", message
+        ).groups()
     )
     slow, fast = (
-        float(text) for text in re.search(r"outside the (\S+) to (\S+) mm/min", told).groups()
+        float(text) for text in re.search(r"outside the (\S+) to (\S+) mm/min", message).groups()
     )
-    assert (slow, "or measure beads at other speeds" in told) == (
+    assert (slow, "or measure beads at other speeds" in message) == (
         300.0,
         True,
-    ) and least < most < 12.7
-    widths = [85.55 / at ** (1.0 / 3.0) - 1.7542 for at in (fast, slow)]
-    assert [least, most] == pytest.approx(widths, abs=5e-3)  # told with four digits
+    ) and narrowest < widest < 12.7
+    widths = [85.55 / speed_ ** (1.0 / 3.0) - 1.7542 for speed_ in (fast, slow)]
+    assert [narrowest, widest] == pytest.approx(widths, abs=5e-3)  # printed with four digits
 
 
 def test_walls_and_parts_of_revolution_hold_their_width(workshop):
-    """A tube of 60 mm, whose rings bend by that: the speed from the errata's coefficients, the width in every row."""
+    """A tube of 60 mm, whose rings are curved by that: the speed follows the coefficients of the
+    errata, and every row has the width."""
     Part.makeCylinder(60.0, 9.0).exportStep(str(workshop.folder / "tube.step"))
     (workshop.folder / "tube.yaml").write_text(
         "part: {file: tube.step, faces: [Face1]}\nstrategy: {layer_height: 3 mm, chord_error: 0.002 mm}\n"
         "process: {bead_model: csw, bead_width: 9.5 mm}\n",
         encoding="utf-8",
     )
-    done = workshop.run("plan", "tube.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "tube.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
     speed = (85.550 / (9.5 - 52.742 / 60.0 + 1.7542)) ** 3 / 60.0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The chord error of jobs that name none: by the size of the part, told in the report."""
+"""A job without a chord error gets one from the size of the part, and the report states it."""
 
 import json
 
@@ -16,8 +16,8 @@ strategy: {kind: KIND, layer_height: 2 mm}
 
 def reported(workshop, text):
     (workshop.folder / "bar.yaml").write_text(text, encoding="utf-8")
-    done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     return json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
 
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A command in a copy of a process that has all modules says, writes and ends as one that is started does."""
+"""A command in a copy of a loaded process prints, writes and exits like a command that is
+started."""
 
 import json
 
@@ -19,8 +20,9 @@ os.write(int(sys.argv[1]), b"0 0.0 0.0\\n")
 """
 
 
-def told(workshop):
-    """What was written, by name, without times: those of the report, and when a document was saved."""
+def outputs_without_times(workshop):
+    """Return the written files by name, without times: those of the report, and when a document was
+    saved."""
     files = workshop.files("out")
     for name in files:
         if name.endswith("report.json"):
@@ -39,15 +41,15 @@ def told(workshop):
 def test_a_copy_does_what_the_launcher_does(workshop, words, status):
     coarse = workshop.text.replace("layer_height: 4 mm", "layer_height: 9 mm")
     workshop.write_job(coarse)
-    far = coarse.replace(
+    unreachable_job = coarse.replace(
         "limits: paper", "limits: paper\n  deposition_point: [0, 0, 9000, 0, 0, 0]"
     )
-    (workshop.folder / "far.yaml").write_text(far)
+    (workshop.folder / "far.yaml").write_text(unreachable_job)
     (workshop.folder / "wrong.yaml").write_text(coarse.replace("9 mm", "9 kg"))
-    launched, written = workshop.launch(*words), told(workshop)
+    launched, written = workshop.launch(*words), outputs_without_times(workshop)
     copied = workshop.run(*words)
     assert (launched.status, launched.out, launched.err) == (copied.status, copied.out, copied.err)
-    assert launched.status == status and told(workshop) == written
+    assert launched.status == status and outputs_without_times(workshop) == written
     assert bool(written) == (words[0] == "plan" and status != 2)
 
 
@@ -57,7 +59,8 @@ def test_a_copy_does_what_the_launcher_does(workshop, words, status):
 def test_what_waits_for_a_busy_processor_does_not_hang(
     tmp_path, computes, sleeps, most_seconds, ends
 ):
-    """Patience is s that a command sleeps, or computes without a limit; the clock alone says nothing."""
+    """The timeout counts seconds of sleep, or of computing without a limit; the clock alone does
+    not count."""
     script = tmp_path / "server.py"
     script.write_text(SERVER.format(computes=computes, sleeps=sleeps))
     commands = Commands()

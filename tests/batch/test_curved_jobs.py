@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jobs in curved layers: read from waypoints.csv, measured with OpenCASCADE and by distances between points alone."""
+"""Jobs in curved layers, read from waypoints.csv and measured only with OpenCASCADE and distances
+between points."""
 
 import csv
 import json
@@ -22,7 +23,7 @@ strategy: {{kind: solid, layers: {layers}, layer_height: {height} mm, chord_erro
 process: {{bead_width: 4 mm}}
 build_direction: {{clearance: {clearance}{mode}}}
 """
-HALF_ANGLE, TIP, LENGTH = np.radians(30.0), 2.0, 60.0  # of the nozzle
+HALF_ANGLE, TIP, LENGTH = np.radians(30.0), 2.0, 60.0  # the nozzle
 CELL = """\
 cell:
   {machine: fanuc-arcmate120ic, mount: feature, branch: auto, nozzle: {diameter: 4 mm, half_angle: 30 deg, length: 60 mm}}
@@ -32,7 +33,7 @@ UP = FreeCAD.Vector(0, 0, 1)
 
 
 def tee():
-    """A stem under a beam that stands out by 15 mm to either side."""
+    """Return a stem under a beam that extends by 15 mm to either side."""
     return (
         Part.makeBox(12, 12, 16)
         .fuse(Part.makeBox(42, 12, 12, FreeCAD.Vector(-15, 0, 15)))
@@ -42,8 +43,8 @@ def tee():
 
 def wye():
     arms = [
-        Part.makeCylinder(6, 26, FreeCAD.Vector(0, 0, 12), FreeCAD.Vector(way, 0, 1))
-        for way in (1, -1)
+        Part.makeCylinder(6, 26, FreeCAD.Vector(0, 0, 12), FreeCAD.Vector(side, 0, 1))
+        for side in (1, -1)
     ]
     return Part.makeCylinder(7, 18).fuse(arms).removeSplitter()
 
@@ -54,7 +55,7 @@ def mushroom():
 
 
 def bracket():
-    """An upright with an arm that stands out by 28 mm, half way up."""
+    """Return a post with an arm that extends by 28 mm at half height."""
     return (
         Part.makeBox(14, 12, 38)
         .fuse(Part.makeBox(29, 12, 12, FreeCAD.Vector(13, 0, 16)))
@@ -63,11 +64,13 @@ def bracket():
 
 
 def struts():
-    """A trunk that parts in three, each of which leans by 40 degrees."""
-    ways = [
+    """Return a trunk that splits into three branches, each leaning by 40 degrees."""
+    directions = [
         FreeCAD.Vector(np.cos(turn), np.sin(turn), 1.2) for turn in np.radians([0.0, 120.0, 240.0])
     ]
-    arms = [Part.makeCylinder(5, 30, FreeCAD.Vector(0, 0, 12), way) for way in ways]
+    arms = [
+        Part.makeCylinder(5, 30, FreeCAD.Vector(0, 0, 12), direction) for direction in directions
+    ]
     return Part.makeCylinder(7, 18).fuse(arms).removeSplitter()
 
 
@@ -77,13 +80,13 @@ def planned(workshop):
         shape.exportStep(str(workshop.folder / "part.step"))
         job = JOB.format(layers=layers, height=height, more=more, mode=mode, clearance=clearance)
         job = workshop.write_job(job + cell)
-        done = workshop.run("plan", job.name, "-o", "out", "--no-page")
-        if done.status:
-            return done, None, None
+        command = workshop.run("plan", job.name, "-o", "out", "--no-page")
+        if command.status:
+            return command, None, None
         out = workshop.folder / "out"
         with open(next(out.rglob("waypoints.csv")), encoding="utf-8", newline="") as stream:
             rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
-        return done, json.loads(next(out.rglob("report.json")).read_text(encoding="utf-8")), rows
+        return command, json.loads(next(out.rglob("report.json")).read_text(encoding="utf-8")), rows
 
     return run
 
@@ -92,33 +95,35 @@ def column(rows, *names):
     return np.array([[float(row[name]) for name in names] for row in rows])
 
 
-def places(rows, step=0.5):
-    """Places (n, 3) along the beads no more than `step` mm apart, their layers and build directions."""
+def sample_beads(rows, step=0.5):
+    """Return positions (n, 3) along the beads, at most `step` mm apart, their layers and build
+    directions."""
     points, build = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, "bx", "by", "bz")
     layer = np.array([int(row["layer"]) for row in rows])
     same = np.array([row["bead"] for row in rows])
-    found = []
+    samples = []
     for k in range(1, len(rows)):
         if layer[k] == layer[k - 1] and same[k] == same[k - 1]:
             count = max(int(np.ceil(np.linalg.norm(points[k] - points[k - 1]) / step)), 1)
             share = np.linspace(0.0, 1.0, count + 1)[:, None]
-            way = (1.0 - share) * build[k - 1] + share * build[k]
-            found.append(
+            direction = (1.0 - share) * build[k - 1] + share * build[k]
+            samples.append(
                 np.column_stack(
                     [
                         (1.0 - share) * points[k - 1] + share * points[k],
-                        way / np.linalg.norm(way, axis=1)[:, None],
+                        direction / np.linalg.norm(direction, axis=1)[:, None],
                         np.full(count + 1, layer[k]),
                     ]
                 )
             )
-    whole = np.vstack(found)
-    return whole[:, :3], whole[:, 3:6], whole[:, 6].astype(int)
+    points_ = np.vstack(samples)
+    return points_[:, :3], points_[:, 3:6], points_[:, 6].astype(int)
 
 
-def deepest(rows, half_angle):
-    """Mm that a cone on the tool axis, as wide as the nozzle at its tip, reaches into the core of beads laid before: a round
-    bar half a layer height in radius in the middle of each, those beside the tip left out."""
+def nozzle_depth(rows, half_angle):
+    """Return how far in mm a cone on the tool axis, as wide as the nozzle at its tip, reaches into
+    the core of earlier beads: a round bar of half a layer height in radius in the middle of each,
+    without beads next to the tip."""
     points, build, tool = (
         column(rows, *(f"{name}{axis}" for axis in axes))
         for name, axes in (("", ("x_mm", "y_mm", "z_mm")), ("b", "xyz"), ("t", "xyz"))
@@ -135,79 +140,87 @@ def deepest(rows, half_angle):
         beside = (layer[:k] == layer[k]) & (
             np.linalg.norm(points[:k] - points[k], axis=1) < 1.5 * SPACING
         )
-        asked = ~beside & (up > 0.5 * HEIGHT) & (up < LENGTH)
+        candidates = ~beside & (up > 0.5 * HEIGHT) & (up < LENGTH)
         into = 0.5 * HEIGHT - (aside - TIP - up * np.tan(half_angle)) * np.cos(half_angle)
-        worst = max(worst, into[asked].max(initial=-np.inf))
+        worst = max(worst, into[candidates].max(initial=-np.inf))
     return worst
 
 
-def turns(rows, *names):
-    """How fast (n - 1,) deg/mm directions turn from row to row, 0 from bead to bead."""
-    points, ways = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, *names)
+def turn_rates(rows, *names):
+    """Return how fast (n - 1,) deg/mm directions turn from row to row; 0 between beads."""
+    points, directions = column(rows, "x_mm", "y_mm", "z_mm"), column(rows, *names)
     angle = np.arctan2(
-        np.linalg.norm(np.cross(ways[1:], ways[:-1]), axis=1), (ways[1:] * ways[:-1]).sum(axis=1)
+        np.linalg.norm(np.cross(directions[1:], directions[:-1]), axis=1),
+        (directions[1:] * directions[:-1]).sum(axis=1),
     )
-    one = np.array([(row["layer"], row["bead"]) for row in rows])
+    bead_ids = np.array([(row["layer"], row["bead"]) for row in rows])
     return (
         np.degrees(angle)
         / np.linalg.norm(np.diff(points, axis=0), axis=1)
-        * (one[1:] == one[:-1]).all(axis=1)
+        * (bead_ids[1:] == bead_ids[:-1]).all(axis=1)
     )
 
 
 BUILD, TOOL = ("bx", "by", "bz"), ("tx", "ty", "tz")
 
 
-def from_beads(points, below, build):
-    """How far (n,) mm points are from beads as wide as they are apart, by places (m, 3) of these and build directions."""
-    away = np.full(len(points), np.inf)
-    for near in cKDTree(below).query(points, k=24)[1].T:
-        step = points - below[near]
-        along = (step * build[near]).sum(axis=1)
-        aside = np.linalg.norm(step - along[:, None] * build[near], axis=1)
-        away = np.minimum(away, np.hypot(np.maximum(aside - 0.5 * SPACING, 0.0), along))
-    return away
+def distance_to_beads(points, below, build):
+    """Return the distance (n,) in mm of points from beads as wide as their spacing, given positions
+    (m, 3) and build directions."""
+    distances = np.full(len(points), np.inf)
+    for neighbours in cKDTree(below).query(points, k=24)[1].T:
+        step = points - below[neighbours]
+        along = (step * build[neighbours]).sum(axis=1)
+        aside = np.linalg.norm(step - along[:, None] * build[neighbours], axis=1)
+        distances = np.minimum(distances, np.hypot(np.maximum(aside - 0.5 * SPACING, 0.0), along))
+    return distances
 
 
 @pytest.mark.parametrize(
     "shape",
     [
         tee,
-        *(pytest.param(one, marks=pytest.mark.long) for one in (wye, mushroom, bracket, struts)),
+        *(
+            pytest.param(shape, marks=pytest.mark.long)
+            for shape in (wye, mushroom, bracket, struts)
+        ),
     ],
 )
 def test_every_bead_lies_on_what_was_deposited_before_and_the_part_is_filled(planned, shape):
-    """To a program: nothing over nothing, and the nozzle is clear of what stands; one of 80 deg would not be, but for the
-    mushroom, where nothing ever stands higher than the tip."""
-    part = shape()
-    done, report, rows = planned(part, clearance="nozzle", cell=CELL)
-    assert done.status == 0, done.err
+    """The job leads to a program: every bead is supported, and the nozzle is clear of the
+    deposit. A nozzle of 80 deg would collide, except on the mushroom, where nothing is higher
+    than the tip."""
+    shape_ = shape()
+    command, report, rows = planned(shape_, clearance="nozzle", cell=CELL)
+    assert command.status == 0, command.err
     assert report["programs"] and report["unsupported_mm"] == 0.0
     assert not [
         issue
         for issue in report["issues"]
         if issue["code"] in ("UNSUPPORTED", "OFF_PART", "OPEN_GAP")
     ]
-    assert deepest(rows, HALF_ANGLE) < 0.1
+    assert nozzle_depth(rows, HALF_ANGLE) < 0.1
     assert (
-        max(turns(rows, *BUILD).max(), turns(rows, *TOOL).max()) < 30.03
-    )  # deg/mm, beyond which TURN_PASSED were told
-    assert shape is mushroom or deepest(rows, np.radians(80.0)) > 0.1
-    points, build, layer = places(rows)
+        max(turn_rates(rows, *BUILD).max(), turn_rates(rows, *TOOL).max()) < 30.03
+    )  # deg/mm, the limit above which the job reports TURN_PASSED
+    assert shape is mushroom or nozzle_depth(rows, np.radians(80.0)) > 0.1
+    points, build, layer = sample_beads(rows)
     assert np.abs(points[layer == 0][:, 2]).max() < 0.01
-    apart = []  # of places of beads that have one of the layer below right under them
+    spacings = []  # positions of beads with a bead of the layer below directly under them
     for number in range(1, layer.max() + 1):
-        here, low = layer == number, layer == number - 1
+        in_layer, low = layer == number, layer == number - 1
         below = cKDTree(points[low])
-        away = below.query(points[here] - HEIGHT * build[here])[0]
-        assert away.max() < 0.6 * SPACING, (
+        distances = below.query(points[in_layer] - HEIGHT * build[in_layer])[0]
+        assert distances.max() < 0.6 * SPACING, (
             number
-        )  # beads below lie a spacing apart, half a one beside at most
-        apart.append(below.query(points[here][away < 0.5 * HEIGHT])[0] / HEIGHT)
-        assert from_beads(points[here], points[low], build[low]).max() < 1.2 * HEIGHT, number
-    ratio = np.concatenate(apart)
+        )  # beads below are a spacing apart, so half a spacing to the side at most
+        spacings.append(below.query(points[in_layer][distances < 0.5 * HEIGHT])[0] / HEIGHT)
+        assert distance_to_beads(points[in_layer], points[low], build[low]).max() < 1.2 * HEIGHT, (
+            number
+        )
+    ratio = np.concatenate(spacings)
     assert ratio.min() > 0.6 and ratio.max() < 1.4 and ((ratio > 0.8) & (ratio < 1.2)).mean() > 0.95
-    if shape is wye:  # its arms are two islands, and stay so
+    if shape is wye:  # its arms are two islands and stay separate
         parted = [
             number
             for number in range(layer.max() + 1)
@@ -215,13 +228,13 @@ def test_every_bead_lies_on_what_was_deposited_before_and_the_part_is_filled(pla
         ]
         assert len(parted) > 3 and parted == list(range(parted[0], layer.max() + 1))
     lifted = points[::7] + 0.5 * HEIGHT * build[::7]
-    solid = part.Solids[0]
+    solid = shape_.Solids[0]
     outside = [p for p in lifted if not solid.isInside(FreeCAD.Vector(*p), 0.3, True)]
     assert len(outside) == 0
     volume = report["totals"]["volume_cm3"] * 1000.0
     assert volume == pytest.approx(
-        part.Volume, rel=0.12
-    )  # cut in steps of a whole layer, arms of 12 mm in beads of 4
+        shape_.Volume, rel=0.12
+    )  # cut in steps of a whole layer: arms of 12 mm in beads of 4 mm
 
 
 LEADING = ", max_turn: 9 deg/mm, lead: 10 deg"
@@ -238,52 +251,54 @@ LEADING = ", max_turn: 9 deg/mm, lead: 10 deg"
 def test_directions_turn_no_faster_than_asked_and_depart_no_farther_than_told(
     planned, shape, asked
 ):
-    """Those of the field turn by a radian per layer height next to a corner; beads that turn slower are as they were."""
+    """Directions of the field turn by a radian per layer height next to a corner; beads below the
+    limit stay unchanged."""
     free = [] if set(asked) == {LEADING} else planned(shape(), mode=", max_turn: inf")[2]
     beads = np.array([(row["layer"], row["bead"]) for row in free])
-    for mode, most in asked.items():
-        done, report, rows = planned(shape(), mode=mode)
-        assert done.status == 0, done.err
-        assert max(turns(rows, *BUILD).max(), turns(rows, *TOOL).max()) < most + 0.03, (
-            mode
-        )  # rows have six decimals
+    for mode, max_turn in asked.items():
+        command, report, rows = planned(shape(), mode=mode)
+        assert command.status == 0, command.err
+        assert (
+            max(turn_rates(rows, *BUILD).max(), turn_rates(rows, *TOOL).max()) < max_turn + 0.03
+        ), mode  # rows have six decimals
         if mode == LEADING:
-            away = (column(rows, *BUILD) * column(rows, *TOOL)).sum(axis=1)
-            assert np.median(np.degrees(np.arccos(np.clip(away, -1.0, 1.0)))) == pytest.approx(
+            cosines = (column(rows, *BUILD) * column(rows, *TOOL)).sum(axis=1)
+            assert np.median(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))) == pytest.approx(
                 10.0, abs=0.1
             )
             continue
         assert (column(rows, "x_mm", "y_mm", "z_mm") == column(free, "x_mm", "y_mm", "z_mm")).all()
-        fast = np.unique(beads[1:][turns(free, *BUILD) > most], axis=0)
+        fast = np.unique(beads[1:][turn_rates(free, *BUILD) > max_turn], axis=0)
         assert 0 < len(fast) < len(np.unique(beads, axis=0))
         slower = (beads[:, None] == fast).all(axis=2).any(axis=1)
-        assert [row for row, one in zip(rows, slower) if not one] == [
-            row for row, one in zip(free, slower) if not one
+        assert [row for row, is_slower in zip(rows, slower) if not is_slower] == [
+            row for row, is_slower in zip(free, slower) if not is_slower
         ]
-        now, before = column(rows, *BUILD), column(free, *BUILD)
-        apart = np.arctan2(
-            np.linalg.norm(np.cross(now, before), axis=1), (now * before).sum(axis=1)
+        now, original = column(rows, *BUILD), column(free, *BUILD)
+        angles = np.arctan2(
+            np.linalg.norm(np.cross(now, original), axis=1), (now * original).sum(axis=1)
         ).max()
-        (told,) = [
+        (message,) = [
             issue["message"] for issue in report["issues"] if issue["code"] == "TURN_LIMITED"
         ]
-        assert float(told.split("by up to ")[1].split(" deg")[0]) == pytest.approx(
-            np.degrees(apart), rel=0.01
+        assert float(message.split("by up to ")[1].split(" deg")[0]) == pytest.approx(
+            np.degrees(angles), rel=0.01
         )
 
 
 def test_layers_are_as_far_apart_everywhere_as_asked_for(planned):
-    """Where a bead of the tee runs over one of the layer below, no farther to a side than half a layer height."""
+    """Where a bead of the tee runs over a bead of the layer below, it is offset by at most half a
+    layer height."""
     _, _, rows = planned(tee(), height=2.0)
-    points, build, layer = places(rows, 0.3)
+    points, build, layer = sample_beads(rows, 0.3)
     ratio = []
     for number in range(1, layer.max() + 1):
-        here, below = layer == number, layer == number - 1
+        in_layer, below = layer == number, layer == number - 1
         tree = cKDTree(points[below])
-        near = tree.query(points[here] - 2.0 * build[here], k=1)
-        step = points[here] - points[below][near[1]]
-        along = (step * build[below][near[1]]).sum(axis=1)
-        ratio.append(along[near[0] < 1.0] / 2.0)
+        distances = tree.query(points[in_layer] - 2.0 * build[in_layer], k=1)
+        step = points[in_layer] - points[below][distances[1]]
+        along = (step * build[below][distances[1]]).sum(axis=1)
+        ratio.append(along[distances[0] < 1.0] / 2.0)
     ratio = np.concatenate(ratio)
     assert ratio.min() > 0.6 and ratio.max() < 1.4
     assert ((ratio > 0.8) & (ratio < 1.2)).mean() > 0.95
@@ -293,22 +308,23 @@ def test_offset_layers_have_the_shape_of_what_they_stand_on(planned, workshop):
     dome = Part.makeSphere(40)
     boss = Part.makeCylinder(12, 60).cut(dome)
     dome.exportStep(str(workshop.folder / "dome.step"))
-    done, _, rows = planned(boss, "offset", 2.0, more="}\nsubstrate: {file: dome.step")
-    assert done.status == 0, done.err
+    command, _, rows = planned(boss, "offset", 2.0, more="}\nsubstrate: {file: dome.step")
+    assert command.status == 0, command.err
     points, layer = (
         column(rows, "x_mm", "y_mm", "z_mm"),
         np.array([int(row["layer"]) for row in rows]),
     )
     assert layer.max() >= 8
     height = np.linalg.norm(points, axis=1) - 40.0
-    # the grid of the distances errs in proportion to the distance from the dome
+    # the error of the distance grid is proportional to the distance from the dome
     assert (np.abs(height - 2.0 * layer) < 0.05 + 0.0105 * height).all()
     lean = (column(rows, "bx", "by", "bz") * points).sum(axis=1) / np.linalg.norm(points, axis=1)
     assert np.degrees(np.arccos(np.clip(lean, -1.0, 1.0))).max() < 5.0
 
 
 def barrel():
-    """A hub that is neither cylinder nor cone: an arc of 50 mm about (-20, 30) turned about Z, 20 to 30 mm from it."""
+    """Return a hub that is neither cylinder nor cone: an arc of 50 mm about (-20, 30) rotated about
+    Z, 20 to 30 mm from it."""
     arc = Part.Arc(
         FreeCAD.Vector(20, 0, 0), FreeCAD.Vector(30, 0, 30), FreeCAD.Vector(20, 0, 60)
     ).toShape()
@@ -325,12 +341,12 @@ def barrel():
 
 @pytest.mark.parametrize("layers", ["offset", "geodesic"])
 def test_layers_of_a_blade_have_the_shape_of_its_hub(planned, workshop, layers):
-    """It stands on the hub alone: its flat underside, 18 mm up, lies on nothing."""
+    """The blade touches the hub only: its flat underside at 18 mm has nothing below."""
     hub = barrel()
     hub.exportStep(str(workshop.folder / "hub.step"))
     blade = Part.makeBox(40, 8, 24, FreeCAD.Vector(5, -4, 18)).cut(hub)
-    done, report, rows = planned(blade, layers, 2.0, more="}\nsubstrate: {file: hub.step")
-    assert done.status == 0, done.err
+    command, report, rows = planned(blade, layers, 2.0, more="}\nsubstrate: {file: hub.step")
+    assert command.status == 0, command.err
     points, layer = (
         column(rows, "x_mm", "y_mm", "z_mm"),
         np.array([int(row["layer"]) for row in rows]),
@@ -342,7 +358,7 @@ def test_layers_of_a_blade_have_the_shape_of_its_hub(planned, workshop, layers):
 
 
 def test_layers_on_a_plate_that_is_not_flat_are_as_far_from_it_as_they_are_many(planned, workshop):
-    """A saddle of splines: distances of the written points from it, by the geometry kernel."""
+    """The geometry kernel measures the distances of the written points from a saddle of splines."""
     side = np.linspace(-40.0, 40.0, 9)
     saddle = Part.BSplineSurface()
     saddle.interpolate(
@@ -357,13 +373,13 @@ def test_layers_on_a_plate_that_is_not_flat_are_as_far_from_it_as_they_are_many(
     block = Part.makeBox(26, 22, 40, FreeCAD.Vector(-10, -14, -15)).cut(
         face.extrude(FreeCAD.Vector(0, 0, -60))
     )
-    done, report, rows = planned(block, "offset", 2.0, more="}\nsubstrate: {file: plate.step")
-    assert done.status == 0, done.err
-    points, _, layer = places(rows)
+    command, report, rows = planned(block, "offset", 2.0, more="}\nsubstrate: {file: plate.step")
+    assert command.status == 0, command.err
+    points, _, layer = sample_beads(rows)
     assert layer.max() >= 8 and report["unsupported_mm"] == 0.0
-    away = [face.distToShape(Part.Vertex(*point))[0] for point in points]
-    off = np.abs(away - 2.0 * layer)
-    # the layers are triangles, coarsest where they bend most; the largest of a few points beside
+    distances = [face.distToShape(Part.Vertex(*point))[0] for point in points]
+    off = np.abs(distances - 2.0 * layer)
+    # the layers are triangles, coarsest where they bend most; the maximum at a few points next to
     # the border depends on the processor's last bits (0.28 to 0.35 mm)
     assert off.max() < 0.4 and np.percentile(off, 99.0) < 0.2 and off.mean() < 0.05
 
@@ -387,26 +403,31 @@ def test_layers_on_a_plate_that_is_not_flat_are_as_far_from_it_as_they_are_many(
     ],
 )
 def test_what_cannot_be_cut_is_told(planned, make, height, mode, code, word):
-    done, report, _ = planned(make(), height=height, mode=mode)
+    command, report, _ = planned(make(), height=height, mode=mode)
     if code:
-        assert done.status == 2 and report is None
+        assert command.status == 2 and report is None
         assert (
-            f"error[{code}]" in done.err and word in done.err and done.err.count("error[") == 1
-        ), done.err
+            f"error[{code}]" in command.err
+            and word in command.err
+            and command.err.count("error[") == 1
+        ), command.err
     else:
-        assert done.status in (0, 2) and "INTERNAL" not in done.err, done.err
+        assert command.status in (0, 2) and "INTERNAL" not in command.err, command.err
 
 
 @pytest.mark.parametrize("key", ["margin: 1 mm", "solid_layers: 2"])
 def test_what_only_plane_layers_have_is_refused(planned, key):
-    done, _, _ = planned(tee(), more=f", {key}")
+    command, _, _ = planned(tee(), more=f", {key}")
     assert (
-        done.status == 2 and "error[NOT_FOR_FAMILY]" in done.err and key.split(":")[0] in done.err
-    ), done.err
+        command.status == 2
+        and "error[NOT_FOR_FAMILY]" in command.err
+        and key.split(":")[0] in command.err
+    ), command.err
 
 
 def shell_on_a_dome():
-    """A cap between balls of 40 and 50 mm, whose rim slants, and the name of its face on the inner ball."""
+    """Return a cap between spheres of 40 and 50 mm with a slanted rim, and the name of its face on
+    the inner sphere."""
     cap = Part.makeSphere(50).cut(Part.makeSphere(40)).common(Part.makeCylinder(25, 60))
     (inner,) = [
         k
@@ -421,10 +442,11 @@ def shell_on_a_dome():
 @pytest.mark.parametrize("layers", ["offset", "geodesic"])
 @pytest.mark.always("offset")
 def test_layers_start_on_the_faces_that_are_named(planned, layers):
-    """Every point lies on the ball its layer says, though the part touches the plane under it with its rim alone."""
+    """Every point lies on the sphere of its layer, although the part touches the plane below with
+    its rim."""
     cap, inner = shell_on_a_dome()
-    done, _, rows = planned(cap, layers, more=f", start_faces: [{inner}]")
-    assert done.status == 0, done.err
+    command, _, rows = planned(cap, layers, more=f", start_faces: [{inner}]")
+    assert command.status == 0, command.err
     points, layer = (
         column(rows, "x_mm", "y_mm", "z_mm"),
         np.array([int(row["layer"]) for row in rows]),
@@ -441,39 +463,41 @@ def test_start_faces_that_are_none_are_refused(planned):
         ("offset", "[Face99]", "UNKNOWN_FACE"),
         ("offset", "[Edge1]", "BAD_VALUE"),
     ):
-        done, report, _ = planned(cap, layers, 2.0, more=f", start_faces: {named}")
-        assert done.status == 2 and report is None and done.err.count(f"error[{code}]") == 1, (
-            done.err
-        )
+        command, report, _ = planned(cap, layers, 2.0, more=f", start_faces: {named}")
+        assert (
+            command.status == 2 and report is None and command.err.count(f"error[{code}]") == 1
+        ), command.err
 
 
 def test_start_faces_of_another_object_must_be_touched():
     cap, _ = shell_on_a_dome()
     document = FreeCAD.newDocument("Dome")
     try:
-        part, dome, away = (
+        feature, dome, distant = (
             document.addObject("Part::Feature", name) for name in ("Cap", "Dome", "Away")
         )
-        part.Shape, dome.Shape = cap, Part.makeSphere(40)
-        away.Shape = Part.makeBox(10, 10, 10, FreeCAD.Vector(80, 0, 0))
+        feature.Shape, dome.Shape = cap, Part.makeSphere(40)
+        distant.Shape = Part.makeBox(10, 10, 10, FreeCAD.Vector(80, 0, 0))
         values = {
             "layers": "offset",
             "layer_height": HEIGHT,
             "chord_error": 0.2,
             "bead_spacing": SPACING,
         }
-        made = api.result(
+        toolpath = api.result(
             api.make_toolpath(
                 document,
-                api.make_solid_feature(document, part, start_faces=(dome, ["Face1"]), **values),
+                api.make_solid_feature(document, feature, start_faces=(dome, ["Face1"]), **values),
             )
         )
-        for index, _, bead in made:
+        for index, _, bead in toolpath:
             assert np.abs(np.linalg.norm(bead.points, axis=1) - 40.0 - HEIGHT * index).max() < 0.3
         with pytest.raises(InputError) as caught:
             api.make_toolpath(
                 document,
-                api.make_solid_feature(document, part, start_faces=(away, ["Face1"]), **values),
+                api.make_solid_feature(
+                    document, feature, start_faces=(distant, ["Face1"]), **values
+                ),
             )
         assert caught.value.code == "NOT_STANDING" and "mm away" in caught.value.message
     finally:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A program without `motion` has one that its post writes, of every post and set-up, in job files and macros."""
+"""A program without `motion` gets one that its post can write, for every post and set-up, in job
+files and macros."""
 
 import itertools
 
@@ -18,7 +19,7 @@ program: {{post: {post}{motion}}}
 """
 
 
-def written(post, setup, motion):
+def write_program(post, setup, motion):
     try:
         catalogue.load(post).refuse_setup(motion, setup)
     except InputError:
@@ -26,16 +27,16 @@ def written(post, setup, motion):
     return True
 
 
-def job_of(folder, **given):
+def job_of(folder, **values):
     (folder / "part.step").write_text("ISO-10303-21;", encoding="ascii")
-    (folder / "job.yaml").write_text(TEXT.format(**given), encoding="utf-8")
+    (folder / "job.yaml").write_text(TEXT.format(**values), encoding="utf-8")
     return jobs.read_job(str(folder / "job.yaml"))
 
 
 @pytest.mark.parametrize(("post", "setup"), itertools.product(catalogue.NAMES, SETUPS))
 def test_the_default_motion_is_written(tmp_path, post, setup):
     job = job_of(tmp_path, machine="any", setup=setup, post=post, motion="")
-    able = [motion for motion in ("joint", "cartesian") if written(post, setup, motion)]
+    able = [motion for motion in ("joint", "cartesian") if write_program(post, setup, motion)]
     assert job.program.motion == (able[0] if able else "joint")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The shipped examples are the paper's parts and show what the paper shows."""
+"""The shipped examples are the parts of the paper and reproduce its results."""
 
 import csv
 import json
@@ -33,19 +33,19 @@ ON_SUBSTRATES = [
     params=[
         ("hemisphere", 71),
         *(
-            pytest.param(one, marks=pytest.mark.long)
-            for one in (("laval-nozzle", 137), ("intake-funnel", 71))
+            pytest.param(example_layers, marks=pytest.mark.long)
+            for example_layers in (("laval-nozzle", 137), ("intake-funnel", 71))
         ),
     ],
     ids=lambda p: p[0],
 )
 def example(request, workshop, root):
-    """Report, rows and number of layers of an example, run in a folder of its own."""
+    """Return report, rows and number of layers of an example, run in a folder of its own."""
     name, layers = request.param
     for ending in ("yaml", "step"):
         shutil.copy(root / "resources" / "examples" / f"{name}.{ending}", workshop.folder)
-    done = workshop.run("plan", f"{name}.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", f"{name}.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
@@ -67,10 +67,10 @@ def test_shows_what_the_paper_shows(example):
     assert ranges[:, :5].max() < 0.01
     np.testing.assert_allclose(ranges[:, 5], 360.0, atol=1e-3)
     assert report["programs"]
-    told = [json.dumps(issue) for issue in report["issues"]]
-    assert len(told) == len(set(told)), (
-        told
-    )  # the nozzle has a step, which feature and toolpath both know
+    issues = [json.dumps(issue) for issue in report["issues"]]
+    assert len(issues) == len(set(issues)), (
+        issues
+    )  # both the feature and the toolpath report the step of the nozzle
     if name == "hemisphere":
         points = np.array([[float(row[f"{axis}_mm"]) for axis in "xyz"] for row in rows])
         np.testing.assert_allclose(np.linalg.norm(points, axis=1), 45.0, atol=1e-3)
@@ -84,8 +84,9 @@ def test_shows_what_the_paper_shows(example):
 @pytest.mark.long
 @pytest.mark.parametrize("path", WITH_A_CELL, ids=lambda path: path.stem)
 def test_no_row_of_a_shipped_example_is_beyond_a_limit(path, root, tmp_path):
-    """As it is shipped, in waypoints and in the text; those planned coarser elsewhere are looked at there."""
-    done = subprocess.run(
+    """No waypoint and no program of an example exceeds a limit, at its shipped settings; examples
+    that another test plans coarser are checked there."""
+    process = subprocess.run(
         [str(root / "freecad-am"), "plan", str(path), "-o", str(tmp_path / "out"), "--no-page"],
         cwd=tmp_path,
         capture_output=True,
@@ -94,7 +95,7 @@ def test_no_row_of_a_shipped_example_is_beyond_a_limit(path, root, tmp_path):
         check=False,
         timeout=3600,
     )
-    assert done.returncode == 0, done.stderr
+    assert process.returncode == 0, process.stderr
     cell = read_job(str(path)).cell
     assert row_limits.over_all(tmp_path / "out", cell.machine, cell.limits) <= 0.0
 
@@ -103,7 +104,7 @@ BEND, TUBE = 60.0, 15.0
 
 
 def test_layers_of_the_bend_are_evenly_spaced(workshop, root):
-    """Without a cell no points are added: the spacing is that of the fronts."""
+    """Without a cell the planner adds no points, so the spacing is that of the fronts."""
     folder = root / "resources" / "examples"
     for name in ("tube-on-pipe.step", "pipe.step"):
         shutil.copy(folder / name, workshop.folder)
@@ -111,8 +112,8 @@ def test_layers_of_the_bend_are_evenly_spaced(workshop, root):
     (workshop.folder / "bend.yaml").write_text(
         text.replace("end: trim", "end: whole"), encoding="utf-8"
     )
-    done = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["counts"]["layers"] == report["counts"]["beads"] == 10
     assert (
@@ -136,8 +137,8 @@ def test_a_bend_cannot_grow_on_a_surface(workshop, root):
         (workshop.folder / "bend.yaml").write_text(
             text.replace(" pipe.step", f" {substrate}.step"), encoding="utf-8"
         )
-        done = workshop.run("plan", "bend.yaml")
-        assert (done.status, done.err.count(f"error[{code}]")) == (2, 1), done.err
+        command = workshop.run("plan", "bend.yaml")
+        assert (command.status, command.err.count(f"error[{code}]")) == (2, 1), command.err
 
 
 @pytest.mark.parametrize("path", ON_SUBSTRATES, ids=lambda path: path.stem)

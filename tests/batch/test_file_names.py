@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Names of files in a job and in a cell: absolute once they are read, whatever stands beside them as it was."""
+"""File names in a job and in a cell become absolute when they are read; the other values stay
+unchanged."""
 
 import copy
 
@@ -18,7 +19,7 @@ def test_names_of_files_of_every_feature_are_absolute():
         "strategy": {"guide": {"file": "e.step"}},
         "process": {"bead_model": "own.csv", "material": "nowhere"},
     }
-    wanted = {
+    expected = {
         "part": {"file": "/jobs/a.step"},
         "substrate": {"file": "/b.step", "scan": "/jobs/c.csv"},
         "fixtures": [{"file": "/d.stl"}, {}],
@@ -26,13 +27,13 @@ def test_names_of_files_of_every_feature_are_absolute():
         "process": {"bead_model": "/jobs/own.csv", "material": "nowhere"},
     }
     values = {**feature, "features": [feature, {"name": "top"}], "name": "cup.step"}
-    before = copy.deepcopy(values)
+    original = copy.deepcopy(values)
     assert paths.resolve_job(values, FOLDER) == {
-        **wanted,
-        "features": [wanted, {"name": "top"}],
+        **expected,
+        "features": [expected, {"name": "top"}],
         "name": "cup.step",
     }
-    assert values == before
+    assert values == original
 
 
 @pytest.mark.parametrize(
@@ -57,8 +58,8 @@ def test_what_names_no_file_stays(values):
 
 def test_a_material_in_the_folder_of_the_job_comes_before_those_built_in(tmp_path):
     (tmp_path / "er70s-6").write_text("")
-    found = paths.resolve_job({"process": {"material": "er70s-6"}}, str(tmp_path))
-    assert found == {"process": {"material": str(tmp_path / "er70s-6")}}
+    resolved = paths.resolve_job({"process": {"material": "er70s-6"}}, str(tmp_path))
+    assert resolved == {"process": {"material": str(tmp_path / "er70s-6")}}
 
 
 @pytest.mark.parametrize(
@@ -73,7 +74,7 @@ def test_a_material_in_the_folder_of_the_job_comes_before_those_built_in(tmp_pat
         (
             {"file": "robot.urdf base=arm"},
             {"file": "robot.urdf base=arm"},
-        ),  # which is refused, and told as it stands
+        ),  # the value is rejected, and the error quotes it as written
         (
             {"name": "mine.json", "calibration": "my.yaml"},
             {"name": "/jobs/mine.json", "calibration": "/jobs/my.yaml"},

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The page *Headless and batch*: its files and commands run as they stand there."""
+"""The files and commands of the page *Headless and batch* work as printed."""
 
 import csv
 import io
@@ -13,7 +13,7 @@ import pytest
 
 from tests.window import private_home
 
-LONGEST = 300  # s
+TIMEOUT_S = 300  # s
 
 
 @pytest.fixture(scope="module")
@@ -23,15 +23,15 @@ def page(root):
 
 @pytest.fixture(scope="module")
 def folder(page, root, tmp_path_factory):
-    """A folder with the files of the page, in which the model was made."""
+    """Return a folder with the files of the page, in which the model was made."""
     host = shutil.which("freecadcmd") or shutil.which("FreeCADCmd")
     if host is None:
         pytest.skip("this FreeCAD has no freecadcmd")
     folder = tmp_path_factory.mktemp("headless")
     names = {"make_cup.py", "cup.yaml", "plan_cup.py", "cups.csv"}
     for fence in re.findall(r"```(?:python|yaml|csv)\n(.*?)```", page, re.DOTALL):
-        before = page[: page.index(fence)]
-        name = [word for word in re.findall(r"`([\w-]+\.\w+)`", before) if word in names][-1]
+        text_before = page[: page.index(fence)]
+        name = [word for word in re.findall(r"`([\w-]+\.\w+)`", text_before) if word in names][-1]
         (folder / name).write_text(fence, encoding="utf-8")
     assert {path.name for path in folder.iterdir()} == names
     return folder
@@ -50,7 +50,7 @@ def run(folder, environment, *command):
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
-        timeout=LONGEST,
+        timeout=TIMEOUT_S,
         check=False,
     )
 
@@ -98,7 +98,7 @@ def test_the_script(model, environment):
 
 
 def test_the_table(root, model):
-    before = (model / "cup.FCStd").read_bytes()
+    original = (model / "cup.FCStd").read_bytes()
     process = launch(
         root, model, "batch", "cups.csv", "--job", "cup.yaml", "-o", "out/cups", "-j", "2"
     )
@@ -109,7 +109,7 @@ def test_the_table(root, model):
         assert int(row["layers"]) == layers
         circumferences = layers * 2.0 * math.pi * radius
         assert float(row["length_mm"]) == pytest.approx(circumferences, rel=1e-3)
-    assert (model / "cup.FCStd").read_bytes() == before
+    assert (model / "cup.FCStd").read_bytes() == original
 
 
 @pytest.mark.parametrize(
@@ -117,7 +117,7 @@ def test_the_table(root, model):
     [
         ("part.set.Sizes.radius", "50", 50.0, 60.0),
         ("part.set.Sizes.A1", "5 cm", 50.0, 60.0),
-        ("part.set.Profile.Constraints.radius", "50 mm", 50.0, 60.0),  # an expression drives it
+        ("part.set.Profile.Constraints.radius", "50 mm", 50.0, 60.0),  # an expression sets it
         ("part.set.Profile.Constraints.height", "40", 45.0, 40.0),
     ],
 )

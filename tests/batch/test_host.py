@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The surroundings FreeCAD needs in a Python that is not its own."""
+"""The environment that FreeCAD needs in a Python other than its own."""
 
 import os
 import stat
@@ -11,7 +11,8 @@ from freecad_am.batch import host
 
 @pytest.mark.parametrize("closed", [True, False])
 def test_a_closed_home_folder_is_replaced(monkeypatch, tmp_path, closed):
-    """FreeCAD aborts where it cannot read the home folder, as after sudo, which keeps that of the caller."""
+    """FreeCAD aborts if it cannot read the home folder, as after sudo, which keeps the home of the
+    caller."""
     monkeypatch.setenv("HOME", str(tmp_path))
     monkeypatch.setenv("TMPDIR", str(tmp_path))
     monkeypatch.setattr(host.tempfile, "tempdir", None)
@@ -20,24 +21,24 @@ def test_a_closed_home_folder_is_replaced(monkeypatch, tmp_path, closed):
         host.os, "access", lambda path, mode: not (closed and path == str(tmp_path))
     )
     host.provide_home()
-    given = os.environ.get("FREECAD_USER_HOME")
+    home = os.environ.get("FREECAD_USER_HOME")
     monkeypatch.delenv("FREECAD_USER_HOME", raising=False)
-    assert (given is not None) == closed
+    assert (home is not None) == closed
     if closed:
-        assert os.path.isdir(given) and os.path.dirname(given) == str(tmp_path)
+        assert os.path.isdir(home) and os.path.dirname(home) == str(tmp_path)
         monkeypatch.setenv("FREECAD_USER_HOME", "mine")
         host.provide_home()
         assert os.environ["FREECAD_USER_HOME"] == "mine"
 
 
-def planted(folder, kind, others):
-    """What somebody may have put where the folder would be."""
+def planted(folder, kind, other_user):
+    """Create what another user may have put at the folder's path."""
     if kind == "open to all":
         folder.mkdir(mode=0o777)
         folder.chmod(0o777)
     elif kind == "a link":
-        others.mkdir(mode=0o700)
-        folder.symlink_to(others)
+        other_user.mkdir(mode=0o700)
+        folder.symlink_to(other_user)
     elif kind == "a file":
         folder.write_text("mine")
     else:
@@ -46,7 +47,8 @@ def planted(folder, kind, others):
 
 @pytest.mark.parametrize("kind", ["open to all", "a link", "a file", "another's"])
 def test_a_folder_that_another_may_have_made_is_not_taken_for_home(monkeypatch, tmp_path, kind):
-    """FreeCAD runs Mod/*/Init.py of its home."""
+    """FreeCAD runs Mod/*/Init.py of its home, so a folder that another user may have created is
+    unsafe."""
     home, top = tmp_path / "home", tmp_path / "top"
     home.mkdir()
     top.mkdir()
@@ -56,25 +58,26 @@ def test_a_folder_that_another_may_have_made_is_not_taken_for_home(monkeypatch, 
     user = os.getuid()
     if (
         kind == "another's"
-    ):  # to make what belongs to another takes root: this user is another instead
+    ):  # only root can create files of another user, so the test changes its own user instead
         user += 1
         monkeypatch.setattr(host.os, "getuid", lambda: user)
-    there = top / f"freecad-am-{user}"
-    planted(there, kind, tmp_path / "others")
-    given = []
+    default_home = top / f"freecad-am-{user}"
+    planted(default_home, kind, tmp_path / "others")
+    homes = []
     for _ in range(2):
         monkeypatch.delenv("FREECAD_USER_HOME", raising=False)
         host.provide_home()
-        given.append(os.environ["FREECAD_USER_HOME"])
+        homes.append(os.environ["FREECAD_USER_HOME"])
     monkeypatch.delenv("FREECAD_USER_HOME", raising=False)
     assert all(
-        os.path.dirname(path) == str(top) and os.path.basename(path) != there.name for path in given
+        os.path.dirname(path) == str(top) and os.path.basename(path) != default_home.name
+        for path in homes
     )
-    for path in given:
-        found = os.lstat(path)
-        assert stat.S_ISDIR(found.st_mode) and stat.S_IMODE(found.st_mode) == 0o700
+    for path in homes:
+        status = os.lstat(path)
+        assert stat.S_ISDIR(status.st_mode) and stat.S_IMODE(status.st_mode) == 0o700
     if kind != "another's":
-        assert given[0] == given[1]  # made once, used again
+        assert homes[0] == homes[1]  # created once and reused
 
 
 def test_the_folder_made_once_is_used_again(monkeypatch, tmp_path):

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Programs of jobs with solids on hubs through interpreters that are not ours, and their axes through the trunnions' own
-formulas: they lay the beads of waypoints.csv."""
+"""Independent interpreters run programs of jobs with solids on hubs, and the trunnions' own
+formulas convert their axes: they print the beads of waypoints.csv."""
 
 import csv
 import re
@@ -26,8 +26,9 @@ cell: {machine: MACHINE, setup: rotary-table, platform: 60 mm}
 program: {post: POST, motion: MOTION}
 """
 PLATFORM = 60.0
-# what the text rounds, what rs274 prints and the single precision of nc-gcode-interpreter 0.1.9, at levers of up to 150 mm
-NEAR, NEAR_AXIS = 1e-3, 3e-6
+# rounding of the text, of rs274's output and of the single precision of nc-gcode-interpreter 0.1.9,
+# at levers of up to 150 mm
+TOLERANCE_MM, AXIS_TOLERANCE = 1e-3, 3e-6
 
 linuxcnc_is_here = pytest.mark.skipif(
     rs274() is None, reason="no rs274 of LinuxCNC: `./freecad-am test` fetches it"
@@ -50,10 +51,11 @@ def collar():
 
 @pytest.fixture
 def planned(workshop):
-    """Plans a part: the moves of waypoints.csv as rows of numbers by name, whether each deposits, and the program."""
+    """Return a function that plans a part: the moves of waypoints.csv as rows of numbers by name,
+    whether each deposits, and the program."""
 
-    def run(part, height, fill, machine, post, motion):
-        part.exportStep(str(workshop.folder / "part.step"))
+    def run(shape, height, fill, machine, post, motion):
+        shape.exportStep(str(workshop.folder / "part.step"))
         text = JOB
         for old, new in (
             ("HEIGHT", height),
@@ -64,8 +66,8 @@ def planned(workshop):
         ):
             text = text.replace(old, new)
         (workshop.folder / "hub.yaml").write_text(text, encoding="utf-8")
-        done = workshop.run("plan", "hub.yaml", "-o", "out", "--no-page")
-        assert done.status == 0, done.err
+        command = workshop.run("plan", "hub.yaml", "-o", "out", "--no-page")
+        assert command.status == 0, command.err
         out = workshop.folder / "out"
         with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
             rows = [
@@ -74,12 +76,12 @@ def planned(workshop):
                 if row["kind"] == "rapid" or row["point"] != "0"
             ]
         deposit = np.array([row["kind"] == "deposit" for row in rows])
-        places, tools = (
+        positions, tools = (
             np.array([[float(row[name]) for name in names] for row in rows])
             for names in (("x_mm", "y_mm", "z_mm"), ("tx", "ty", "tz"))
         )
         return (
-            places,
+            positions,
             tools,
             deposit,
             {path.name: path.read_bytes() for path in (out / "program").iterdir()},
@@ -88,12 +90,12 @@ def planned(workshop):
     return run
 
 
-def in_part(machine, at):
-    """Tip and tool axis (n, 3) in the part at axis values (n, 5) mm and deg: the formulas of LinuxCNC's trunnions with the
-    offsets of the machine files, solved for them."""
-    x, y, z = at[:, :3].T
-    tilt, turn = np.radians(at[:, 3:].T)
-    up, side, zero = np.cos(tilt), np.sin(tilt), np.zeros(len(at))
+def in_part(machine, axis_values):
+    """Return tip and tool axis (n, 3) in the part at axis values (n, 5) in mm and deg: the formulas
+    of LinuxCNC's trunnions with the offsets of the machine files, solved for them."""
+    x, y, z = axis_values[:, :3].T
+    tilt, turn = np.radians(axis_values[:, 3:].T)
+    up, side, zero = np.cos(tilt), np.sin(tilt), np.zeros(len(axis_values))
     if machine == "table-xyzac":
         v, w = y - 20.0, z - 10.0
         level = np.stack([x, up * v + side * w + 20.0, -side * v + up * w + 10.0])
@@ -127,31 +129,33 @@ TABLES = [
 @linuxcnc_is_here
 @pytest.mark.parametrize(("fill", "part", "height", "motion", "machine"), TABLES)
 def test_linuxcnc_lays_the_beads(planned, tmp_path, fill, part, height, motion, machine):
-    places, tools, deposit, files = planned(part(), height, fill, machine, "linuxcnc", motion)
+    positions, tools, deposit, files = planned(part(), height, fill, machine, "linuxcnc", motion)
     folder = tmp_path / "linuxcnc"
     folder.mkdir()
     moves, complaints = run_rs274(folder, files, "hub.ngc")
-    assert not complaints and len(moves) == len(places) and deposit.sum() > 40
+    assert not complaints and len(moves) == len(positions) and deposit.sum() > 40
     assert [move["deposit"] for move in moves] == deposit.tolist()
     columns = [0, 1, 2, 3 if machine == "table-xyzac" else 4, 5]
-    at = np.array([move["at"] for move in moves])[:, columns]
-    tip, tool = in_part(machine, at)
-    told = deposit & (
+    axis_values = np.array([move["at"] for move in moves])[:, columns]
+    tip, tool = in_part(machine, axis_values)
+    is_checked = deposit & (
         motion == "cartesian"
-    )  # with the kinematics on, positions are those of the tip in the part
-    assert [move["kinematics"] for move in moves] == [428 if on else 429 for on in told]
-    tip[told] = at[told, :3]
-    assert np.abs(tip - places).max() < NEAR
-    assert np.abs(tool - tools).max() < NEAR_AXIS
+    )  # with the kinematics on, positions are those of the tip on the part
+    assert [move["kinematics"] for move in moves] == [428 if on else 429 for on in is_checked]
+    tip[is_checked] = axis_values[is_checked, :3]
+    assert np.abs(tip - positions).max() < TOLERANCE_MM
+    assert np.abs(tool - tools).max() < AXIS_TOLERANCE
 
 
 @sinumerik_is_here
 @pytest.mark.parametrize(("fill", "part", "height", "motion"), CASES)
 def test_a_sinumerik_lays_the_beads(planned, fill, part, height, motion):
-    places, tools, deposit, files = planned(part(), height, fill, "table-xyzac", "siemens", motion)
+    positions, tools, deposit, files = planned(
+        part(), height, fill, "table-xyzac", "siemens", motion
+    )
     order = sorted(files)
     texts = [files[name].decode("ascii") for name in order]
-    moves, told = [], []
+    moves, on_part = [], []
     for text, (rows, _, complaint) in zip(texts, run_nc(texts), strict=True):
         assert not complaint
         blocks = {}
@@ -159,15 +163,17 @@ def test_a_sinumerik_lays_the_beads(planned, fill, part, height, motion):
             blocks.setdefault(row["N"], row)
         for number, words in re.findall(r"(?m)^N(\d+) (.*\bG1 .*)$", text):
             moves.append(blocks[int(number)])
-            told.append("A3=" in words)
-    assert len(moves) == len(places) and deposit.sum() > 40
-    assert told == (deposit & (motion == "cartesian")).tolist()
-    told = np.array(told)
-    tip, tool = np.full_like(places, np.nan), np.full_like(places, np.nan)
-    if told.any():
-        tip[told] = [[moves[k][name] for name in "XYZ"] for k in np.flatnonzero(told)]
-        tool[told] = [[moves[k][name] for name in ("A3", "B3", "C3")] for k in np.flatnonzero(told)]
-    axes = np.array([[moves[k][name] for name in "XYZAC"] for k in np.flatnonzero(~told)])
-    tip[~told], tool[~told] = in_part("table-xyzac", axes)
-    assert np.abs(tip - places).max() < NEAR
-    assert np.abs(tool - tools).max() < NEAR_AXIS
+            on_part.append("A3=" in words)
+    assert len(moves) == len(positions) and deposit.sum() > 40
+    assert on_part == (deposit & (motion == "cartesian")).tolist()
+    on_part = np.array(on_part)
+    tip, tool = np.full_like(positions, np.nan), np.full_like(positions, np.nan)
+    if on_part.any():
+        tip[on_part] = [[moves[k][name] for name in "XYZ"] for k in np.flatnonzero(on_part)]
+        tool[on_part] = [
+            [moves[k][name] for name in ("A3", "B3", "C3")] for k in np.flatnonzero(on_part)
+        ]
+    axes = np.array([[moves[k][name] for name in "XYZAC"] for k in np.flatnonzero(~on_part)])
+    tip[~on_part], tool[~on_part] = in_part("table-xyzac", axes)
+    assert np.abs(tip - positions).max() < TOLERANCE_MM
+    assert np.abs(tool - tools).max() < AXIS_TOLERANCE

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ctrl-C at any moment: status 130, nothing half-written, and what was there before is still there."""
+"""Ctrl-C at any moment gives status 130, leaves no half-written file and keeps the earlier
+outputs."""
 
 import os
 import signal
@@ -10,8 +11,8 @@ from pathlib import Path
 import pytest
 
 
-def interrupted(workshop, words, after, whom=os.kill):
-    """Start a command, interrupt it after some seconds; its end."""
+def interrupted(workshop, words, delay, whom=os.kill):
+    """Start a command, interrupt it after some seconds, and return its end."""
     process = subprocess.Popen(
         [str(workshop.launcher), *words],
         cwd=workshop.folder,
@@ -22,7 +23,7 @@ def interrupted(workshop, words, after, whom=os.kill):
         stderr=subprocess.PIPE,
         text=True,
     )
-    time.sleep(after)
+    time.sleep(delay)
     if process.poll() is None:
         whom(process.pid, signal.SIGINT)
     out, err = process.communicate(timeout=60)
@@ -48,10 +49,10 @@ def test_nothing_is_half_written(workshop, after, whom):
 
 def test_earlier_outputs_stay_whole(workshop):
     assert workshop.run("plan", "cup.yaml").status == 0
-    before = workshop.files()
+    outputs = workshop.files()
     slow_job(workshop)
     assert interrupted(workshop, ["plan", "cup.yaml"], 1.2)[0] == 130
-    assert workshop.files() == before
+    assert workshop.files() == outputs
 
 
 def test_a_batch_stops_with_its_rows(workshop):
@@ -65,17 +66,17 @@ def test_a_batch_stops_with_its_rows(workshop):
     assert status == 130
     assert "Traceback" not in err
     top = workshop.folder / "rows"
-    whole = {"cup.FCStd", "waypoints.csv", "report.json", "report.html"}
+    complete = {"cup.FCStd", "waypoints.csv", "report.json", "report.html"}
     assert not list(top.rglob(".unfinished*"))
     for folder in filter(Path.is_dir, top.iterdir()) if top.exists() else ():
-        assert whole <= {path.name for path in folder.iterdir()}
+        assert complete <= {path.name for path in folder.iterdir()}
     time.sleep(0.5)
     assert not list(top.rglob(".unfinished*"))
 
 
 def test_signals_left_ignored_by_a_shell_in_the_background_are_heard(workshop):
     slow_job(workshop)
-    done = subprocess.run(
+    process = subprocess.run(
         [
             "sh",
             "-c",
@@ -88,5 +89,5 @@ def test_signals_left_ignored_by_a_shell_in_the_background_are_heard(workshop):
         timeout=60,
         check=False,
     )
-    assert done.stdout.strip() == "130"
+    assert process.stdout.strip() == "130"
     assert not (workshop.folder / "out").exists()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts of documents that link to other documents, with and without values set: the new shape, or a clear error."""
+"""Parts of documents that link to other documents, with and without new values: the new shape, or a
+clear error."""
 
 import importlib
 import os
@@ -20,7 +21,7 @@ from freecad_am.core.issues import InputError
 from freecad_am.objects.shapes.part_file import file_issues
 
 SECOND = b"2026-11-01T12:00:00"
-HOLE = 3.141592653589793 * 4 * 10  # of the cylinder in the box, 10 mm high
+HOLE = 3.141592653589793 * 4 * 10  # volume of the cylinder in the box, 10 mm high
 
 
 def close_all():
@@ -29,7 +30,8 @@ def close_all():
 
 
 def run_and_close(work):
-    """Run `work` and close its documents. It computes shapes, after which FreeCAD 1.0 and later have threads."""
+    """Run `work` and close its documents. It computes shapes, after which FreeCAD 1.0 and later
+    have threads."""
     try:
         work()
     finally:
@@ -38,7 +40,8 @@ def run_and_close(work):
 
 @pytest.fixture
 def documents(tmp_path):
-    """`hall.FCStd` cuts a hole into a box of `sub/store.FCStd`, at z 50 in a turned part, and sizes a box by its sheet."""
+    """Return a folder in which `hall.FCStd` cuts a hole into a box of `sub/store.FCStd`, at z 50 in
+    a rotated part, and sizes a box by its sheet."""
     (tmp_path / "sub").mkdir()
 
     def build():
@@ -57,18 +60,20 @@ def documents(tmp_path):
         store.saveAs(str(tmp_path / "sub" / "store.FCStd"))
         hall = App.newDocument("hall")
         hall.saveAs(str(tmp_path / "hall.FCStd"))
-        link, part = hall.addObject("App::Link", "Link"), hall.addObject("App::Part", "Asm")
+        link, assembly = hall.addObject("App::Link", "Link"), hall.addObject("App::Part", "Asm")
         link.LinkedObject = box
-        part.Placement = App.Placement(App.Vector(0, 0, 50), App.Rotation(App.Vector(0, 0, 1), 30))
+        assembly.Placement = App.Placement(
+            App.Vector(0, 0, 50), App.Rotation(App.Vector(0, 0, 1), 30)
+        )
         cylinder = hall.addObject("Part::Cylinder", "Cylinder")
         cylinder.Radius, cylinder.Height, cylinder.Placement.Base = 2, 30, App.Vector(5, 5, 0)
         cut = hall.addObject("Part::Cut", "Cut")
         cut.Base, cut.Tool = link, cylinder
-        part.addObject(cut)
+        assembly.addObject(cut)
         sized = hall.addObject("Part::Box", "Sized")
         sized.setExpression("Height", "store#Sheet.tall")
-        shown = hall.addObject("App::Link", "Shown")
-        shown.LinkedObject = box
+        visible_link = hall.addObject("App::Link", "Shown")
+        visible_link.LinkedObject = box
         hall.recompute()
         hall.save()
 
@@ -78,25 +83,27 @@ def documents(tmp_path):
 
 
 def volume(path, name, *settings):
-    """Of a part that is brought into a document, with the codes of the notes on its file."""
+    """Return the volume of a part brought into a document, with the codes of the issues of its
+    file."""
     document = App.newDocument("Job")
     try:
-        part = bring(document, PartSource(str(path), name, settings=settings))
-        part.addProperty("App::PropertyLink", "Probe")
+        feature = bring(document, PartSource(str(path), name, settings=settings))
+        feature.addProperty("App::PropertyLink", "Probe")
         holder = document.addObject("App::FeaturePython", "Holder")
         holder.addProperty("App::PropertyLink", "Of")
-        holder.Of = part
+        holder.Of = feature
         return (
-            part.Shape.Volume,
-            part.Shape.BoundBox.ZMin,
-            [one.code for one in file_issues(holder)],
+            feature.Shape.Volume,
+            feature.Shape.BoundBox.ZMin,
+            [issue.code for issue in file_issues(holder)],
         )
     finally:
         App.closeDocument(document.Name)
 
 
 def change_store(folder, **cells):
-    """Save the linked document with other values: FreeCAD knows the time of saving to a second."""
+    """Save the linked document with other values; FreeCAD records the time of saving in whole
+    seconds."""
     time.sleep(1.1)
 
     def change():
@@ -110,10 +117,11 @@ def change_store(folder, **cells):
 
 
 def test_a_value_set_in_a_document_that_links_to_another(documents):
-    """It was saved elsewhere, from where its links lead nowhere: NO_OBJECT, naming a temporary path."""
+    """The copy was once saved in another folder, where its links lead nowhere; the error NO_OBJECT
+    then named a temporary path."""
     hall = documents / "hall.FCStd"
-    whole = volume(hall, "Cut")
-    assert whole == (pytest.approx(1000 - HOLE), pytest.approx(50), [])
+    full_volume = volume(hall, "Cut")
+    assert full_volume == (pytest.approx(1000 - HOLE), pytest.approx(50), [])
     wide = volume(hall, "Cut", ("Cylinder", "Radius", "3 mm"))
     assert wide == (pytest.approx(1000 - HOLE * 9 / 4), pytest.approx(50), [])
     assert volume(hall, "Shown", ("Cylinder", "Radius", "3 mm")) == (
@@ -125,7 +133,8 @@ def test_a_value_set_in_a_document_that_links_to_another(documents):
 
 
 def test_a_value_set_after_threads_of_the_kernel_started(documents, monkeypatch):
-    """A forked copy waited without end for threads that it did not have; FreeCAD 0.20 starts none for booleans."""
+    """A forked copy once waited forever for threads that it did not have; FreeCAD 0.20 starts none
+    for booleans."""
 
     def fork(*_):
         raise AssertionError("a process with threads was forked")
@@ -138,13 +147,13 @@ def test_a_value_set_after_threads_of_the_kernel_started(documents, monkeypatch)
 def test_a_value_set_in_the_linked_document(documents):
     hall = documents / "hall.FCStd"
     for name, key in (("Sheet", "broad"), ("Sheet", "A2"), ("Box", "Width")):
-        found, z, codes = volume(hall, "Cut", (name, key, "20 mm" if name == "Box" else "20"))
-        assert (found, z, codes) == (pytest.approx(2000 - HOLE), pytest.approx(50), []), name
+        new_volume, z, codes = volume(hall, "Cut", (name, key, "20 mm" if name == "Box" else "20"))
+        assert (new_volume, z, codes) == (pytest.approx(2000 - HOLE), pytest.approx(50), []), name
     assert volume(hall, "Sized", ("Sheet", "tall", "9"))[0] == pytest.approx(900)
 
 
 def test_a_linked_document_that_changed_later(documents):
-    """FreeCAD marks what links to it as touched, and keeps the shapes of before."""
+    """FreeCAD marks objects that link to it as touched, and keeps their earlier shapes."""
     change_store(documents, A1="9", A2="20")
     hall = documents / "hall.FCStd"
     assert volume(hall, "Cut") == (
@@ -161,15 +170,16 @@ def test_a_linked_document_saved_again_within_the_same_second(documents):
     hall = documents / "hall.FCStd"
 
     def change(again):
-        """Save both as at one second, the linked document before or after the other one."""
+        """Save both documents as if in the same second, the linked one before or after the
+        other."""
         for name in ("sub/store.FCStd", "hall.FCStd"):
             with zipfile.ZipFile(documents / name) as archive:
-                texts = {each: archive.read(each) for each in archive.namelist()}
+                texts = {member: archive.read(member) for member in archive.namelist()}
             with zipfile.ZipFile(documents / name, "w") as archive:
-                for each, text in texts.items():
-                    if each == "Document.xml":
+                for member, text in texts.items():
+                    if member == "Document.xml":
                         text = re.sub(rb"\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d(?=Z|\+00:00)", SECOND, text)
-                    archive.writestr(each, text)
+                    archive.writestr(member, text)
         os.utime(documents / "sub" / "store.FCStd", ns=(10**18 + again, 10**18 + again))
         os.utime(hall, ns=(10**18, 10**18))
 
@@ -231,8 +241,8 @@ class Gear:
 
 
 def test_a_value_of_an_object_whose_add_on_is_missing(tmp_path, monkeypatch):
-    """The shape stayed as it was saved, without a message."""
-    monkeypatch.setenv(SANDBOXED, "1")  # the add-on is loaded in this process alone
+    """The shape once stayed as saved, without a message."""
+    monkeypatch.setenv(SANDBOXED, "1")  # only this process loads the add-on
     (tmp_path / "gear_add_on.py").write_text(ADD_ON)
     monkeypatch.syspath_prepend(str(tmp_path))
     module = importlib.import_module("gear_add_on")
@@ -265,7 +275,7 @@ def test_a_value_of_an_object_whose_add_on_is_missing(tmp_path, monkeypatch):
 
 
 def test_a_constraint_with_an_expression(tmp_path):
-    """What is set is meant, whatever it was computed from; the expression won, without a message."""
+    """A set value overrides its expression; the expression once won, without a message."""
     import Sketcher
 
     doc = App.newDocument("sketched")
@@ -279,12 +289,15 @@ def test_a_constraint_with_an_expression(tmp_path):
     doc.recompute()
     doc.saveAs(str(tmp_path / "sketched.FCStd"))
     close_all()
-    found = volume(tmp_path / "sketched.FCStd", "Body", ("Sketch.Constraints", "Round", "2 mm"))
-    assert found[0] == pytest.approx(HOLE)
+    new_volume = volume(
+        tmp_path / "sketched.FCStd", "Body", ("Sketch.Constraints", "Round", "2 mm")
+    )
+    assert new_volume[0] == pytest.approx(HOLE)
 
 
 def test_the_place_in_an_opened_file(documents):
-    """`am.open_part` reads containers, links and array elements of a file as a document shows them."""
+    """`am.open_part` reads containers, links and array elements of a file as a document shows
+    them."""
 
     def build():
         doc = App.openDocument(str(documents / "hall.FCStd"))
@@ -302,8 +315,8 @@ def test_the_place_in_an_opened_file(documents):
     run_and_close(build)
     job = App.newDocument("Job")
     for name in ("Array.2", "Row.2"):
-        part = api.open_part(job, str(documents / "hall.FCStd"), name)
-        centre = part.Shape.CenterOfMass
+        feature = api.open_part(job, str(documents / "hall.FCStd"), name)
+        centre = feature.Shape.CenterOfMass
         assert (centre.x, centre.y, centre.z) == pytest.approx((173.2050808, 100, 65))
     assert len(api.open_part(job, str(documents / "hall.FCStd"), "Row").Shape.Solids) == 3
     with pytest.raises(InputError, match=r"Array\.3"):
@@ -311,7 +324,7 @@ def test_the_place_in_an_opened_file(documents):
 
 
 def test_export_of_a_document_that_links_to_another(documents):
-    """What is exported is made from the linked document as it is now; a missing one is named."""
+    """The export uses the current linked document, and names a missing one."""
     from freecad_am.batch.measured import export
     from tests import plans
 
@@ -335,9 +348,9 @@ def test_export_of_a_document_that_links_to_another(documents):
         return max(float(y) for code, y in zip(lines, lines[1:]) if code == "20")
 
     run_and_close(build)
-    before = wires()
+    original_wires = wires()
     change_store(documents, A2="30")
-    assert wires() == pytest.approx(before + 20, abs=1.0)
+    assert wires() == pytest.approx(original_wires + 20, abs=1.0)
     (documents / "sub" / "store.FCStd").unlink()
     with pytest.raises(InputError) as caught:
         wires()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`freecad-am machines NAME`: a machine in the words of other programs."""
+"""`freecad-am machines NAME` writes a machine in formats of other programs."""
 
 import numpy as np
 import pytest
@@ -14,18 +14,18 @@ Q = np.random.default_rng(8).uniform(-3, 3, (20, 6))
 
 
 def test_a_urdf_from_the_command_line_is_the_machine(workshop):
-    done = workshop.launch("machines", "kuka-kr16-2", "--urdf")
+    command = workshop.launch("machines", "kuka-kr16-2", "--urdf")
     path = workshop.folder / "arm.urdf"
-    path.write_text(done.out, encoding="utf-8")
-    found = urdf.Urdf(path).between("base_link", "tool0")
+    path.write_text(command.out, encoding="utf-8")
+    chain = urdf.Urdf(path).between("base_link", "tool0")
     np.testing.assert_allclose(
-        found.chain.forward(Q), KdlArm(machine.load("kuka-kr16-2")).forward(Q), atol=1e-9
+        chain.chain.forward(Q), KdlArm(machine.load("kuka-kr16-2")).forward(Q), atol=1e-9
     )
 
 
 @pytest.mark.parametrize("form", ["dh", "modified-dh"])
 def test_a_table_from_the_command_line_is_the_machine(workshop, form):
-    before, heading, *rows, after = workshop.run(
+    text_before, heading, *rows, text_after = workshop.run(
         "machines", "staubli-tx60", f"--{form}"
     ).out.splitlines()
     assert heading == "axis theta d a alpha" and len(rows) == 6
@@ -39,8 +39,8 @@ def test_a_table_from_the_command_line_is_the_machine(workshop, form):
             dh.Row(np.radians(theta), d, a, np.radians(alpha))
             for theta, d, a, alpha in ([float(word) for word in row.split()[1:]] for row in rows)
         ),
-        pose(before),
-        pose(after),
+        pose(text_before),
+        pose(text_after),
         form != "dh",
     )
     np.testing.assert_allclose(
@@ -83,5 +83,5 @@ def test_the_list_is_of_those_asked_for(workshop, words, listed):
     ],
 )
 def test_slips_on_the_command_line_are_told(workshop, words, told):
-    done = workshop.run("machines", *words)
-    assert done.status == 2 and told in done.err and not done.out
+    command = workshop.run("machines", *words)
+    assert command.status == 2 and told in command.err and not command.out

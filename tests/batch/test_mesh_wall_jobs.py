@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A vase from an STL file, open at both ends, to a toolpath and a document."""
+"""A vase from an STL file, open at both ends, becomes a toolpath and a document."""
 
 import csv
 import json
@@ -23,8 +23,8 @@ def test_an_open_mesh_is_a_wall_on_the_platform(workshop):
     side.write(str(workshop.folder / "vase.stl"))
     (workshop.folder / "vase.yaml").write_text(JOB, encoding="utf-8")
     assert jobs.read_job(str(workshop.folder / "vase.yaml")).substrate is None
-    done = workshop.run("plan", "vase.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "vase.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["status"] == "ok" and {"FIRST_LAYER"} <= {
         issue["code"] for issue in report["issues"]
@@ -62,26 +62,28 @@ program: {post: none}
 
 
 def planned_at(workshop, low, mount):
-    """Status, messages, and of the deposit Z in the part (n,) and axes (n, 6) of a vase whose lowest end is at Z = low."""
+    """Return status, messages, and for the deposit Z in the part (n,) and axes (n, 6), of a vase
+    whose lower end is at Z = low."""
     side = Mesh.createCylinder(30.0, 60.0, 0, 4.0, 60)  # along X
     side.rotate(0.0, -np.pi / 2.0, 0.0)
     side.translate(0.0, 0.0, low - side.BoundBox.ZMin)
     side.write(str(workshop.folder / "vase.stl"))
     job = JOB.replace("height: 5 mm", "height: 30 mm") + CELL % mount
     (workshop.folder / "vase.yaml").write_text(job, encoding="utf-8")
-    done = workshop.run("plan", "vase.yaml", "-o", "out", "--no-page")
-    if done.status:
-        return done.status, done.err, None, None
+    command = workshop.run("plan", "vase.yaml", "-o", "out", "--no-page")
+    if command.status:
+        return command.status, command.err, None, None
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
     axes = np.array(
         [[float(row[key]) for key in row if key[0] == "q" and key.endswith("_deg")] for row in rows]
     )
-    return done.status, done.err, np.array([float(row["z_mm"]) for row in rows]), axes
+    return command.status, command.err, np.array([float(row["z_mm"]) for row in rows]), axes
 
 
 def test_an_open_mesh_drawn_at_another_height_than_the_platform_is_put_onto_it(workshop):
-    """As many open meshes are: about their middle, or in the air. The robot moves as for the mesh drawn at zero."""
+    """The planner puts the mesh onto the platform, because many open meshes are modelled about
+    their middle or in the air. The robot moves as for a mesh that starts at zero."""
     status, messages, _, _ = planned_at(workshop, -90.8, "auto")
     assert (status, messages.count("error[OFF_PLATFORM]")) == (
         2,

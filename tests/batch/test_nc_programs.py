@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A job for a five-axis table: programs of both controllers in both motions, and what an earlier run left of them."""
+"""A job for a five-axis machine: programs of both controllers in both motions, and removal of an
+earlier run's files."""
 
 import pytest
 
@@ -14,43 +15,45 @@ program: {post: POST, motion: MOTION, max_points: MOST, nc: {feed: FEED}}
 """
 
 
-def job(post, motion, most=2000, feed="time"):
+def job(post, motion, max_points=2000, feed="time"):
     return (
         JOB.replace("POST", post)
         .replace("MOTION", motion)
-        .replace("MOST", str(most))
+        .replace("MOST", str(max_points))
         .replace("FEED", feed)
     )
 
 
 @pytest.mark.parametrize(("post", "motion"), [("siemens", "joint"), ("linuxcnc", "cartesian")])
 def test_parts_of_an_earlier_run_are_removed_and_nothing_else(workshop, post, motion):
-    main, part = ("CUP.MPF", "CUP{:02d}.SPF") if post == "siemens" else ("cup.ngc", "cup{:02d}.ngc")
+    main, part_name = (
+        ("CUP.MPF", "CUP{:02d}.SPF") if post == "siemens" else ("cup.ngc", "cup{:02d}.ngc")
+    )
     workshop.write_job(job(post, motion, 100, "path"))
-    done = workshop.run("plan", "cup.yaml", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "cup.yaml", "--no-page")
+    assert command.status == 0, command.err
     longer = {name for name in workshop.files() if name.startswith("program/")}
-    parts = [part.format(number) for number in range(1, len(longer))]
-    assert longer == {f"program/{name}" for name in (main, *parts)} and len(longer) > 3
+    part_names = [part_name.format(number) for number in range(1, len(longer))]
+    assert longer == {f"program/{name}" for name in (main, *part_names)} and len(longer) > 3
     folder = workshop.folder / "out" / "cup" / "program"
     theirs = {"clean.ngc", "CLEAN.SPF", "CUPBOARD01.SPF", "other.MPF"}
     for name in theirs:
         (folder / name).write_text("mine")
     workshop.write_job(job(post, motion))
     assert workshop.run("plan", "cup.yaml", "--no-page").status == 0
-    left = {name for name in workshop.files() if name.startswith("program/")}
-    assert left == {f"program/{name}" for name in theirs | {main}}
+    remaining = {name for name in workshop.files() if name.startswith("program/")}
+    assert remaining == {f"program/{name}" for name in theirs | {main}}
 
 
 def test_a_robot_is_told_which_controllers_it_has(workshop):
     workshop.write_job(
         job("linuxcnc", "joint").replace("table-xyzac, setup: rotary-table", "fanuc-arcmate120ic")
     )
-    done = workshop.run("plan", "cup.yaml")
+    command = workshop.run("plan", "cup.yaml")
     assert (
-        done.status == 2
-        and done.err.startswith("error[WRONG_CONTROLLER]")
-        and "use one of fanuc" in done.err
+        command.status == 2
+        and command.err.startswith("error[WRONG_CONTROLLER]")
+        and "use one of fanuc" in command.err
     )
 
 
@@ -67,7 +70,7 @@ def test_keys_that_cannot_be(workshop, keys, code, key):
         job("siemens", "joint").partition("program:")[0] + f"program: {{post: siemens, {keys}}}\n"
     )
     workshop.write_job(text)
-    done = workshop.run("plan", "cup.yaml")
-    assert done.status == 2 and done.err.startswith(f"error[{code}] cup.yaml: program.{key}"), (
-        done.err
-    )
+    command = workshop.run("plan", "cup.yaml")
+    assert command.status == 2 and command.err.startswith(
+        f"error[{code}] cup.yaml: program.{key}"
+    ), command.err

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The command `place`: a table of poses, a page, and a line that makes a job feasible which is not."""
+"""The command `place` writes a table of poses, a page, and a line that makes an infeasible job
+feasible."""
 
 import csv
 
@@ -8,30 +9,38 @@ import yaml
 
 from tests.batch.conftest import JOB
 
-FAR = [1045.747, -630.155, 2153.167, 0, 0, 0]  # too high: the part is out of reach there
+UNREACHABLE_POSE = [
+    1045.747,
+    -630.155,
+    2153.167,
+    0,
+    0,
+    0,
+]  # too high: the part is out of reach there
 BOX = {"x": 0, "y": 0, "z": "1500 mm", "step": "500 mm", "points": 60}
 
 
 @pytest.fixture
 def job(workshop):
-    """What writes the job with its part at a pose, and a box; its path."""
+    """Return a function that writes the job with its part at a pose and a box, and returns its
+    path."""
 
     def write(pose, box):
-        told = yaml.safe_load(JOB)
-        told["strategy"]["layer_height"] = "10 mm"
-        told["cell"]["deposition_point"] = pose
-        told["place"] = box
-        (workshop.folder / "cup.yaml").write_text(yaml.safe_dump(told), encoding="utf-8")
+        values = yaml.safe_load(JOB)
+        values["strategy"]["layer_height"] = "10 mm"
+        values["cell"]["deposition_point"] = pose
+        values["place"] = box
+        (workshop.folder / "cup.yaml").write_text(yaml.safe_dump(values), encoding="utf-8")
 
     return write
 
 
 def test_the_line_makes_a_job_feasible(workshop, job):
-    job(FAR, BOX)
+    job(UNREACHABLE_POSE, BOX)
     assert workshop.run("plan", "cup.yaml", "-o", "first", "--no-page").status == 3
-    done = workshop.run("place", "cup.yaml", "-o", "out")
-    assert done.status == 0 and "note[PLACED]" in done.err, done.err
-    line = yaml.safe_load(done.out)
+    command = workshop.run("place", "cup.yaml", "-o", "out")
+    assert command.status == 0 and "note[PLACED]" in command.err, command.err
+    line = yaml.safe_load(command.out)
     with open(workshop.folder / "out" / "place.csv", encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 7 and {row["feasible"] for row in rows} == {"yes", "no"}
@@ -46,13 +55,16 @@ def test_the_line_makes_a_job_feasible(workshop, job):
     assert "://" not in page
     job(line["deposition_point"], BOX)
     assert workshop.run("plan", "cup.yaml", "-o", "second", "--no-page").status == 0
-    assert {one.name for one in (workshop.folder / "out").iterdir()} == {"place.csv", "place.html"}
+    assert {path.name for path in (workshop.folder / "out").iterdir()} == {
+        "place.csv",
+        "place.html",
+    }
 
 
 def test_no_pose_serves(workshop, job):
     job([6000, 0, 0, 0, 0, 0], BOX)
-    done = workshop.run("place", "cup.yaml", "-o", "out")
-    assert done.status == 3 and "error[NO_PLACE]" in done.err and done.out == ""
+    command = workshop.run("place", "cup.yaml", "-o", "out")
+    assert command.status == 3 and "error[NO_PLACE]" in command.err and command.out == ""
     assert (workshop.folder / "out" / "place.csv").is_file()
 
 
@@ -61,7 +73,7 @@ def test_no_pose_serves(workshop, job):
     ({"width": 3}, "error[UNKNOWN_KEY] cup.yaml:"), ({"step": "1 mm"}, "larger step"),
 ])  # fmt: skip
 def test_boxes_that_say_nothing_are_refused(workshop, job, box, told):
-    job(FAR, box)
-    done = workshop.run("place", "cup.yaml", "-o", "out")
-    assert done.status == 2 and told in done.err, done.err
+    job(UNREACHABLE_POSE, box)
+    command = workshop.run("place", "cup.yaml", "-o", "out")
+    assert command.status == 2 and told in command.err, command.err
     assert not (workshop.folder / "out").exists()

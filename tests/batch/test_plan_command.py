@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`plan` as its users run it: outputs, exit status, messages."""
+"""The command `plan` as its users run it: outputs, exit status, messages."""
 
 import csv
 import io
@@ -24,24 +24,24 @@ def deposit(text):
 
 
 def test_a_whole_job(workshop):
-    done = workshop.launch("plan", "cup.yaml")
-    assert done.status == 0, done.err
+    command = workshop.launch("plan", "cup.yaml")
+    assert command.status == 0, command.err
     names = set(workshop.files())
     assert {"cup.FCStd", "waypoints.csv", "report.json", "report.html", "program/CUP.LS"} <= names
-    others = names - {"cup.FCStd", "waypoints.csv", "report.json", "report.html"}
-    assert all(name.startswith("program/") for name in others)
-    assert set(done.out.split("\n")[:-1]) == {
+    programs = names - {"cup.FCStd", "waypoints.csv", "report.json", "report.html"}
+    assert all(name.startswith("program/") for name in programs)
+    assert set(command.out.split("\n")[:-1]) == {
         str(workshop.folder / "out" / "cup" / name) for name in names
     }
-    assert all(MESSAGE.fullmatch(line) for line in done.err.splitlines())
-    assert "\x1b" not in done.err and "\r" not in done.err  # no progress without a terminal
+    assert all(MESSAGE.fullmatch(line) for line in command.err.splitlines())
+    assert "\x1b" not in command.err and "\r" not in command.err  # no progress without a terminal
     report = json.loads(workshop.files()["report.json"], parse_constant=pytest.fail)
     rows, points = deposit(workshop.files()["waypoints.csv"].decode())
     np.testing.assert_allclose(np.linalg.norm(points, axis=1), 40.0, atol=1e-5)
     assert report["version"] == 1 and report["name"] == "cup" and report["status"] == "ok"
     assert report["counts"] == {"layers": 16, "beads": 16, "points": len(rows)}
     assert report["programs"] == sorted(name for name in names if name.startswith("program/"))
-    between = 80.0 * np.sin(0.05)  # the chord of 4 mm of arc
+    between = 80.0 * np.sin(0.05)  # the chord of a 4 mm arc
     assert report["spacing_mm"]["min"] == pytest.approx(between, abs=1e-4)
     assert report["spacing_mm"]["max"] == pytest.approx(between, abs=1e-4)
     layers = np.array([int(row["layer"]) for row in rows])
@@ -74,7 +74,7 @@ def test_the_page_is_one_file_that_parses(workshop):
         '<script type="application/json" id="path-facts">',
         '<script type="text/plain" id="path-columns">',
         "<script>",
-    ]  # the path: its figures, its columns, and what draws them
+    ]  # the path: its figures, its columns, and the code that draws them
     assert not re.search(r"(src|href)\s*=|@import|url\((?!#)", page)
     open_tags = []
 
@@ -100,9 +100,14 @@ def test_the_page_is_one_file_that_parses(workshop):
         "Comparison",
     ):
         assert word in page
-    told = re.sub(r"<script>.*</script>", "", page, flags=re.DOTALL)  # its code knows the word
+    page_text = re.sub(
+        r"<script>.*</script>", "", page, flags=re.DOTALL
+    )  # its code contains the word
     assert (
-        "NaN" not in told and "Infinity" not in told and ">nan" not in told and "inf<" not in told
+        "NaN" not in page_text
+        and "Infinity" not in page_text
+        and ">nan" not in page_text
+        and "inf<" not in page_text
     )
     report = json.loads(workshop.files()["report.json"])
     proved = report["joints"]["optimality"]
@@ -142,11 +147,11 @@ def test_the_document_holds_every_stage(workshop):
 def test_the_same_job_gives_the_same_bytes(workshop):
     assert workshop.launch("plan", "cup.yaml", "-o", "one", "--no-page").status == 0
     assert workshop.launch("plan", "cup.yaml", "-o", "two", "--no-page").status == 0
-    one, two = workshop.files("one"), workshop.files("two")
-    assert set(one) == set(two)
-    same = [name for name in one if name.startswith("program/") or name == "waypoints.csv"]
+    first_run, second_run = workshop.files("one"), workshop.files("two")
+    assert set(first_run) == set(second_run)
+    same = [name for name in first_run if name.startswith("program/") or name == "waypoints.csv"]
     assert len(same) >= 2
-    assert all(one[name] == two[name] for name in same)
+    assert all(first_run[name] == second_run[name] for name in same)
 
 
 @pytest.mark.any_version
@@ -179,9 +184,9 @@ def test_an_infeasible_job_writes_all_but_the_program(workshop):
     workshop.change(
         "  limits: paper", "  limits: paper\n  deposition_point: [9000, 0, 500, 0, 0, 0]"
     )
-    done = workshop.run("plan", "cup.yaml")
-    assert done.status == 3
-    assert re.search(r"^error\[[A-Z_]+\] layer 0 .*: ", done.err, re.MULTILINE)
+    command = workshop.run("plan", "cup.yaml")
+    assert command.status == 3
+    assert re.search(r"^error\[[A-Z_]+\] layer 0 .*: ", command.err, re.MULTILINE)
     assert set(workshop.files()) == {
         "cup.FCStd",
         "waypoints.csv",
@@ -204,8 +209,8 @@ def test_an_infeasible_job_writes_all_but_the_program(workshop):
 @pytest.mark.any_version
 def test_a_toolpath_that_cannot_be_deposited_is_reported_too(workshop):
     workshop.change("cell:\n", "build_direction: {tilt: 60 deg, max_tilt: 10 deg}\ncell:\n")
-    done = workshop.run("plan", "cup.yaml")
-    assert done.status == 3 and "error[" in done.err
+    command = workshop.run("plan", "cup.yaml")
+    assert command.status == 3 and "error[" in command.err
     assert set(workshop.files()) == {"cup.FCStd", "waypoints.csv", "report.json", "report.html"}
     rows, points = deposit(workshop.files()["waypoints.csv"].decode())
     np.testing.assert_allclose(np.linalg.norm(points, axis=1), 40.0, atol=1e-5)
@@ -231,8 +236,8 @@ def test_spaces_and_accents(workshop):
         )
     )
     folder = "mit Leerzeichen é"
-    done = workshop.launch("plan", workshop.job, "-o", workshop.folder / folder, "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.launch("plan", workshop.job, "-o", workshop.folder / folder, "--no-page")
+    assert command.status == 0, command.err
     assert "Käse Glocke n° 1.FCStd" in workshop.files(folder)
 
 
@@ -243,8 +248,8 @@ def test_through_a_link_and_from_elsewhere(workshop, tmp_path_factory):
     workshop.launcher = link
     job = workshop.folder / "cup.yaml"
     workshop.folder, home = tmp_path_factory.mktemp("elsewhere"), workshop.folder
-    done = workshop.launch("plan", job, "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.launch("plan", job, "--no-page")
+    assert command.status == 0, command.err
     assert (home / "out" / "cup" / "cup.FCStd").is_file()
 
 
@@ -304,22 +309,22 @@ def test_bad_input_is_status_2_and_writes_nothing(workshop, old, new, code, says
         (workshop.folder / name).write_bytes(bytes(range(256)) * 20)
     Part.makeBox(10, 20, 30).exportStep(str(workshop.folder / "box.step"))
     workshop.change(old, new)
-    done = workshop.run("plan", "cup.yaml")
-    assert done.status == 2, done.err
-    (line,) = done.err.splitlines()
+    command = workshop.run("plan", "cup.yaml")
+    assert command.status == 2, command.err
+    (line,) = command.err.splitlines()
     assert MESSAGE.fullmatch(line)
     assert line.startswith(f"error[{code}]" if code else "error[")
     assert says in line
-    assert done.out == ""
+    assert command.out == ""
     assert not (workshop.folder / "out").exists()
 
 
 @pytest.mark.parametrize("folder", ["taken", "taken/below", "/proc/none/below"])
 def test_a_folder_that_cannot_be_written(workshop, folder):
     (workshop.folder / "taken").write_text("a file, not a folder")
-    done = workshop.run("plan", "cup.yaml", "-o", folder)
-    assert done.status == 2
-    assert re.fullmatch(r"error\[UNWRITABLE\] \S*: .*choose another.*\n", done.err)
+    command = workshop.run("plan", "cup.yaml", "-o", folder)
+    assert command.status == 2
+    assert re.fullmatch(r"error\[UNWRITABLE\] \S*: .*choose another.*\n", command.err)
     assert (workshop.folder / "taken").read_text() == "a file, not a folder"
 
 
@@ -327,8 +332,8 @@ def test_a_folder_that_cannot_be_written(workshop, folder):
 def test_folders_in_the_place_of_files_leave_all_as_it_was(workshop):
     (workshop.folder / "out" / "cup" / "waypoints.csv").mkdir(parents=True)
     (workshop.folder / "out" / "cup" / "report.json").write_text("{}")
-    done = workshop.run("plan", "cup.yaml")
-    assert done.status == 2 and "error[UNWRITABLE]" in done.err
+    command = workshop.run("plan", "cup.yaml")
+    assert command.status == 2 and "error[UNWRITABLE]" in command.err
     assert set(workshop.files()) == {"report.json"}
 
 
@@ -352,33 +357,35 @@ def test_folders_in_the_place_of_files_leave_all_as_it_was(workshop):
     ],
 )
 def test_usage_errors(workshop, words, says):
-    done = (workshop.launch if words in ([], ["plan"]) else workshop.run)(*words)
-    assert done.status == 2
-    assert says in done.err
-    assert "Traceback" not in done.err
+    command = (workshop.launch if words in ([], ["plan"]) else workshop.run)(*words)
+    assert command.status == 2
+    assert says in command.err
+    assert "Traceback" not in command.err
 
 
 @pytest.mark.any_version
 def test_machines_lists_those_that_plan_accepts(workshop):
-    done = workshop.launch("machines")
-    assert done.status == 0 and done.err == ""
-    known = dict(line.split(None, 1) for line in done.out.splitlines())
+    command = workshop.launch("machines")
+    assert command.status == 0 and command.err == ""
+    listed = dict(line.split(None, 1) for line in command.out.splitlines())
     assert (
-        "FANUC" in known["fanuc-arcmate120ic"]
-        and "kuka-kr16-2" in known
-        and "staubli-rx60bl" in known
+        "FANUC" in listed["fanuc-arcmate120ic"]
+        and "kuka-kr16-2" in listed
+        and "staubli-rx60bl" in listed
     )
     folder = workshop.folder / "RoboticAM" / "machines"
     folder.mkdir(parents=True)
     from freecad_am.core.kinematics.machines import machine
 
-    own = json.loads((machine.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8"))
-    own.update(id="my-robot", title="My own robot")
-    (folder / "my-robot.json").write_text(json.dumps(own))
+    machine_data = json.loads(
+        (machine.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encoding="utf-8")
+    )
+    machine_data.update(id="my-robot", title="My own robot")
+    (folder / "my-robot.json").write_text(json.dumps(machine_data))
     assert "my-robot" in workshop.launch("machines").out
     workshop.change("limits: paper", "limits: paper\n  machine: my-robot")
-    done = workshop.launch("plan", "cup.yaml", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.launch("plan", "cup.yaml", "--no-page")
+    assert command.status == 0, command.err
     assert json.loads(workshop.files()["report.json"])["machine"]["id"] == "my-robot"
 
 
@@ -387,11 +394,11 @@ def test_progress_shows_on_a_terminal_and_is_gone_at_the_end(workshop):
     import os
     import pty
 
-    shown = []
+    chunks = []
 
     def read(descriptor):
-        shown.append(os.read(descriptor, 4096))
-        return shown[-1]
+        chunks.append(os.read(descriptor, 4096))
+        return chunks[-1]
 
     screen = os.open(os.devnull, os.O_WRONLY)
     keep = os.dup(1)
@@ -404,17 +411,17 @@ def test_progress_shows_on_a_terminal_and_is_gone_at_the_end(workshop):
         os.dup2(keep, 1)
         os.close(keep)
         os.close(screen)
-    text = b"".join(shown).decode()
+    text = b"".join(chunks).decode()
     assert os.waitstatus_to_exitcode(status) == 0
     assert "joint path" in text and "%" in text
-    last = text.rindex("page ...")
-    assert text[last:].startswith("page ...\r\x1b[K")
-    assert "\x1b" not in text[last + 12 :]
+    last_frame = text.rindex("page ...")
+    assert text[last_frame:].startswith("page ...\r\x1b[K")
+    assert "\x1b" not in text[last_frame + 12 :]
 
 
 @pytest.mark.any_version
 def test_a_large_job_is_told_before_its_work(workshop):
-    """670,000 points: the line is there while the work goes on, which is then interrupted."""
+    """With 670,000 points, the warning appears while the work runs; the test then interrupts it."""
     workshop.write_job(
         workshop.text.replace("4 mm", "0.1 mm").replace(
             "chord_error: 0.1 mm", "chord_error: 0.0001 mm"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What `report.html` draws of a predicted deposit, read from its pictures by their own scales, against `report.json`."""
+"""The drawings of a predicted deposit in `report.html`, read with their own scales, agree with
+`report.json`."""
 
 import html
 import json
@@ -36,7 +37,8 @@ def picture(page, title):
 
 
 def scales(text):
-    """What turns pixels across and down into values, from the numbers beside the picture and the lines they stand at."""
+    """Return functions that turn horizontal and vertical pixels into values, from the numbers next
+    to the picture and their tick positions."""
     ends = rf"M {NUMBER} {NUMBER} \nL {NUMBER} {NUMBER} \n"
     lines = re.findall(
         rf'<path d="{ends}"[^>]*--line[^>]*>\s*</g>\s*<g>\s*<text[^>]*>([^<]*)</text>', text
@@ -47,42 +49,48 @@ def scales(text):
     up = [
         (float(y), float(value.replace("\u2212", "-"))) for _, y, _, y1, value in lines if y == y1
     ]
-    found = []
+    axes = []
     for ticks in (across, up):
-        (first, low), (last, high) = ticks[0], ticks[-1]
-        assert len(ticks) >= 2 and first != last
-        per = (high - low) / (last - first)
-        found.append(
-            (lambda pixel, first=first, low=low, per=per: low + per * (pixel - first), abs(per))
+        (first_tick, low), (last_tick, high) = ticks[0], ticks[-1]
+        assert len(ticks) >= 2 and first_tick != last_tick
+        per = (high - low) / (last_tick - first_tick)
+        axes.append(
+            (
+                lambda pixel, first_tick=first_tick, low=low, per=per: (
+                    low + per * (pixel - first_tick)
+                ),
+                abs(per),
+            )
         )
-    return found
+    return axes
 
 
 def dots(text):
-    """Places and colours of the dots, and of the rings, which have no colour of their own."""
+    """Return positions and colours of the dots, and positions of the rings, which have no colour of
+    their own."""
     (x, per_x), (y, per_y) = scales(text)
-    assert per_x == pytest.approx(per_y, rel=0.02)  # one scale for both
+    assert per_x == pytest.approx(per_y, rel=0.02)  # the same scale for both
     uses = re.findall(rf'<use [^>]*x="{NUMBER}" y="{NUMBER}" style="([^"]*)"', text)
-    places = [(x(float(px)), y(float(py)), style) for px, py, style in uses]
+    positions = [(x(float(px)), y(float(py)), style) for px, py, style in uses]
     coloured = [
-        (px, py, found[1])
-        for px, py, style in places
-        if (found := re.search(r"fill: (#\w{6})", style))
+        (px, py, match[1])
+        for px, py, style in positions
+        if (match := re.search(r"fill: (#\w{6})", style))
     ]
-    rings = [(px, py) for px, py, style in places if "fill: #" not in style]
+    rings = [(px, py) for px, py, style in positions if "fill: #" not in style]
     return coloured, rings, PIXEL * per_x
 
 
 def key(page):
-    """The least and largest mm that each colour stands for, by the words below the maps."""
+    """Return the smallest and largest mm of each colour, from the legend below the maps."""
     text = page[page.index("Deposit beyond the faces, mm:") :]
-    found = {}
+    colour_ranges = {}
     for colour, words in re.findall(
         r'color:(#\w{6})">&#9632;</span> ([^&]*(?:&\w+;[^&]*)?)&ensp;', text
     ):
         words = html.unescape(words).strip()
         numbers = [float(value) for value in re.findall(NUMBER, words)]
-        found[colour] = (
+        colour_ranges[colour] = (
             (-math.inf, numbers[0])
             if words.startswith("<")
             else (numbers[0], math.inf)
@@ -91,51 +99,56 @@ def key(page):
             if "±" in words
             else tuple(sorted(numbers))
         )
-    return found
+    return colour_ranges
 
 
 def test_the_maps_show_the_faces_to_scale_with_the_worst_places_by_name(made):
     report, page = made
     ranges = key(page)
     assert len(ranges) == 7
-    named = {one["name"]: one for one in report["worst_places"]}
+    named = {worst_place["name"]: worst_place for worst_place in report["worst_places"]}
     assert list(named) == list("ABCDE")
     seen_from = {
         "Seen from the front": lambda x, y, z: (x, z * COS + y * SIN),
         "Seen from behind": lambda x, y, z: (-x, z * COS - y * SIN),
     }
     colours = set()
-    for title, shown in seen_from.items():
+    for title, project in seen_from.items():
         text = picture(page, title)
-        coloured, rings, near = dots(text)
+        coloured, rings, labels = dots(text)
         corners = np.array(
-            [shown(x, y, z) for x in (0.0, SIZE[0]) for y in (0.0, SIZE[1]) for z in (0.0, SIZE[2])]
+            [
+                project(x, y, z)
+                for x in (0.0, SIZE[0])
+                for y in (0.0, SIZE[1])
+                for z in (0.0, SIZE[2])
+            ]
         )
-        for axis in (0, 1):  # all of the block, and nothing beside it
+        for axis in (0, 1):  # the whole block, and nothing outside
             values = [dot[axis] for dot in coloured]
             assert (
-                min(values) >= corners[:, axis].min() - near
-                and max(values) <= corners[:, axis].max() + near
+                min(values) >= corners[:, axis].min() - labels
+                and max(values) <= corners[:, axis].max() + labels
             )
             assert np.ptp(values) > 0.96 * np.ptp(corners[:, axis])
         assert len(coloured) > 1000
         assert re.findall(r">([A-E])</text>", text) == list(
             named
-        )  # all lie on the top, which both show
+        )  # all are on the top, which both views show
         assert len(rings) == len(named)
-        for one, ring in zip(named.values(), rings, strict=True):
-            place = shown(*one["place"])
-            assert math.dist(ring, place) < near
-            colour = min(coloured, key=lambda dot, at=place: math.dist(dot[:2], at))[2]
+        for worst_place, ring in zip(named.values(), rings, strict=True):
+            point = project(*worst_place["place"])
+            assert math.dist(ring, point) < labels
+            colour = min(coloured, key=lambda dot, target=point: math.dist(dot[:2], target))[2]
             low, high = ranges[colour]
-            assert low <= one["beyond_mm"] <= high
+            assert low <= worst_place["beyond_mm"] <= high
         colours |= {dot[2] for dot in coloured}
     spread = report["spread"]
     ends = zip(spread["edges_mm"], spread["edges_mm"][1:], spread["area_share"], strict=False)
     filled = [(low, high) for low, high, share in ends if share]
-    for colour, (low, high) in ranges.items():  # a colour is there where the spread has deviations
-        there = any(start >= low and end <= high for start, end in filled)
-        assert not there or colour in colours
+    for colour, (low, high) in ranges.items():  # a colour appears where the spread has deviations
+        has_spread = any(start >= low and end <= high for start, end in filled)
+        assert not has_spread or colour in colours
 
 
 def test_the_worst_places_are_apart_and_the_least_is_the_worst(made):
@@ -146,25 +159,30 @@ def test_the_worst_places_are_apart_and_the_least_is_the_worst(made):
         and rows[0]["beyond_mm"] == report["beyond_mm"]["min"]
     )
     assert all(rows[0][word] == report["worst"][word] for word in ("layer", "bead", "point"))
-    assert [one["beyond_mm"] for one in rows] == sorted(one["beyond_mm"] for one in rows)
-    least = 0.1 * math.hypot(*SIZE)
-    assert all(
-        math.dist(one["place"], other["place"]) > 0.99 * least
-        for one in rows
-        for other in rows
-        if one is not other
+    assert [worst_place["beyond_mm"] for worst_place in rows] == sorted(
+        worst_place["beyond_mm"] for worst_place in rows
     )
-    for one in rows:  # on a face of the block
+    min_distance = 0.1 * math.hypot(*SIZE)
+    assert all(
+        math.dist(worst_place["place"], second_place["place"]) > 0.99 * min_distance
+        for worst_place in rows
+        for second_place in rows
+        if worst_place is not second_place
+    )
+    for worst_place in rows:  # on a face of the block
         assert any(
             min(abs(value), abs(value - size)) < 1e-6
-            for value, size in zip(one["place"], SIZE, strict=True)
+            for value, size in zip(worst_place["place"], SIZE, strict=True)
         )
         row = re.search(
-            rf'<tr><td>{one["name"]}</td><td>{NUMBER} mm</td>.*?<button data-row="(\d+)">([^<]*)</button>',
+            rf'<tr><td>{worst_place["name"]}</td><td>{NUMBER} mm</td>.*?<button data-row="(\d+)">([^<]*)</button>',
             page,
         )
-        assert float(row[1]) == pytest.approx(one["beyond_mm"], abs=6e-4)
-        assert row[3] == f"layer {one['layer']} bead {one['bead']} point {one['point']}"
+        assert float(row[1]) == pytest.approx(worst_place["beyond_mm"], abs=6e-4)
+        assert (
+            row[3]
+            == f"layer {worst_place['layer']} bead {worst_place['bead']} point {worst_place['point']}"
+        )
 
 
 def test_the_histogram_is_the_spread_of_the_report(made):
@@ -176,9 +194,9 @@ def test_the_histogram_is_the_spread_of_the_report(made):
         abs(0.5 * (edges[1:] + edges[:-1]) @ shares - report["beyond_mm"]["mean"])
         < edges[1] - edges[0]
     )
-    known = 0.25 * report["cube_mm"]  # less is not told
+    smallest_reported = 0.25 * report["cube_mm"]  # smaller values are not reported
     assert (
-        shares[edges[1:] <= -known].sum()
+        shares[edges[1:] <= -smallest_reported].sum()
         <= report["outside"] + 1e-9
         <= shares[edges[:-1] < 0.0].sum() + 1e-9
     )
@@ -216,8 +234,8 @@ def test_layers_are_drawn_as_the_report_has_them(made):
                 for px, py in re.findall(rf"[ML] {NUMBER} {NUMBER}", path)
             ]
         )
-        wanted = np.array([(row["layer"], row["beyond_mm"][name]) for row in report["layers"]])
-        for point in wanted:  # on the curve, whose straight pieces are put together
+        expected = np.array([(row["layer"], row["beyond_mm"][name]) for row in report["layers"]])
+        for point in expected:  # on the curve, joined from its straight segments
             on = np.interp(point[0], points[:, 0], points[:, 1])
             assert on == pytest.approx(point[1], abs=2.0 * PIXEL * per_y + 0.02)
     assert min(row["beyond_mm"]["min"] for row in report["layers"]) == report["beyond_mm"]["min"]

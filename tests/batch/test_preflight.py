@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The preflight of a report: its figures against the waypoints and the machine file, computed here alone."""
+"""The figures in the preflight of a report agree with the waypoints and the machine file, computed
+here independently."""
 
 import csv
 import io
@@ -19,9 +20,10 @@ TEXT, NOZZLE = (
 
 
 def planned(workshop, text=None, page=False):
-    """Exit status, report and the rows of waypoints.csv of the job, or of a text of it."""
+    """Return exit status, report and the rows of waypoints.csv of the job, or of a changed text of
+    it."""
     workshop.write_job(text or workshop.text)
-    ended = workshop.run("plan", workshop.job, *(() if page else ("--no-page",)))
+    command = workshop.run("plan", workshop.job, *(() if page else ("--no-page",)))
     files = workshop.files()
     report = json.loads(files["report.json"])
     rows = list(csv.DictReader(io.StringIO(files["waypoints.csv"].decode())))
@@ -29,7 +31,7 @@ def planned(workshop, text=None, page=False):
     assert len(promises) == len(report["preflight"])
     keys = {"promise", "how", "worst", "unit", "bound", "at_least", "place", "ok"}
     assert all(set(entry) == keys for entry in promises.values())
-    return ended.status, promises, rows, files
+    return command.status, promises, rows, files
 
 
 def joints(rows):
@@ -39,7 +41,7 @@ def joints(rows):
 def test_the_figures_are_those_of_the_waypoints(workshop, root):
     status, promises, rows, files = planned(workshop, page=True)
     assert status == 0
-    # a ball of solid material is laid as a skin, and nothing else is wrong with it
+    # a solid ball is printed as a skin, and nothing else is wrong with it
     broken = [name for name, entry in promises.items() if entry["ok"] is False]
     assert broken == ["The whole part is deposited"]
     assert (
@@ -47,8 +49,8 @@ def test_the_figures_are_those_of_the_waypoints(workshop, root):
         and promises[NOZZLE]["worst"] == 0.0
         and "platform" in promises[NOZZLE]["how"]
     )
-    whole = 2.0 / 3.0 * np.pi * 4.0**3
-    assert 0.4 * whole < promises["The whole part is deposited"]["worst"] < 0.6 * whole
+    ball_volume = 2.0 / 3.0 * np.pi * 4.0**3
+    assert 0.4 * ball_volume < promises["The whole part is deposited"]["worst"] < 0.6 * ball_volume
     assert promises["The deposit lies on the part"]["ok"] is True
     assert promises["Every bead is supported from below"]["worst"] == 0.0
     rapids = promises["The nozzle stays clear on rapids"]
@@ -59,7 +61,7 @@ def test_the_figures_are_those_of_the_waypoints(workshop, root):
     )
     values = joints(rows)
     worst = promises[LIMITS]
-    # the least distance of any row to any limit, rapids included
+    # the smallest distance of any row to any limit, rapids included
     machine = json.loads((root / "freecad_am/machines/fanuc-arcmate120ic.json").read_text())
     low, high = limits_of(machine, "paper")
     margin = np.minimum(values - low, high - values)
@@ -69,13 +71,13 @@ def test_the_figures_are_those_of_the_waypoints(workshop, root):
     )
     row = rows[int(np.nanargmin(np.where(np.isfinite(margin), margin, np.nan)) // 6)]
     assert {key: int(row[key]) for key in ("layer", "bead", "point")} == worst["place"]
-    # the text is nowhere farther from the plan than its digits explain
+    # the text deviates from the plan by no more than its rounding
     assert (
         promises[TEXT]["ok"] is True
         and 0.0 < promises[TEXT]["worst"] <= promises[TEXT]["bound"] < 0.1
     )
     assert "PyKDL" in promises[TEXT]["how"]
-    # nothing green stands for what nobody has looked at
+    # no unchecked promise is green
     unchecked = [entry for entry in promises.values() if entry["ok"] is None]
     assert any("UFRAME" in entry["promise"] for entry in unchecked)
     assert all(entry["how"].startswith("not checked") for entry in unchecked)
@@ -88,7 +90,8 @@ def test_the_figures_are_those_of_the_waypoints(workshop, root):
 
 
 def limits_of(machine, name):
-    """(6,) lower and upper limits of a set, deg; infinite for none. Coupled ones are left out."""
+    """Return the lower and upper limits (6,) of a set in deg, infinite where there is none. Coupled
+    limits are left out."""
     pairs = [
         (-np.inf, np.inf) if pair is None else pair for pair in machine["limits"][name]["axes"]
     ]
@@ -103,9 +106,10 @@ def test_what_was_not_looked_at_is_never_green(workshop):
 
 
 def test_a_job_without_a_cell_promises_nothing_of_joints(workshop):
-    head, _, rest = workshop.text.partition("cell:\n")
+    head, _, cell_and_more = workshop.text.partition("cell:\n")
     status, promises, _, _ = planned(
-        workshop, head + rest[rest.index("process:") : rest.index("program:")]
+        workshop,
+        head + cell_and_more[cell_and_more.index("process:") : cell_and_more.index("program:")],
     )
     assert status == 0
     assert (
@@ -140,6 +144,6 @@ def test_a_job_that_cannot_be_done_says_which_promise_is_broken(workshop, change
     assert status == 3
     assert {name for name, entry in promises.items() if entry["ok"] is False} >= broken
     for name in broken:
-        place = promises[name]["place"]
-        assert any(all(int(row[key]) == place[key] for key in place) for row in rows)
+        location = promises[name]["place"]
+        assert any(all(int(row[key]) == location[key] for key in location) for row in rows)
     assert promises[TEXT]["ok"] is None

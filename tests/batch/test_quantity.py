@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Quantities mean what they mean in FreeCAD."""
+"""Quantities have the same meaning as in FreeCAD."""
 
 import math
 import random
@@ -19,7 +19,7 @@ def outer(kind, value):
 
 
 def texts(seed, count):
-    """Random quantities of every form that a user may write, right and wrong."""
+    """Yield random quantities of every form that a user may write, valid and invalid."""
     random_ = random.Random(seed)
     units = [unit for unit in quantities.UNITS if unit not in ("\u03bcm", "ms")] + [
         "foo",

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The page in a browser: the path is drawn, turned, read by a click and stepped through, and places of the preflight lead to
-it. Needs Chromium, which nothing else does."""
+"""The page in a browser draws the path, turns it, reads it by a click and steps through it; links
+of the preflight lead to its points. Only this test needs Chromium."""
 
 import base64
 import csv
@@ -37,25 +37,28 @@ def page(tmp_path_factory, root):
         assert opened.errors == []
 
 
-def told(page):
+def read_out(page):
     return page.run("document.querySelector('#path .told').textContent")
 
 
-def agrees(page, row):
-    """What is told of the point shown is that row of the waypoints."""
-    words, expected = told(page), page.rows[row]
-    place = f"layer {expected['layer']} bead {expected['bead']}"
+def assert_read_out(page, row):
+    """Assert that the read-out of the shown point is that row of the waypoints."""
+    words, expected = read_out(page), page.rows[row]
+    location = f"layer {expected['layer']} bead {expected['bead']}"
     assert words.startswith(
-        f"{place} point {expected['point']}" if expected["kind"] == "deposit" else f"{place}, rapid"
+        f"{location} point {expected['point']}"
+        if expected["kind"] == "deposit"
+        else f"{location}, rapid"
     )
-    at = [float(text) for text in re.search(r"x y z (\S+) (\S+) (\S+) mm", words).groups()]
+    coordinates = [float(text) for text in re.search(r"x y z (\S+) (\S+) (\S+) mm", words).groups()]
     assert all(
-        abs(float(expected[key]) - value) < 0.02 for key, value in zip(("x_mm", "y_mm", "z_mm"), at)
+        abs(float(expected[key]) - value) < 0.02
+        for key, value in zip(("x_mm", "y_mm", "z_mm"), coordinates)
     )
 
 
 def picture(page):
-    """(h, w, 3) the canvas as it is seen."""
+    """Return the canvas as pixels (h, w, 3)."""
     from PIL import Image
 
     page.run("document.getElementById('path').scrollIntoView()")
@@ -84,10 +87,10 @@ def test_the_path_takes_the_place_of_the_picture_and_is_drawn_in_the_colours_of_
     assert page.run(
         "['path', 'path-still'].map((name) => document.getElementById(name).hidden)"
     ) == [False, True]
-    seen = picture(page).reshape(-1, 3)
-    paper = seen[0]
-    drawn = seen[np.abs(seen - paper).max(axis=1) > 20.0]
-    assert 0.05 < len(drawn) / len(seen) < 0.8
+    pixels = picture(page).reshape(-1, 3)
+    paper = pixels[0]
+    drawn = pixels[np.abs(pixels - paper).max(axis=1) > 20.0]
+    assert 0.05 < len(drawn) / len(pixels) < 0.8
     for low, high in (
         ((0, 0, 40), (90, 60, 140)),
         ((0, 60, 50), (60, 180, 160)),
@@ -105,24 +108,24 @@ def test_a_place_of_the_preflight_leads_to_its_row(page):
     assert len(rows) >= 3
     for number, row in enumerate(rows):
         page.run(f"document.querySelectorAll('td button[data-row]')[{number}].click()")
-        agrees(page, row)
+        assert_read_out(page, row)
 
 
 def test_it_is_stepped_through_layer_by_layer_and_point_by_point(page):
     page.run("document.querySelector('[name=whole]').click()")
-    agrees(page, len(page.rows) - 1)
+    assert_read_out(page, len(page.rows) - 1)
     for _ in range(3):
         page.run("document.querySelector('[name=back]').click()")
-    agrees(page, len(page.rows) - 4)
+    assert_read_out(page, len(page.rows) - 4)
     page.run(
         "(() => { const to = document.querySelector('[name=to]'); to.value = 2;"
         " to.dispatchEvent(new Event('input')); })()"
     )
-    last = max(at for at, row in enumerate(page.rows) if row["layer"] == "2")
-    agrees(page, last)
-    fewer = picture(page)
+    last_row = max(index for index, row in enumerate(page.rows) if row["layer"] == "2")
+    assert_read_out(page, last_row)
+    partial_picture = picture(page)
     page.run("document.querySelector('[name=whole]').click()")
-    assert np.abs(picture(page) - fewer).max(axis=2).mean() > 2.0
+    assert np.abs(picture(page) - partial_picture).max(axis=2).mean() > 2.0
 
 
 def test_a_click_reads_the_bead_that_is_there(page):
@@ -135,11 +138,16 @@ def test_a_click_reads_the_bead_that_is_there(page):
     for kind in ("mousePressed", "mouseReleased"):
         page.mouse(kind, x + right, y - up, button="left", clickCount=1)
     row = page.run("window.pathViewer.look.row")
-    near = np.array(
-        [[float(one[key]) for key in ("x_mm", "y_mm")] for one in (page.rows[row], page.rows[200])]
+    positions = np.array(
+        [
+            [float(waypoint[key]) for key in ("x_mm", "y_mm")]
+            for waypoint in (page.rows[row], page.rows[200])
+        ]
     )
-    assert np.linalg.norm(near[0] - near[1]) < 2.0  # seen from above, within a few pixels
-    agrees(page, row)
+    assert (
+        np.linalg.norm(positions[0] - positions[1]) < 2.0
+    )  # in the view from above, within a few pixels
+    assert_read_out(page, row)
 
 
 def test_it_turns_with_the_mouse_and_the_wheel_is_its_own_only_after_a_click(page):
@@ -165,7 +173,7 @@ def test_every_colour_and_option_is_drawn(page):
     page.run(
         "document.querySelector('[name=reset]').click(); document.querySelector('[name=whole]').click()"
     )
-    before = picture(page)
+    previous_picture = picture(page)
     for number in range(1, page.run("window.pathViewer.path.columns.length")):
         page.run(
             f"(() => {{ const c = document.querySelector('[name=colour]'); c.value = {number};"
@@ -173,14 +181,14 @@ def test_every_colour_and_option_is_drawn(page):
         )
         assert page.run("document.querySelector('#path .most').textContent") != ""
         now = picture(page)
-        assert np.abs(now - before).max() > 20.0
+        assert np.abs(now - previous_picture).max() > 20.0
     for name in ("rapids", "directions"):
-        before = picture(page)
+        previous_picture = picture(page)
         page.run(f"document.querySelector('[name={name}]').click()")
-        assert (np.abs(picture(page) - before).max(axis=2) > 20.0).sum() > 30
+        assert (np.abs(picture(page) - previous_picture).max(axis=2) > 20.0).sum() > 30
 
 
-MANY = 100_000  # rows
+ROW_COUNT = 100_000  # rows
 TIMED = """(() => { const drawing = window.pathViewer.drawing, own = drawing.draw.bind(drawing), pixel = new Uint8Array(4);
   const done = () => drawing.gl.readPixels(0, 0, 1, 1, drawing.gl.RGBA, drawing.gl.UNSIGNED_BYTE, pixel);
   window.frames_ = [];
@@ -189,13 +197,14 @@ TIMED = """(() => { const drawing = window.pathViewer.drawing, own = drawing.dra
 
 
 def frames(page):
-    """ms that each frame since the last time took, until it was there, and whether it was one of a path that moves."""
+    """Return the duration in ms of each frame since the last call, and whether it drew a moving
+    path."""
     return np.array(page.run("window.frames_.splice(0)"), float).reshape(-1, 2)
 
 
 def test_a_path_of_a_hundred_thousand_rows_is_turned_and_stepped_through(tmp_path, root):
-    """Where a processor draws all of it: no frame of a path that moves draws everything, and each takes less than a fifth of
-    what that takes, which is drawn once the path rests."""
+    """The processor draws every frame. No frame of a moving path draws everything; each takes less
+    than a fifth of the time of the full drawing, which follows when the path rests."""
     make_cup(tmp_path)
     shop = Workshop(tmp_path, root / "freecad-am")
     shop.write_job(
@@ -205,20 +214,20 @@ def test_a_path_of_a_hundred_thousand_rows_is_turned_and_stepped_through(tmp_pat
     )
     assert shop.run("plan", "cup.yaml").status == 0
     with browser.Browser(tmp_path / "out" / "cup" / "report.html", tmp_path / "profile") as page:
-        assert page.run("window.pathViewer.path.rows") >= MANY
+        assert page.run("window.pathViewer.path.rows") >= ROW_COUNT
         x, y = middle(page)
         page.run(RESTED)
         page.run(TIMED)
         page.run("window.pathViewer.redraw()")
         page.run("new Promise((done) => setTimeout(done, 3000))")
-        (whole, moving), *_ = frames(page)
+        (full_time, moving), *_ = frames(page)
         assert not moving
         page.mouse("mousePressed", x, y, button="left", clickCount=1)
         for step in range(1, 41):
             page.mouse("mouseMoved", x + 3 * step, y, button="left", buttons=1)
         turning = frames(page)
         page.run("new Promise((done) => setTimeout(done, 1000))")
-        assert frames(page)[:, 1].all()  # as long as it is held
+        assert frames(page)[:, 1].all()  # while the button is down
         page.mouse("mouseReleased", x + 120, y, button="left", clickCount=1)
         page.run("new Promise((done) => setTimeout(done, 3000))")
         rested = frames(page)
@@ -245,16 +254,16 @@ def test_a_path_of_a_hundred_thousand_rows_is_turned_and_stepped_through(tmp_pat
         playing = frames(page)
         assert len(playing) > 10 and playing[:, 1].all()
         took = {
-            name: np.median(some[:, 0])
-            for name, some in (
+            name: np.median(durations[:, 0])
+            for name, durations in (
                 ("turning", turning),
                 ("stepping", stepping[stepping[:, 1] == 1.0]),
                 ("playing", playing),
             )
         }
         print(
-            f"all of it {whole:.0f} ms; "
+            f"all of it {full_time:.0f} ms; "
             + ", ".join(f"{name} {ms:.0f} ms a frame" for name, ms in took.items())
         )
-        assert all(ms < 0.2 * whole for ms in took.values()), (whole, took)
+        assert all(ms < 0.2 * full_time for ms in took.values()), (full_time, took)
         assert page.errors == []

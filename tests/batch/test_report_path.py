@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The path in the page: its bytes, read by themselves, are the rows of waypoints.csv; nothing is fetched, and no other
-script may run."""
+"""The bytes of the path in the page, decoded independently, are the rows of waypoints.csv. The page
+loads nothing, and no other script may run in it."""
 
 import base64
 import csv
@@ -20,7 +20,7 @@ FORMATS = {"u1": "B", "u2": "H", "i2": "h", "u4": "I", "f4": "f"}
 
 
 class Page:
-    """What a browser would read, by patterns of its own."""
+    """Read the page as a browser would, with patterns of this file."""
 
     def __init__(self, text):
         self.text = text
@@ -29,19 +29,19 @@ class Page:
         self.bytes = base64.b64decode(self._of('id="path-columns"'), validate=True)
 
     def _of(self, mark):
-        (found,) = (text for attributes, text in self.scripts if mark in attributes)
-        return found
+        (script,) = (text for attributes, text in self.scripts if mark in attributes)
+        return script
 
-    def column(self, place):
+    def column(self, index):
         return struct.unpack_from(
-            f"<{place['count']}{FORMATS[place['kind']]}", self.bytes, place["at"]
+            f"<{index['count']}{FORMATS[index['kind']]}", self.bytes, index["at"]
         )
 
-    def values(self, one):
-        span = (one["high"] - one["low"]) / 65534
+    def values(self, column_facts):
+        span = (column_facts["high"] - column_facts["low"]) / 65534
         return [
-            math.nan if value == 65535 else one["low"] + span * value
-            for value in self.column(one["values"])
+            math.nan if value == 65535 else column_facts["low"] + span * value
+            for value in self.column(column_facts["values"])
         ]
 
     def positions(self):
@@ -49,9 +49,9 @@ class Page:
         return [
             [
                 low + self.facts["step"] * value
-                for low, value in zip(self.facts["low"], flat[at : at + 3])
+                for low, value in zip(self.facts["low"], flat[offset : offset + 3])
             ]
-            for at in range(0, len(flat), 3)
+            for offset in range(0, len(flat), 3)
         ]
 
 
@@ -73,33 +73,35 @@ def test_its_bytes_are_the_waypoints(planned):
     assert facts["rows"] == len(rows) > 500
     size = max(max(abs(float(row[key])) for row in rows) for key in ("x_mm", "y_mm", "z_mm"))
     assert facts["step"] < 3.0 * size / 65000
-    for row, place in zip(rows, page.positions(), strict=True):
+    for row, position in zip(rows, page.positions(), strict=True):
         assert all(
             abs(float(row[key]) - value) <= 0.51 * facts["step"] + 1e-6
-            for key, value in zip(("x_mm", "y_mm", "z_mm"), place)
+            for key, value in zip(("x_mm", "y_mm", "z_mm"), position)
         )
     for key, name in (("build", "b"), ("tool", "t")):
         flat = page.column(facts[key])
-        for at, row in enumerate(rows):
+        for index, row in enumerate(rows):
             assert all(
                 abs(float(row[f"{name}{axis}"]) - value / 32767) < 2e-5
-                for axis, value in zip("xyz", flat[3 * at : 3 * at + 3])
+                for axis, value in zip("xyz", flat[3 * index : 3 * index + 3])
             )
     laid = [row["kind"] == "deposit" and row["point"] != "0" for row in rows]
     assert laid == [bool(value) for value in page.column(facts["laid"])]
     assert [int(row["point"]) for row in rows] == list(page.column(facts["point"]))
-    assert [one["name"] for one in facts["axes"]] == report["machine"]["labels"]
+    assert [axis_facts["name"] for axis_facts in facts["axes"]] == report["machine"]["labels"]
     for number, axis in enumerate(facts["axes"], 1):
-        near = (axis["high"] - axis["low"]) / 65534 + 1e-6
+        resolution = (axis["high"] - axis["low"]) / 65534 + 1e-6
         assert all(
-            abs(float(row[f"q{number}_deg"]) - value) <= near
+            abs(float(row[f"q{number}_deg"]) - value) <= resolution
             for row, value in zip(rows, page.values(axis), strict=True)
         )
-    speed = next(one for one in facts["columns"] if one["name"] == "speed")
-    told = {round(value, 3) for value, on in zip(page.values(speed), laid) if on}
+    speed = next(
+        column_facts for column_facts in facts["columns"] if column_facts["name"] == "speed"
+    )
+    speeds = {round(value, 3) for value, on in zip(page.values(speed), laid) if on}
     assert (
-        told == {6.0} and speed["least"] == speed["most"] == 6.0 < speed["high"]
-    )  # rapids are faster, and have no colour
+        speeds == {6.0} and speed["least"] == speed["most"] == 6.0 < speed["high"]
+    )  # rapids are faster and have no colour
     times = page.column(facts["time"])
     assert list(times) == sorted(times) and times[-1] == pytest.approx(
         report["totals"]["time_s"], rel=1e-3
@@ -107,13 +109,13 @@ def test_its_bytes_are_the_waypoints(planned):
 
 
 def test_a_row_takes_few_bytes_and_no_word_of_its_own(planned):
-    """So that a page of 1e5 rows is of some 8 MB, and one that a browser reads at once: three numbers of 2 bytes for its
-    place and each direction, one for every value that may colour it and every axis."""
+    """A page of 1e5 rows has some 8 MB, which a browser can load at once: three numbers of 2 bytes
+    for each position and direction, one for every value that may colour it and every axis."""
     page, rows, _ = planned
     facts = page.facts
     a_row = 3 * 3 * 2 + 1 + 4 + 4 + 2 * (len(facts["columns"]) + len(facts["axes"]))
     bodies = sum(
-        4 * one[key]["count"] for one in facts["bodies"] for key in ("vertices", "triangles")
+        4 * body[key]["count"] for body in facts["bodies"] for key in ("vertices", "triangles")
     )
     assert (
         a_row * len(rows) <= len(page.bytes) - bodies <= a_row * len(rows) + 3 * 40 and a_row <= 60
@@ -121,34 +123,36 @@ def test_a_row_takes_few_bytes_and_no_word_of_its_own(planned):
     of_page = len(page.text) - len(
         page.text[page.text.index('id="path-columns"') :].split("</script>")[0]
     )
-    assert of_page < 400_000  # the rest is no longer for more rows
+    assert of_page < 400_000  # the rest of the page does not grow with the rows
 
 
 def test_its_stretches_are_those_of_the_rows(planned):
     page, rows, _ = planned
-    expected, before = [], None
-    for at, row in enumerate(rows):
+    expected, previous = [], None
+    for index, row in enumerate(rows):
         key = (int(row["layer"]), int(row["bead"]), row["kind"] == "deposit")
-        if key != before:
-            expected.append([key[0], key[1], at, int(key[2])])
-        before = key
+        if key != previous:
+            expected.append([key[0], key[1], index, int(key[2])])
+        previous = key
     assert page.facts["blocks"] == expected
 
 
 def test_places_of_findings_and_promises_lead_to_their_rows(planned):
     page, rows, report = planned
-    told = re.findall(
+    links = re.findall(
         r'<button data-row="(\d+)">layer (\d+)(?: bead (\d+))?(?: point (\d+))?</button>', page.text
     )
-    places = [one["place"] for one in report["preflight"] if one["place"]] + [
-        one for one in report["issues"] if one["layer"] is not None
+    locations = [entry["place"] for entry in report["preflight"] if entry["place"]] + [
+        issue for issue in report["issues"] if issue["layer"] is not None
     ]
-    assert len(told) == len(places) >= 3
-    for row, *place in told:
-        found = rows[int(row)]
-        assert found["kind"] == "deposit"
-        said = [(key, value) for key, value in zip(("layer", "bead", "point"), place) if value]
-        assert [(key, found[key]) for key, _ in said] == said
+    assert len(links) == len(locations) >= 3
+    for row, *location in links:
+        waypoint = rows[int(row)]
+        assert waypoint["kind"] == "deposit"
+        expected = [
+            (key, value) for key, value in zip(("layer", "bead", "point"), location) if value
+        ]
+        assert [(key, waypoint[key]) for key, _ in expected] == expected
 
 
 def test_nothing_is_fetched_and_no_other_script_runs(planned):
@@ -173,7 +177,7 @@ def test_a_page_of_a_path_alone_has_it_too(workshop):
     assert workshop.run("plan", "cup.yaml").status == 0
     page = Page(workshop.files()["report.html"].decode())
     assert page.facts["axes"] == [] and {"layer", "speed", "tilt"} == {
-        one["name"] for one in page.facts["columns"]
+        column_facts["name"] for column_facts in page.facts["columns"]
     }
 
 
@@ -181,32 +185,35 @@ def test_of_longer_motions_every_so_many_th_row_is_shown_with_the_ends_of_beads(
     planned, monkeypatch, random_motion
 ):
     motion = random_motion
-    for most in (len(motion), len(motion) // 3, 40):
-        monkeypatch.setattr(columns, "MOST_ROWS", most)
+    for max_rows in (len(motion), len(motion) // 3, 40):
+        monkeypatch.setattr(columns, "MOST_ROWS", max_rows)
         rows = columns._thinned(motion)
         starts = [
-            at
-            for at in range(len(motion))
-            if at == 0
+            row
+            for row in range(len(motion))
+            if row == 0
             or any(
-                column[at] != column[at - 1]
+                column[row] != column[row - 1]
                 for column in (motion.deposit, motion.layer, motion.bead)
             )
         ]
-        ends = [*(at - 1 for at in starts[1:]), len(motion) - 1]
+        ends = [*(start - 1 for start in starts[1:]), len(motion) - 1]
         assert (
             set(starts) <= set(rows)
             and set(ends) <= set(rows)
-            and len(rows) <= most + 2 * len(starts)
+            and len(rows) <= max_rows + 2 * len(starts)
         )
-        shown = columns.Shown(motion, rows, np.zeros(len(rows)), [], [])
-        for at in range(0, len(motion), 7):
-            if motion.deposit[at]:
-                row = shown.row_of(
-                    int(motion.layer[at]), int(motion.bead[at]), int(motion.point[at])
+        columns_shown = columns.Shown(motion, rows, np.zeros(len(rows)), [], [])
+        for number in range(0, len(motion), 7):
+            if motion.deposit[number]:
+                row = columns_shown.row_of(
+                    int(motion.layer[number]), int(motion.bead[number]), int(motion.point[number])
                 )
-                assert rows[row] <= at and (row + 1 == len(rows) or rows[row + 1] > at)
-        assert shown.row_of(10_000, 0, 0) is None and shown.row_of(None, None, None) is None
+                assert rows[row] <= number and (row + 1 == len(rows) or rows[row + 1] > number)
+        assert (
+            columns_shown.row_of(10_000, 0, 0) is None
+            and columns_shown.row_of(None, None, None) is None
+        )
 
 
 @pytest.fixture
@@ -216,12 +223,12 @@ def random_motion():
     random = np.random.default_rng(8)
     deposit, layer, bead, point = [], [], [], []
     for number in range(12):
-        for part in range(int(random.integers(1, 4))):
+        for block in range(int(random.integers(1, 4))):
             count = int(random.integers(2, 60))
             for laid, length in ((False, 3), (True, count)):
                 deposit += [laid] * length
                 layer += [number] * length
-                bead += [part] * length
+                bead += [block] * length
                 point += list(range(length)) if laid else [0] * length
     n = len(deposit)
     up = np.tile([0.0, 0.0, 1.0], (n, 1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The pictures of the report: there, of the values of the job; and a report with a note where matplotlib is missing."""
+"""The report has pictures of the job's values, and a note instead if matplotlib is missing."""
 
 import json
 import os
@@ -21,8 +21,10 @@ TITLES = (
 
 
 def pictures(page):
-    found = [ElementTree.fromstring(text) for text in re.findall(r"<svg.*?</svg>", page, re.DOTALL)]
-    return {picture.get("aria-label"): picture for picture in found}
+    drawings = [
+        ElementTree.fromstring(text) for text in re.findall(r"<svg.*?</svg>", page, re.DOTALL)
+    ]
+    return {picture.get("aria-label"): picture for picture in drawings}
 
 
 def test_the_report_has_them(workshop):
@@ -30,18 +32,19 @@ def test_the_report_has_them(workshop):
     assert workshop.launch("plan", "cup.yaml").status == 0
     files = workshop.files()
     page = files["report.html"].decode()
-    found = pictures(page)
-    assert set(TITLES) <= set(found) and len(found) >= 14 and "matplotlib" not in page
+    drawings = pictures(page)
+    assert set(TITLES) <= set(drawings) and len(drawings) >= 14 and "matplotlib" not in page
     texts = {
         title: [node.text for node in picture.iter() if node.tag.endswith("text")]
-        for title, picture in found.items()
+        for title, picture in drawings.items()
     }
     assert "limits -185 to 185 deg" in texts["q1"]
     assert "layer 0" in texts["q1"] and json.loads(files["report.json"])["counts"]["layers"] > 5
     assert workshop.launch("plan", "cup.yaml", "-o", "again").status == 0
     again = pictures(workshop.files("again")["report.html"].decode())
     assert all(
-        ElementTree.tostring(again[title]) == ElementTree.tostring(found[title]) for title in TITLES
+        ElementTree.tostring(again[title]) == ElementTree.tostring(drawings[title])
+        for title in TITLES
     )
 
 
@@ -54,8 +57,8 @@ def test_without_matplotlib_the_report_says_so(workshop, monkeypatch):
         os.pathsep.join(filter(None, (str(missing.parent), os.environ.get("PYTHONPATH")))),
     )
     workshop.write_job()
-    done = workshop.launch("plan", "cup.yaml")
-    assert done.status == 0, done.err
+    command = workshop.launch("plan", "cup.yaml")
+    assert command.status == 0, command.err
     page = workshop.files()["report.html"].decode()
     assert (
         page.count("matplotlib is not installed") == 1

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Jobs of solids in plane layers: their keys, their refusals, and the bracket to a program for an 840D."""
+"""Jobs of solids in plane layers: their keys, their refusals, and the bracket to a program for an
+840D."""
 
 import csv
 import json
@@ -87,15 +88,16 @@ def test_only_solids_are_fused(read):
 
 
 def test_the_bracket_to_a_program(workshop, root):
-    """Coarser than shipped: waypoints, half a layer up, lie in the part, layers rise one by one, the report adds up."""
+    """With coarser settings than shipped, waypoints, raised by half a layer, are in the part,
+    layers rise one by one, and the figures of the report add up."""
     for name in ("bracket.step", "bracket.yaml"):
         shutil.copy(root / "resources" / "examples" / name, workshop.folder)
     job = (workshop.folder / "bracket.yaml").read_text(encoding="utf-8")
     (workshop.folder / "bracket.yaml").write_text(
         job.replace("layer_height: 2 mm", "layer_height: 5 mm"), encoding="utf-8"
     )
-    done = workshop.run("plan", "bracket.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "bracket.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["status"] == "ok" and report["counts"]["layers"] == 18
     assert {"DIRECTION"} <= {issue["code"] for issue in report["issues"]}
@@ -113,13 +115,13 @@ def test_the_bracket_to_a_program(workshop, root):
     points = np.array([[float(row[f"{axis}_mm"]) for axis in "xyz"] for row in rows])
     np.testing.assert_allclose(
         points[:, 1], 5.0 * layer, atol=1e-5
-    )  # stacked along Y, the wall lying on its back
-    some = np.random.default_rng(0).permutation(len(points))[:200]
-    places = [FreeCAD.Vector(*(points[k] + (0.0, 2.5, 0.0))) for k in some]
+    )  # stacked along Y, because the wall is on its back
+    sample = np.random.default_rng(0).permutation(len(points))[:200]
+    vertices = [FreeCAD.Vector(*(points[k] + (0.0, 2.5, 0.0))) for k in sample]
     off = [
-        shape.distToShape(Part.Vertex(place))[0]
-        for place in places
-        if not shape.isInside(place, 1e-6, True)
+        shape.distToShape(Part.Vertex(vertex))[0]
+        for vertex in vertices
+        if not shape.isInside(vertex, 1e-6, True)
     ]
     assert max(off, default=0.0) < 0.05 + 1e-3
     assert (
@@ -131,23 +133,24 @@ def test_the_bracket_to_a_program(workshop, root):
 def test_a_mesh_file_of_several_bodies(workshop):
     import Mesh
 
-    first, second = Mesh.createBox(30, 30, 10), Mesh.createBox(20, 20, 10)
-    second.translate(60, 0, 0)
-    first.addMesh(second)
-    first.write(str(workshop.folder / "two.stl"))
+    lower, upper = Mesh.createBox(30, 30, 10), Mesh.createBox(20, 20, 10)
+    upper.translate(60, 0, 0)
+    lower.addMesh(upper)
+    lower.write(str(workshop.folder / "two.stl"))
     (workshop.folder / "job.yaml").write_text(
         "part: {file: two.stl}\nstrategy: {kind: solid, layer_height: 5 mm, chord_error: 0.1 mm}\n",
         encoding="utf-8",
     )
-    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["counts"]["layers"] == 2
     assert report["deposit"]["part_cm3"] == pytest.approx(13.0, rel=1e-3)
 
 
 def test_a_small_part_by_a_robot_that_takes_no_short_moves(workshop):
-    """Beads of 0.6 mm have points hundredths of a millimetre apart at corners; the script tells those that matter."""
+    """Beads of 0.6 mm have points hundredths of a millimetre apart at corners; the script keeps the
+    points that matter."""
     import Mesh
 
     tube = (
@@ -163,23 +166,23 @@ def test_a_small_part_by_a_robot_that_takes_no_short_moves(workshop):
         "program: {post: %s, max_points: 40}\n"
     )
     (workshop.folder / "job.yaml").write_text(job % ("ur-ur10e", "ur"), encoding="utf-8")
-    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     counts = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))[
         "counts"
     ]
     script = (workshop.folder / "out" / "program" / "job.script").read_text(encoding="ascii")
     times = [
         float(time) for time in re.findall(r"t=([\d.]+), r=0\.0*[1-9]", script)
-    ]  # within beads the robot does not stop
+    ]  # the robot does not stop within beads
     assert min(times) >= 0.002 and 0.5 < len(times) / (counts["points"] - 2 * counts["beads"]) < 0.9
     (workshop.folder / "job.yaml").write_text(job % ("abb-irb4600-40-255", "abb"), encoding="utf-8")
-    done = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
-    assert done.status == 2
+    command = workshop.run("plan", "job.yaml", "-o", "out", "--no-page")
+    assert command.status == 2
     refusal = re.search(
         r"error\[BEAD_TOO_LONG\] job.yaml: program.max_points: layer 1 bead 0 has (\d+) points, and"
         r".* use at least (\d+)",
-        done.err,
+        command.err,
     )
     assert refusal and 40 < int(refusal[1]) < int(refusal[2])
-    assert "with its approach" not in done.err  # told before joints were planned
+    assert "with its approach" not in command.err  # reported before the joints are planned

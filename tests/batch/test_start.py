@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How a command starts: what it loads, on how many processors, with which streams."""
+"""How a command starts: the modules it loads, the processors it uses, and its streams."""
 
 import json
 import os
@@ -52,9 +52,9 @@ def test_a_part_of_revolution_loads_nothing_slow_that_others_need(tmp_path):
 def test_the_outputs_are_the_same_on_one_processor(tmp_path):
     job = tmp_path / "job.yaml"
     job.write_text(JOB.format(part=ROOT / "resources" / "examples" / "hemisphere.step"))
-    one = min(os.sched_getaffinity(0))
+    processor = min(os.sched_getaffinity(0))
     outputs = []
-    for how in ({one}, os.sched_getaffinity(0)):
+    for how in ({processor}, os.sched_getaffinity(0)):
         out = tmp_path / str(len(how))
         subprocess.run(
             [str(ROOT / "freecad-am"), "plan", str(job), "-o", str(out), "--no-page"],
@@ -80,6 +80,6 @@ def test_streams_that_a_shell_has_closed_are_missed_by_nobody(tmp_path, closed):
     job, out = tmp_path / "job.yaml", tmp_path / "out"
     job.write_text(JOB.format(part=ROOT / "resources" / "examples" / "hemisphere.step"))
     command = f'"{ROOT}/freecad-am" plan "{job}" -o "{out}" --no-page {closed}'
-    ended = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
-    assert ended.returncode == 0 and (out / "report.json").exists(), ended.stderr
-    assert "rror" not in ended.stderr
+    process = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
+    assert process.returncode == 0 and (out / "report.json").exists(), process.stderr
+    assert "rror" not in process.stderr

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers from chosen edges, by a job: no substrate, the first layer on the edge, the end at the other."""
+"""A job with layers from chosen edges: no substrate, the first layer on one edge, the end at the
+other."""
 
 import types
 
@@ -24,7 +25,7 @@ QUIET = types.SimpleNamespace(check=lambda: None, issues=lambda *_: None, progre
 
 @pytest.fixture
 def part(tmp_path):
-    """A half shell in a file, from z = 7 to 47."""
+    """Write a half shell from z = 7 to 47 to a file."""
     file = str(tmp_path / "half.step")
     Part.makeCylinder(15, 40, Vector(0, 0, 7), Vector(0, 0, 1), 180).Faces[0].exportStep(file)
     return Part.read(file)

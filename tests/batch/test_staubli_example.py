@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The paper's bend on the paper's robot, an RX60B L, through the Stäubli post: what the texts say, driven through PyKDL."""
+"""The paper's bend on the paper's robot, an RX60B L, through the Stäubli post, with its texts
+driven through PyKDL."""
 
 import csv
 import json
@@ -22,7 +23,7 @@ BEND, TUBE = 60.0, 15.0
 
 @pytest.fixture(scope="module", params=["cartesian", pytest.param("joint", marks=pytest.mark.long)])
 def made(tmp_path_factory, root, request):
-    """The motion, the rows of waypoints.csv and the texts of the example."""
+    """Return the motion, the rows of waypoints.csv and the texts of the example."""
     workshop = Workshop(tmp_path_factory.mktemp("staubli"), root / "freecad-am")
     folder = root / "resources" / "examples"
     for name in ("tube-on-pipe.step", "pipe.step"):
@@ -33,8 +34,8 @@ def made(tmp_path_factory, root, request):
         .replace("motion: cartesian", f"motion: {request.param}")
     )
     (workshop.folder / "bend.yaml").write_text(text, encoding="utf-8")
-    done = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     report = json.loads((workshop.folder / "out" / "report.json").read_text(encoding="utf-8"))
     assert report["joints"]["feasible"] is True
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
@@ -54,48 +55,49 @@ def columns(rows, *names):
 
 def test_the_texts_bring_the_points_of_the_part_to_the_nozzle(made):
     motion, rows, texts = made
-    read = staubli.read(texts)
+    readback = staubli.read(texts)
     arm = KdlArm(machines.load("staubli-rx60bl", ()))
     moves = [row for row in rows if row["kind"] == "rapid" or row["point"] != "0"]
     deposit = [row for row in moves if row["kind"] == "deposit"]
-    wanted = arm.forward(np.radians(columns(deposit, *(f"q{axis}_deg" for axis in range(1, 7)))))
+    expected = arm.forward(np.radians(columns(deposit, *(f"q{axis}_deg" for axis in range(1, 7)))))
     points = columns(deposit, "x_mm", "y_mm", "z_mm")
     if motion == "joint":
-        assert len(read.joints) == len(moves)
-        flange = arm.forward(read.joints[read.deposit])
-        assert np.abs(flange - wanted).max() < 1e-3
+        assert len(readback.joints) == len(moves)
+        flange = arm.forward(readback.joints[readback.deposit])
+        assert np.abs(flange - expected).max() < 1e-3
         return
-    gauge = read.tool[read.deposit]
-    flange = read.frame @ np.linalg.inv(
+    gauge = readback.tool[readback.deposit]
+    flange = readback.frame @ np.linalg.inv(
         gauge
-    )  # where the robot must hold its flange, from the texts alone
+    )  # the flange pose that the robot must reach, from the texts only
     assert (
-        np.abs(read.frame[:3, 3] - TARGET).max() == 0.0
-        and np.abs(read.position[read.deposit]).max() == 0.0
+        np.abs(readback.frame[:3, 3] - TARGET).max() == 0.0
+        and np.abs(readback.position[readback.deposit]).max() == 0.0
     )
-    seen = gauge[:, :3, 3] + [0.0, 0.0, -PLATFORM]
-    # all of the programmed points lie on the wall, those that planning added between those of the layers too
-    x, y, z = seen.T
+    part_points = gauge[:, :3, 3] + [0.0, 0.0, -PLATFORM]
+    # all programmed points are on the wall, including those that planning added between the points
+    # of the layers
+    x, y, z = part_points.T
     assert np.abs(np.hypot(np.hypot(x + BEND, z) - BEND, y) - TUBE).max() < 2e-4
-    off, row = cKDTree(seen).query(points)
-    assert off.max() < 2e-4 and (np.diff(row) > 0).all() and len(seen) >= len(points)
-    assert np.abs(flange[row][:, :3, :3] - wanted[:, :3, :3]).max() < 1e-6
-    assert np.linalg.norm(flange[row][:, :3, 3] - wanted[:, :3, 3], axis=1).max() < 1e-3
+    off, row = cKDTree(part_points).query(points)
+    assert off.max() < 2e-4 and (np.diff(row) > 0).all() and len(part_points) >= len(points)
+    assert np.abs(flange[row][:, :3, :3] - expected[:, :3, :3]).max() < 1e-6
+    assert np.linalg.norm(flange[row][:, :3, 3] - expected[:, :3, 3], axis=1).max() < 1e-3
 
 
 def test_parts_are_loaded_only_where_the_deposit_is_off(made):
     motion, rows, texts = made
     start = texts["tubeOnPipe/start.pgx"].decode("utf-8-sig")
-    parts = re.findall(r'libLoad\("\./(\w+)"\)', start)
-    assert len(parts) > 1 and "doDeposit" not in start
+    part_names = re.findall(r'libLoad\("\./(\w+)"\)', start)
+    assert len(part_names) > 1 and "doDeposit" not in start
     beads = {(row["layer"], row["bead"]) for row in rows}
     switched = 0
-    for part in parts:
-        code = texts[f"tubeOnPipe/{part}/start.pgx"].decode("utf-8-sig")
+    for part_name in part_names:
+        code = texts[f"tubeOnPipe/{part_name}/start.pgx"].decode("utf-8-sig")
         switches = re.findall(r"doDeposit=(\w+)", code)
         assert switches == ["true", "false"] * (len(switches) // 2)
         switched += len(switches) // 2
-        data = texts[f"tubeOnPipe/{part}/{part}.dtx"].decode("utf-8-sig")
+        data = texts[f"tubeOnPipe/{part_name}/{part_name}.dtx"].decode("utf-8-sig")
         sizes = {
             name: int(size) for name, size in re.findall(r'name="([jt]Path)".*? size="(\d+)"', data)
         }
@@ -103,6 +105,6 @@ def test_parts_are_loaded_only_where_the_deposit_is_off(made):
         if motion == "cartesian":
             assert (
                 f'z="{PLATFORM + ORIGIN[2]:.4f}"' in data
-            )  # the program origin on the flange, which carries all gauges
+            )  # the program origin relative to the flange, which carries all gauges
             assert data.count('fatherId="tCarried[0]"') == sizes["tPath"]
     assert switched == len(beads)

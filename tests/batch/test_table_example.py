@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A dome on a five-axis table, from its job to the controller's texts; these driven by the trunnion's own formulas."""
+"""A dome on a five-axis machine, from its job to the controller's texts; the trunnion's own
+formulas drive them."""
 
 import csv
 import json
@@ -23,15 +24,16 @@ WORDS = re.compile(r"([A-Z])(-?\d+\.?\d*)")
 
 @pytest.fixture
 def planned(workshop, root):
-    """Plans the example, its job changed: report, rows of waypoints.csv, texts by name, the folder."""
+    """Return a function that plans the example with changes: report, rows of waypoints.csv, texts
+    by name, the folder."""
 
     def run(change=lambda text: text, page=False):
         folder = root / "resources" / "examples"
         shutil.copy(folder / "hemisphere.step", workshop.folder)
         text = change((folder / "hemisphere-on-table.yaml").read_text(encoding="utf-8"))
         (workshop.folder / "dome.yaml").write_text(text, encoding="utf-8")
-        done = workshop.run("plan", "dome.yaml", "-o", "out", *(() if page else ("--no-page",)))
-        assert done.status == 0, done.err
+        command = workshop.run("plan", "dome.yaml", "-o", "out", *(() if page else ("--no-page",)))
+        assert command.status == 0, command.err
         out = workshop.folder / "out"
         with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
             rows = list(csv.DictReader(stream))
@@ -50,8 +52,9 @@ def column(rows, *names):
 
 
 def moves_of(texts):
-    """X Y Z A C, the time (s) of the move and whether the deposit is on, of each G1 in inverse time, in order of name."""
-    last, found, on, inverse = {}, [], False, False
+    """Return X Y Z A C, the time in s and whether the deposit is on, for each G1 in inverse time,
+    in order of the file names."""
+    words, moves_, on, inverse = {}, [], False, False
     for name in sorted(texts):
         for line in texts[name].splitlines():
             if line.startswith("("):
@@ -63,13 +66,14 @@ def moves_of(texts):
                 on = False
             if "G1 " in line:
                 assert inverse
-                last |= {letter: float(value) for letter, value in WORDS.findall(line)}
-                found.append([*(last[letter] for letter in "XYZAC"), 60.0 / last["F"], on])
-    return np.array(found)
+                words |= {letter: float(value) for letter, value in WORDS.findall(line)}
+                moves_.append([*(words[letter] for letter in "XYZAC"), 60.0 / words["F"], on])
+    return np.array(moves_)
 
 
 def in_part(moves):
-    """Tip and torch direction in the part's coordinates: the trunnion's formulas, solved for them."""
+    """Return tip and torch direction in part coordinates: the trunnion's formulas, solved for
+    them."""
     x, y, z = moves[:, :3].T
     a, c = np.radians(moves[:, 3:5].T)
     v, w = y - Y_OFFSET, z - Z_OFFSET
@@ -86,21 +90,22 @@ def test_the_text_lays_the_dome(planned):
     on = moves[:, 6] > 0.0
     tip, tool = in_part(moves)
     np.testing.assert_allclose(np.linalg.norm(tip[on], axis=1), RADIUS, atol=1e-3)
-    wanted = [row for row in rows if row["kind"] == "deposit" and row["point"] != "0"]
-    np.testing.assert_allclose(tip[on], column(wanted, "x_mm", "y_mm", "z_mm"), atol=2e-4)
-    np.testing.assert_allclose(tool[on], column(wanted, "tx", "ty", "tz"), atol=1e-6)
-    # as fast along the bead as asked for, at every point; where the wall closes slower, and said so
+    expected = [row for row in rows if row["kind"] == "deposit" and row["point"] != "0"]
+    np.testing.assert_allclose(tip[on], column(expected, "x_mm", "y_mm", "z_mm"), atol=2e-4)
+    np.testing.assert_allclose(tool[on], column(expected, "tx", "ty", "tz"), atol=1e-6)
+    # at every point the bead has the requested speed, or a lower one where the wall closes, as
+    # reported
     ends = np.flatnonzero(on)
-    way = np.linalg.norm(tip[ends] - tip[ends - 1], axis=1)
-    asked = column(wanted, "speed_mm_s")[:, 0]
-    np.testing.assert_allclose(way / moves[ends, 5], asked, rtol=2e-3)
-    slowed = asked < SPEED - 1e-9
+    lengths = np.linalg.norm(tip[ends] - tip[ends - 1], axis=1)
+    planned_speed = column(expected, "speed_mm_s")[:, 0]
+    np.testing.assert_allclose(lengths / moves[ends, 5], planned_speed, rtol=2e-3)
+    slowed = planned_speed < SPEED - 1e-9
     assert (
         slowed.any() == any(issue["code"] == "SLOWED" for issue in report["issues"])
         and slowed.mean() < 0.02
     )
     assert np.abs(moves[on, 3]).max() > 60.0  # the table tilts
-    # no axis faster than it can
+    # no axis exceeds its speed
     rate = np.abs(np.diff(moves[:, :5], axis=0)) / moves[1:, 5:6]
     assert (rate.max(axis=0) <= np.array([200, 200, 200, 90, 180]) * 1.001).all()
 
@@ -128,11 +133,11 @@ def test_what_is_told_of_axes_is_in_their_units(planned):
     page = (out / "report.html").read_text(encoding="utf-8")
     assert (
         "mx, mm" in page and "largest speed, deg/s or mm/s" not in page
-    )  # one method: no table of methods
+    )  # with a single method, the report has no table of methods
     drawn = [ElementTree.fromstring(text) for text in re.findall(r"<svg.*?</svg>", page, re.DOTALL)]
     texts = {
-        one.get("aria-label"): [node.text for node in one.iter() if node.tag.endswith("text")]
-        for one in drawn
+        chart.get("aria-label"): [node.text for node in chart.iter() if node.tag.endswith("text")]
+        for chart in drawn
     }
     assert {"place, mm", "limits -500 to 500 mm"} <= set(texts["mx"]) and "angle, deg" not in texts[
         "mx"
@@ -170,28 +175,28 @@ def test_sinumerik_texts_of_tables_and_heads(planned, machine, motion):
     deposit = [row for row in rows if row["kind"] == "deposit" and row["point"] != "0"]
     lines = [line for name in sorted(texts) for line in texts[name].splitlines() if " G1 " in line]
     if motion == "cartesian":
-        told = [
+        words = [
             dict(re.findall(r"\b([XYZ]|[ABC]3)=?(-?\d+\.\d+)", line))
             for line in lines
             if "A3=" in line
         ]
         np.testing.assert_allclose(
-            column(told, "X", "Y", "Z"), column(deposit, "x_mm", "y_mm", "z_mm"), atol=6e-6
+            column(words, "X", "Y", "Z"), column(deposit, "x_mm", "y_mm", "z_mm"), atol=6e-6
         )
         np.testing.assert_allclose(
-            column(told, "A3", "B3", "C3"), column(deposit, "tx", "ty", "tz"), atol=6e-7
+            column(words, "A3", "B3", "C3"), column(deposit, "tx", "ty", "tz"), atol=6e-7
         )
         return
     names = [name for name in rows[0] if name[:2] in ("mx", "my", "mz", "a_", "b_", "c_")]
     moved = column([row for row in rows if row["kind"] == "rapid" or row["point"] != "0"], *names)
     letters = [name.split("_")[0][-1].upper() for name in names]
-    told = [dict(re.findall(r"\b([XYZABC])(?:=DC\()?(-?\d+\.\d+)", line)) for line in lines]
-    apart = column(told, *letters) - moved
-    if "C" in letters:  # DC takes the shorter way to an angle of one turn
+    words = [dict(re.findall(r"\b([XYZABC])(?:=DC\()?(-?\d+\.\d+)", line)) for line in lines]
+    differences = column(words, *letters) - moved
+    if "C" in letters:  # DC takes the shorter way to an angle within one turn
         turn = letters.index("C")
-        apart[:, turn] -= 360.0 * np.round(apart[:, turn] / 360.0)
+        differences[:, turn] -= 360.0 * np.round(differences[:, turn] / 360.0)
         assert np.abs(np.diff(moved[:, turn])).max() < 180.0
-    assert np.abs(apart).max() < 6e-6
+    assert np.abs(differences).max() < 6e-6
 
 
 def test_a_wall_on_an_existing_part_on_a_table(workshop, root):
@@ -204,19 +209,19 @@ def test_a_wall_on_an_existing_part_on_a_table(workshop, root):
         "program: {post: linuxcnc, motion: cartesian}\n"
     )
     (workshop.folder / "bend.yaml").write_text(text, encoding="utf-8")
-    done = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "bend.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
     machine = machines.load("table-xyzbc", ())
     axes = column(rows, "mx_mm", "my_mm", "mz_mm", "b_deg", "c_deg") * machine.unit_values
-    seen = np.linalg.inv(
+    in_part_frame = np.linalg.inv(
         KdlArm(machine).forward(axes)
-    )  # the torch's tip from the face of the table
+    )  # the torch's tip relative to the face of the table
     np.testing.assert_allclose(
-        seen[:, :3, 3] - [0.0, 0.0, 80.0], column(rows, "x_mm", "y_mm", "z_mm"), atol=1e-5
+        in_part_frame[:, :3, 3] - [0.0, 0.0, 80.0], column(rows, "x_mm", "y_mm", "z_mm"), atol=1e-5
     )
-    np.testing.assert_allclose(seen[:, :3, 2], column(rows, "tx", "ty", "tz"), atol=1e-7)
+    np.testing.assert_allclose(in_part_frame[:, :3, 2], column(rows, "tx", "ty", "tz"), atol=1e-7)
 
 
 def test_four_axes_are_told_with_what_they_miss(planned):
@@ -237,9 +242,9 @@ def test_a_part_that_leans_is_refused_before_it_is_planned(workshop, root):
         "cell: {machine: table-xyzac, setup: rotary-table, platform: [11, -7, 60, 0, 20, 35]}\n"
     )
     (workshop.folder / "leans.yaml").write_text(text, encoding="utf-8")
-    done = workshop.run("plan", "leans.yaml", "-o", "out")
+    command = workshop.run("plan", "leans.yaml", "-o", "out")
     assert (
-        done.status == 2
-        and "UNSUPPORTED_FRAME" in done.err
-        and "cell.platform: [11, -7, 60, 0, 0, 35]" in done.err
+        command.status == 2
+        and "UNSUPPORTED_FRAME" in command.err
+        and "cell.platform: [11, -7, 60, 0, 0, 35]" in command.err
     )

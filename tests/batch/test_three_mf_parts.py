@@ -33,19 +33,23 @@ def test_blades_and_hub_of_3mf_files(workshop):
         Filename=str(workshop.folder / "hub.3mf"), Format="3MF"
     )
     (workshop.folder / "hub.yaml").write_text(JOB, encoding="utf-8")
-    done = workshop.run("plan", "hub.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    command = workshop.run("plan", "hub.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
     x, y, z = (np.array([float(row[name]) for row in rows]) for name in ("x_mm", "y_mm", "z_mm"))
-    away = np.hypot(x, y) - 30.0
-    assert np.abs(away - 10.0 * np.rint(away / 10.0)).max() < 1e-5
-    assert set(np.rint(away / 10.0).astype(int)) == {0, 1, 2} and np.abs(y).max() < 7.0
+    heights = np.hypot(x, y) - 30.0
+    assert np.abs(heights - 10.0 * np.rint(heights / 10.0)).max() < 1e-5
+    assert set(np.rint(heights / 10.0).astype(int)) == {0, 1, 2} and np.abs(y).max() < 7.0
     assert (
         60.0 < z[x > 0].min() < z[x > 0].max() < 90.0
         and 20.0 < z[x < 0].min() < z[x < 0].max() < 50.0
     )
     assert math.isclose(x.max(), -x.min(), abs_tol=0.5)
     (workshop.folder / "blades.3mf").write_bytes(b"PK")
-    done = workshop.run("plan", "hub.yaml", "-o", "out")
-    assert done.status == 2 and done.err.count("error[BAD_FILE]") == 1 and "blades.3mf" in done.err
+    command = workshop.run("plan", "hub.yaml", "-o", "out")
+    assert (
+        command.status == 2
+        and command.err.count("error[BAD_FILE]") == 1
+        and "blades.3mf" in command.err
+    )

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Time, length, volume and mass of the report, against the toolpath and the joint path's properties."""
+"""Time, length, volume and mass in the report equal the properties of the toolpath and the joint
+path."""
 
 import json
 from dataclasses import replace
@@ -11,10 +12,10 @@ from freecad_am import api
 
 
 def test_the_joint_path_and_the_report_tell_the_same_sums(doc, tmp_path):
-    part = doc.addObject("Part::Sphere", "Sphere")
-    part.Radius, part.Angle1, part.Angle2 = 45, 0, 90
+    sphere = doc.addObject("Part::Sphere", "Sphere")
+    sphere.Radius, sphere.Angle1, sphere.Angle2 = 45, 0, 90
     doc.recompute()
-    feature = api.make_feature(doc, part, layer_height=15)
+    feature = api.make_feature(doc, sphere, layer_height=15)
     cell = api.make_cell(doc, limits="paper")
     toolpath = api.make_toolpath(
         doc,
@@ -40,12 +41,12 @@ def test_the_joint_path_and_the_report_tell_the_same_sums(doc, tmp_path):
     assert np.isfinite(path.TotalTime)
 
     from freecad_am.core.parameters.process import ProcessParameters
-    from freecad_am.report import figures  # after FreeCAD is found
+    from freecad_am.report import figures  # only after FreeCAD is found
 
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)
-    told = figures.build("x", api.result(toolpath), api.result(path).motion, process, ())
-    sums = json.loads(figures.text(told))["totals"]
-    assert told["duration_s"] == pytest.approx(path.TotalTime)
+    figures_ = figures.build("x", api.result(toolpath), api.result(path).motion, process, ())
+    sums = json.loads(figures.text(figures_))["totals"]
+    assert figures_["duration_s"] == pytest.approx(path.TotalTime)
     assert [
         sums[key] for key in ("time_s", "deposit_s", "wait_s", "deposit_mm", "volume_cm3", "mass_g")
     ] == pytest.approx(
@@ -59,26 +60,27 @@ def test_the_joint_path_and_the_report_tell_the_same_sums(doc, tmp_path):
         ]
     )
     for density in (7.85, 11.34):
-        other = figures.build(
+        other_figures = figures.build(
             "x",
             api.result(toolpath),
             api.result(path).motion,
             replace(process, density=density),
             (),
         )
-        mass = json.loads(figures.text(other))["totals"]["mass_g"]
+        mass = json.loads(figures.text(other_figures))["totals"]["mass_g"]
         assert mass == pytest.approx(density * length * 4.0 * 15.0 / 1000.0, rel=1e-6)
     assert sums["fed_cm3"] == pytest.approx(
         path.DepositVolume, rel=1e-6
     )  # the wire balances by default
-    wire = told["process"]["wire"]
+    wire = figures_["process"]["wire"]
     assert wire["feed"] == "auto" and wire["feed_mm_s"] * np.pi * 0.6**2 == pytest.approx(
         4.0 * 15.0 * 6.0
     )
 
 
 def test_solids_on_hubs_count_as_wide_as_they_are_filled(doc):
-    """A box on a rod: near its own volume with beads at a spacing of 4 mm, where 8 mm wide ones would be twice that."""
+    """A box on a rod has nearly its own volume with beads at a spacing of 4 mm; beads counted 8 mm
+    wide would give twice that."""
     import Part
     from FreeCAD import Vector
 
@@ -95,7 +97,12 @@ def test_solids_on_hubs_count_as_wide_as_they_are_filled(doc):
     volumes = {}
     for width, options in ((4.0, {}), (5.0, {"bead_width": 5.0})):
         toolpath = api.make_toolpath(doc, feature, **options)
-        made, process = api.result(toolpath), toolpath.Proxy.parameters(toolpath, ProcessParameters)
-        volumes[width] = timeline.volumes(timeline.deposit_motion(made), process, made).sum()
-        assert volumes[width] == pytest.approx(made.length * width * 2.0, rel=1e-9)
+        toolpath_result, process = (
+            api.result(toolpath),
+            toolpath.Proxy.parameters(toolpath, ProcessParameters),
+        )
+        volumes[width] = timeline.volumes(
+            timeline.deposit_motion(toolpath_result), process, toolpath_result
+        ).sum()
+        assert volumes[width] == pytest.approx(toolpath_result.length * width * 2.0, rel=1e-9)
     assert volumes[4.0] == pytest.approx(solid.Volume, rel=0.15)

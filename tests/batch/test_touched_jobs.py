@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`cell.touched` in a job file: what is planned stands where the points were touched, a saved cell keeps them, and what says
-nothing is refused."""
+"""`cell.touched` in a job file moves the planned part to the touched points, a saved cell keeps
+them, and points that determine nothing are rejected."""
 
 import csv
 import json
@@ -21,7 +21,7 @@ TOOL = (120.0, 0.0, 200.0, 0.0, 45.0, 0.0)
 
 @pytest.fixture
 def shop(workshop):
-    def with_points(told, tolerance="1 mm"):
+    def with_points(points, tolerance="1 mm"):
         cell = {
             "setup": "tool-on-robot",
             "deposition_point": [900, 0, -100, 0, 0, 0],
@@ -29,7 +29,7 @@ def shop(workshop):
             "nozzle": {"tool": list(TOOL)},
             "branch": ["front", "up", "flip"],
             "mount": "part",
-            "touched": told,
+            "touched": points,
             "touched_tolerance": tolerance,
         }
         text = workshop.text.replace(
@@ -46,19 +46,19 @@ def shop(workshop):
 
 
 def test_what_is_written_stands_where_it_was_touched(shop):
-    """The tip at every row, by PyKDL from the joints that are written, is the moved point of the part."""
+    """PyKDL puts the tip of the written joints at the moved point of the part in every row."""
     robot = (
         PART @ MOVED[:3, :3].T
         + MOVED[:3, 3]
         + np.array([[0.0, 0.0, 0.2], [0.0, 0.0, -0.2], [0.0, 0.0, 0.0], [0.0] * 3])
     )
-    told = [
-        {"part": one, "robot": other}
-        for one, other in zip(PART.tolist(), robot.tolist(), strict=True)
+    touched = [
+        {"part": part_point, "robot": robot_point}
+        for part_point, robot_point in zip(PART.tolist(), robot.tolist(), strict=True)
     ]
-    done = shop(told).run("plan", "cup.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
-    out = shop(told).folder / "out"
+    command = shop(touched).run("plan", "cup.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
+    out = shop(touched).folder / "out"
     issues = {
         issue["code"]: issue["message"]
         for issue in json.loads((out / "report.json").read_text())["issues"]
@@ -66,15 +66,15 @@ def test_what_is_written_stands_where_it_was_touched(shop):
     assert issues["WORK_OFFSET"].startswith("4 touched points put the part at [9")
     with open(out / "waypoints.csv", encoding="utf-8", newline="") as stream:
         rows = list(csv.DictReader(stream))
-    known = machine.load("fanuc-arcmate120ic")
-    arm, worst = KdlLinks(known), 0.0
+    robot_machine = machine.load("fanuc-arcmate120ic")
+    arm, worst = KdlLinks(robot_machine), 0.0
     tool = frames.bryant((*TOOL[:3], *np.radians(TOOL[3:])))
     for row in rows[:: max(1, len(rows) // 60)]:
         flange = arm.frame(np.radians([float(row[f"q{k}_deg"]) for k in range(1, 7)]))
-        tip = (np.linalg.inv(known.base) @ flange @ tool)[:3, 3]
+        tip = (np.linalg.inv(robot_machine.base) @ flange @ tool)[:3, 3]
         point = np.array([float(row[f"{axis}_mm"]) for axis in "xyz"])
         worst = max(worst, float(np.linalg.norm(tip - (MOVED[:3, :3] @ point + MOVED[:3, 3]))))
-    assert 0.001 < worst < 0.6  # what was touched is 0.2 mm off at two points
+    assert 0.001 < worst < 0.6  # two touched points are off by 0.2 mm
 
 
 @pytest.mark.parametrize(
@@ -95,16 +95,20 @@ def test_what_is_written_stands_where_it_was_touched(shop):
     ],
 )
 def test_what_says_nothing_is_refused(shop, told, says):
-    done = shop(told).run("plan", "cup.yaml", "-o", "out")
-    assert done.status == 2 and done.err.startswith(says), done.err
+    command = shop(told).run("plan", "cup.yaml", "-o", "out")
+    assert command.status == 2 and command.err.startswith(says), command.err
 
 
 def test_a_saved_cell_keeps_them(shop, tmp_path):
-    made = shop(
-        [{"part": one, "robot": [x + 900.25, y, z]} for one in PART.tolist() for x, y, z in [one]],
+    workshop_ = shop(
+        [
+            {"part": point, "robot": [x + 900.25, y, z]}
+            for point in PART.tolist()
+            for x, y, z in [point]
+        ],
         "0.5 mm",
     )
-    section = json.loads(made.job.read_text().split("cell: ")[1].split("\n")[0])
-    cell = job_cell.read(section, str(made.job.parent))
+    section = json.loads(workshop_.job.read_text().split("cell: ")[1].split("\n")[0])
+    cell = job_cell.read(section, str(workshop_.job.parent))
     (tmp_path / "hall.yaml").write_text(interop.cell_text(cell, str(tmp_path)), encoding="utf-8")
     assert job_cell.read("hall.yaml", str(tmp_path)) == cell and len(cell.touched) == 4

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Keys of a job file that have no effect beside its other keys are told."""
+"""A job reports keys that have no effect together with its other keys."""
 
 import pytest
 
@@ -13,7 +13,7 @@ POSITIONER = (
 )
 
 
-def told(folder, text):
+def unused_keys(folder, text):
     (folder / "part.step").write_text("ISO-10303-21;", encoding="ascii")
     (folder / "job.yaml").write_text(HEAD + text, encoding="utf-8")
     issues = unused_key_issues(jobs.read_job(str(folder / "job.yaml")))
@@ -38,4 +38,4 @@ def told(folder, text):
     ],
 )
 def test_keys_without_effect_are_told(tmp_path, text, keys):
-    assert told(tmp_path, text + "\n") == keys
+    assert unused_keys(tmp_path, text + "\n") == keys

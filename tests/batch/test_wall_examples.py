@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The shipped walls on existing parts, planned by the command and measured without the program's own code."""
+"""The command plans the shipped walls on existing parts, and the test measures them without the
+program's own code."""
 
 from pathlib import Path
 
@@ -8,11 +9,11 @@ import pytest
 import yaml
 
 from tests.batch import wall_checks
-from tests.batch.wall_examples import EXAMPLES, LONG, Plans
+from tests.batch.wall_examples import EXAMPLES, LONG_EXAMPLES, Plans
 from tests.swept_beads import Cone, Swept
 
-CHORD = 0.01  # mm, the chord error of the jobs
-FINE = 2e-5  # mm, at which chords stand for the curve
+CHORD_MM = 0.01  # mm, the chord error of the jobs
+FINE_CHORD_MM = 2e-5  # mm, at which chords represent the curve
 TOLERANCE = 1e-4  # mm, of the local distance
 NOZZLE_TIP, NOZZLE_ANGLE = (
     0.5,
@@ -22,7 +23,7 @@ BEND, TUBE, PIPE = (
     60.0,
     15.0,
     32.0,
-)  # mm, radii of the bend of the paper, of its tube and of the pipe
+)  # mm, radii of the paper's bend, its tube and the pipe
 TURN = 30.0  # deg/mm, the largest turn of the build direction, build_direction.max_turn
 
 
@@ -35,7 +36,7 @@ def name_of(example):
     return example.job.split("/")[-1] + " in thicker layers" * example.thicker
 
 
-ALL = [*EXAMPLES, *(pytest.param(one, marks=pytest.mark.long) for one in LONG)]
+ALL = [*EXAMPLES, *(pytest.param(example, marks=pytest.mark.long) for example in LONG_EXAMPLES)]
 
 
 @pytest.fixture(scope="module", params=ALL, ids=name_of)
@@ -45,14 +46,14 @@ def example(request):
 
 @pytest.fixture(scope="module")
 def planned(example, plans):
-    """The job as it is shipped, or in thicker layers."""
+    """Return the job as shipped, or in thicker layers."""
     return plans.plan(example.job, plans.text_of(example) if example.thicker else None)
 
 
 @pytest.fixture(scope="module")
 def exact(example, plans):
-    """The same without a cell, its points dense."""
-    return plans.plan(example.job, plans.exact(plans.text_of(example), FINE))
+    """Return the same without a cell and with dense points."""
+    return plans.plan(example.job, plans.exact(plans.text_of(example), FINE_CHORD_MM))
 
 
 @pytest.fixture(scope="module")
@@ -60,9 +61,12 @@ def wall(example, plans):
     return wall_checks.read_wall(plans.folder / example.wall, example.depth)
 
 
-@pytest.mark.parametrize("job", [one.job for one in (*EXAMPLES, *LONG) if one.has_cell])
+@pytest.mark.parametrize(
+    "job", [example.job for example in (*EXAMPLES, *LONG_EXAMPLES) if example.has_cell]
+)
 def test_a_platform_of_an_example_is_under_what_it_carries(job, plans):
-    """The plate is about the frame that sits on it; a part held beside that frame hangs in a clamp, and has none."""
+    """The plate is under the frame of the part; a part outside that frame hangs in a clamp and has
+    no plate."""
     settings = yaml.safe_load(plans.text(job))
     cell, path = settings["cell"], (plans.folder / job).parent / settings["substrate"]["file"]
     box = wall_checks.bounds(path)
@@ -89,13 +93,13 @@ def test_jobs_with_a_cell_end_in_a_verified_program(example, planned):
 
 
 def test_points_lie_on_the_wall(planned, exact, wall):
-    chosen = np.random.default_rng(20).permutation
-    assert wall.off(chosen(planned.points)[:150]) <= CHORD
-    assert wall.off(chosen(exact.points)[:150]) <= TOLERANCE
+    shuffle = np.random.default_rng(20).permutation
+    assert wall.off(shuffle(planned.points)[:150]) <= CHORD_MM
+    assert wall.off(shuffle(exact.points)[:150]) <= TOLERANCE
 
 
 def test_the_first_layer_lies_on_the_substrate(example, planned, exact):
-    for run, error in ((planned, CHORD), (exact, TOLERANCE)):
+    for run, error in ((planned, CHORD_MM), (exact, TOLERANCE)):
         for bead in run.layers[0]:
             assert np.abs(example.depth(bead.points)).max() <= error + example.substrate_error
     assert all(
@@ -104,13 +108,14 @@ def test_the_first_layer_lies_on_the_substrate(example, planned, exact):
 
 
 def test_layers_are_at_the_layer_height_everywhere(example, exact):
-    """At every point, hundreds of times denser than the jobs ask for, corners included."""
+    """At every point, hundreds of times denser than the jobs require and corners included, the
+    distance is the layer height."""
     spacing = wall_checks.spacing(exact, example.height, 10.0 * TOLERANCE)
     assert np.abs(spacing.inside - example.height).max() <= example.spacing_error
-    if len(spacing.at_ends):  # cut at an edge of the wall: the curve went on below
+    if len(spacing.at_ends):  # cut at an edge of the wall, where the curve continued below
         assert spacing.at_ends.min() >= example.height - example.spacing_error
-    told = [issue["message"] for issue in exact.report["issues"] if issue["code"] == "CLOSING"]
-    assert len(spacing.closing) == sum(int(message.split()[0]) for message in told)
+    messages = [issue["message"] for issue in exact.report["issues"] if issue["code"] == "CLOSING"]
+    assert len(spacing.closing) == sum(int(message.split()[0]) for message in messages)
     assert all(distance.min() >= 0.4 * example.height for distance in spacing.closing)
 
 
@@ -121,15 +126,16 @@ def test_the_wall_is_covered(example, planned, wall):
 
 
 def test_beads_lie_on_what_was_deposited_before(example, exact):
-    most = wall_checks.support(exact, example.depth)
-    assert most <= example.height + 2.0 * example.spacing_error + example.substrate_error
+    max_distance = wall_checks.support(exact, example.depth)
+    assert max_distance <= example.height + 2.0 * example.spacing_error + example.substrate_error
 
 
 def test_seams_follow_one_another(example, planned):
-    """Their step is the layer height, and more where the front itself takes longer steps up the lines of the wall."""
+    """The step between seams is the layer height, or more where the front itself takes longer steps
+    up the lines of the wall."""
     steps = wall_checks.seam_steps(planned)
     assert steps.size == 0 or (
-        steps.min() >= example.height - CHORD and steps.max() <= 1.75 * example.height
+        steps.min() >= example.height - CHORD_MM and steps.max() <= 1.75 * example.height
     )
 
 
@@ -138,59 +144,65 @@ def test_build_directions_are_continuous(planned):
 
 
 def test_the_nozzle_keeps_clear_of_the_substrate(example, planned):
-    """The rim of its flat tip alone dips in where the first layer leans on the substrate."""
-    if example.job == "tube-on-pipe":  # as in the paper, which leaves the directions alone
+    """Only the rim of the flat tip dips in, where the first layer leans on the substrate."""
+    if example.job == "tube-on-pipe":  # as in the paper, which does not change the directions
         return
     for bead in planned.passes:
-        least = wall_checks.nozzle_depth(bead, example.depth, NOZZLE_TIP, 60.0, NOZZLE_ANGLE)
-        assert least >= -(NOZZLE_TIP if bead.layer == 0 else CHORD)
+        clearance = wall_checks.nozzle_depth(bead, example.depth, NOZZLE_TIP, 60.0, NOZZLE_ANGLE)
+        assert clearance >= -(NOZZLE_TIP if bead.layer == 0 else CHORD_MM)
 
 
-def deepest_in_deposit(example, planned, points, step):
-    """mm by which beads laid before, as wide and high as they count, are in the nozzle, at so many points of a bead at most.
-
-    Beads that close gaps stand in what they close, nearer to it than a layer height: they are left out, as many as are told.
-    """
+def depth_in_deposit(example, planned, points, step):
+    """Return how many mm earlier beads, with their full width and height, are in the nozzle, at a
+    limited number of points of each bead. Beads that close gaps are left out: they are nearer to
+    their neighbours than a layer height, and their number is checked against the report."""
     assert planned.report["process"]["bead_width_counted_mm"] == 8.0
     laid = Swept(
         [
             (
-                one.points,
-                one.build,
-                np.full(len(one.points), 8.0),
-                np.full(len(one.points), example.height),
-                one.layer,
+                bead_pass.points,
+                bead_pass.build,
+                np.full(len(bead_pass.points), 8.0),
+                np.full(len(bead_pass.points), example.height),
+                bead_pass.layer,
             )
-            for one in planned.passes
+            for bead_pass in planned.passes
         ],
         step,
     )
     cone = Cone(NOZZLE_TIP, NOZZLE_ANGLE, 60.0)
     low, deepest, closing = cone.clear_of(example.height, 0.0), -np.inf, 0
-    for k, one in enumerate(planned.passes):
-        if one.layer:
-            below = [other.points for other in planned.layers[one.layer - 1]]
+    for k, bead_pass in enumerate(planned.passes):
+        if bead_pass.layer:
+            below = [lower_pass.points for lower_pass in planned.layers[bead_pass.layer - 1]]
             if (
-                wall_checks.nearest(one.points, below).distance < 0.99 * example.height
+                wall_checks.nearest(bead_pass.points, below).distance < 0.99 * example.height
             ).mean() > 0.9:
                 closing += 1
                 continue
         for j in np.unique(
-            np.linspace(0, len(one.points) - 1, min(points, len(one.points))).astype(int)
+            np.linspace(0, len(bead_pass.points) - 1, min(points, len(bead_pass.points))).astype(
+                int
+            )
         ):
             number = laid.begin[k] + j + 1
             deepest = max(
                 deepest,
-                laid.deepest(one.points[j], one.tool[j], number, laid.layer_began(k), cone, low),
+                laid.deepest(
+                    bead_pass.points[j], bead_pass.tool[j], number, laid.layer_began(k), cone, low
+                ),
             )
-    told = [issue["message"] for issue in planned.report["issues"] if issue["code"] == "CLOSING"]
-    assert closing == sum(int(message.split()[0]) for message in told)
+    messages = [
+        issue["message"] for issue in planned.report["issues"] if issue["code"] == "CLOSING"
+    ]
+    assert closing == sum(int(message.split()[0]) for message in messages)
     return deepest
 
 
 @pytest.fixture(scope="module")
 def without_cell(example, plans, request):
-    """The job, its points those of the toolpath alone; None of the paper's, which leaves the directions alone."""
+    """Return the job with the toolpath's own points only; None for the paper's job, which does not
+    change the directions."""
     if example.job == "tube-on-pipe":
         return None
     if not example.has_cell:
@@ -201,29 +213,29 @@ def without_cell(example, plans, request):
 def test_the_nozzle_keeps_clear_of_beads_as_wide_as_they_are(example, without_cell):
     if without_cell is None:
         return
-    assert deepest_in_deposit(example, without_cell, 12, 1.5) <= CHORD
+    assert depth_in_deposit(example, without_cell, 12, 1.5) <= CHORD_MM
 
 
 @pytest.mark.long
 def test_the_nozzle_keeps_clear_of_beads_as_wide_as_they_are_at_all_points(example, without_cell):
     if without_cell is None:
         return
-    assert deepest_in_deposit(example, without_cell, 400, 0.4) <= CHORD
+    assert depth_in_deposit(example, without_cell, 400, 0.4) <= CHORD_MM
 
 
 def test_the_bend_grows_on_the_pipe_as_in_the_paper(plans):
-    made = plans.plan("tube-on-pipe")
-    assert made.report["counts"]["layers"] == 15  # the 16th of the errata lies wholly past the end
-    assert made.report["joints"]["feasible"] is True and made.report["programs"] == [
+    run = plans.plan("tube-on-pipe")
+    assert run.report["counts"]["layers"] == 15  # the 16th of the errata is entirely past the end
+    assert run.report["joints"]["feasible"] is True and run.report["programs"] == [
         "program/TUBE_ON_PIPE.LS"
     ]
-    x, y, z = made.points.T
+    x, y, z = run.points.T
     off = np.hypot(np.hypot(x + BEND, z) - BEND, y) - TUBE
-    assert np.abs(off).max() < 0.0105  # the chord error, for planning adds points on the chords
-    first = np.concatenate([one.points for one in made.passes if one.layer == 0])
-    assert np.abs(np.hypot(first[:, 0], first[:, 2]) - PIPE).max() < 0.0105
+    assert np.abs(off).max() < 0.0105  # the chord error, because planning adds points on the chords
+    first_layer = np.concatenate([bead.points for bead in run.passes if bead.layer == 0])
+    assert np.abs(np.hypot(first_layer[:, 0], first_layer[:, 2]) - PIPE).max() < 0.0105
     assert np.arctan2(z, x + BEND).max() <= 0.5 * np.pi + 1e-6
-    tool = np.concatenate([one.tool for one in made.passes])
+    tool = np.concatenate([bead.tool for bead in run.passes])
     assert (
         np.abs(tool[:, 1]).max() < 1e-9 and np.degrees(np.arccos(tool[:, 2].min())) <= 85.0 + 1e-6
     )
@@ -248,10 +260,14 @@ def test_the_front_of_the_branched_tube_splits_in_two(plans):
 
 
 def test_a_mesh_serves_as_well_as_the_solid(plans):
-    solid = plans.plan("tube-on-pipe", plans.exact(plans.text("tube-on-pipe"), FINE))
+    solid = plans.plan("tube-on-pipe", plans.exact(plans.text("tube-on-pipe"), FINE_CHORD_MM))
     mesh = plans.plan(
-        "walls/tube-on-scanned-pipe", plans.exact(plans.text("walls/tube-on-scanned-pipe"), FINE)
+        "walls/tube-on-scanned-pipe",
+        plans.exact(plans.text("walls/tube-on-scanned-pipe"), FINE_CHORD_MM),
     )
     assert len(mesh.layers) == len(solid.layers) == 15
-    for one, other in zip(mesh.layers, solid.layers):
-        assert wall_checks.nearest(one[0].points, [other[0].points]).distance.max() <= 0.05
+    for mesh_layer, solid_layer in zip(mesh.layers, solid.layers):
+        assert (
+            wall_checks.nearest(mesh_layer[0].points, [solid_layer[0].points]).distance.max()
+            <= 0.05
+        )

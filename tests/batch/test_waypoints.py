@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""waypoints.csv gives back the motion."""
+"""waypoints.csv reproduces the motion."""
 
 import csv
 import dataclasses
@@ -81,12 +81,15 @@ def test_reads_back_to_the_motion(count):
 def test_the_last_column_is_the_class_whatever_comes_before():
     motion = random_motion(500)
     number = np.random.default_rng(4).integers(-1, len(CLASSES), 500)
-    for more in ({}, {"wire": np.full(500, 2.0)}):
-        changed = dataclasses.replace(motion, bead_class=number, **more)
+    for extra_columns in ({}, {"wire": np.full(500, 2.0)}):
+        changed = dataclasses.replace(motion, bead_class=number, **extra_columns)
         rows = [
             line.rpartition(",")[2] for line in "".join(waypoints.text(changed, AXES)).splitlines()
         ]
-        assert rows == ["class", *(CLASSES[one] if one >= 0 else "" for one in number)]
+        assert rows == [
+            "class",
+            *(CLASSES[class_number] if class_number >= 0 else "" for class_number in number),
+        ]
 
 
 def test_no_negative_zero():
@@ -121,9 +124,9 @@ def test_without_a_cell_the_deposit_alone():
         (str(i), str(j), str(k)) for i, j in ((0, 0), (1, 0), (1, 1)) for k in range(13)
     ]
     assert motion.total_time == pytest.approx(path.length / 6.0)
-    first, last = rows[13], rows[25]
-    assert (first["x_mm"], first["y_mm"], first["z_mm"]) == (
-        last["x_mm"],
-        last["y_mm"],
-        last["z_mm"],
+    start_row, end_row = rows[13], rows[25]
+    assert (start_row["x_mm"], start_row["y_mm"], start_row["z_mm"]) == (
+        end_row["x_mm"],
+        end_row["y_mm"],
+        end_row["z_mm"],
     )

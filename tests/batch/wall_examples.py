@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The shipped examples of walls on existing parts: what the tests know of them, and a folder in which they are planned."""
+"""The shipped examples of walls on existing parts: their expected values, and a folder in which
+they are planned."""
 
 import re
 import shutil
@@ -15,7 +16,7 @@ from tests.batch.conftest import COMMANDS
 
 
 def rod(x, z, radius):
-    """Distance from a cylinder about a line along Y."""
+    """Return the distance from a cylinder about a line along Y."""
     return lambda points: np.hypot(points[:, 0] - x, points[:, 2] - z) - radius
 
 
@@ -24,13 +25,14 @@ def dome(points):
 
 
 def cone(points):
-    """64 mm high, 48 mm wide at its foot and 16 mm at its top."""
+    """Return the distance from a cone 64 mm high, 48 mm wide at its foot and 16 mm at its top."""
     lean = np.hypot(64.0, 32.0)
     return ((np.hypot(points[:, 0], points[:, 1]) - 48.0) * 64.0 + points[:, 2] * 32.0) / lean
 
 
 def sloping_block(points):
-    """Its top rises by 6 mm over 60 mm along X turned by 30 deg."""
+    """Return the distance from a block whose top rises by 6 mm over 60 mm along X, rotated by 30
+    deg."""
     x, y, z = (points - [-85.0, 140.0, 10.0]).T
     along = np.cos(np.pi / 6.0) * x + np.sin(np.pi / 6.0) * y
     return (60.0 * z - 6.0 * along) / np.hypot(60.0, 6.0)
@@ -76,7 +78,7 @@ EXAMPLES = (
         spacing_error=1e-3,
     ),
 )
-LONG = (
+LONG_EXAMPLES = (
     Example(
         "walls/elbow-on-block",
         "walls/elbow.step",
@@ -86,8 +88,9 @@ LONG = (
         spacing_error=1e-3,
     ),
     Example("walls/flared-shell-on-dome", "walls/coque évasée.step", 4.0, dome),
-    # its first layer bridges 240 flats smoothly, and these are up to 0.033 mm off the pipe; where such a curve forms its
-    # first corner, arcs between the points of a layer are 3e-4 mm off, of the 1e-3 mm that is promised there
+    # its first layer bridges 240 flats smoothly, which are up to 0.033 mm off the pipe; where such
+    # a curve forms its first corner, arcs between the points of a layer are 3e-4 mm off, within the
+    # guaranteed 1e-3 mm
     Example(
         "walls/tube-on-scanned-pipe",
         "tube-on-pipe.step",
@@ -108,7 +111,7 @@ LONG = (
 
 
 class Plans:
-    """A copy of the examples, planned by the command; each job once."""
+    """A copy of the examples, each planned once by the command."""
 
     def __init__(self, root: Path, folder: Path):
         self.folder = folder / "examples"
@@ -123,7 +126,7 @@ class Plans:
         return (self.folder / f"{job}.yaml").read_text(encoding="utf-8")
 
     def text_of(self, example):
-        """That of its job, as shipped but for its layer height."""
+        """Return the text of its job as shipped, except for its layer height."""
         text = self.text(example.job)
         changed = re.sub(
             r"(?m)^  layer_height: .*$", f"  layer_height: {example.height:g} mm", text
@@ -132,13 +135,14 @@ class Plans:
         return changed
 
     def exact(self, text, chord_error):
-        """A job without cell and clearance: the fronts alone, points so dense that chords stand for the curve."""
+        """Return a job without cell and clearance: only the fronts, with points so dense that
+        chords represent the curve."""
         text = text.split("\ncell:")[0].replace("  clearance: none\n", "") + "\n"
         text = text.replace("build_direction:\n", "build_direction:\n  clearance: none\n")
         return re.sub(r"(  layer_height: .*\n)", rf"\1  chord_error: {chord_error:.6f} mm\n", text)
 
     def plan(self, job, text=None):
-        """What the job plans, its text changed; the job must end well."""
+        """Return the plan of the job with its text changed; the job must succeed."""
         key = (job, text)
         if key not in self._done:
             self._done[key] = self._planned(job, text, self.folder / f"out{len(self._done)}")
@@ -149,8 +153,8 @@ class Plans:
         if text is not None:
             path = path.with_name(f"{out.name}.yaml")
             path.write_text(text, encoding="utf-8")
-        done = COMMANDS.run(self.folder, ["plan", str(path), "-o", str(out), "--no-page"])
-        assert done.status == 0, done.err
+        command = COMMANDS.run(self.folder, ["plan", str(path), "-o", str(out), "--no-page"])
+        assert command.status == 0, command.err
         cell = read_job(str(path)).cell
         assert cell is None or row_limits.over_all(out, cell.machine, cell.limits) <= 0.0
         return wall_checks.read(out)
