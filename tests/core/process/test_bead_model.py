@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The bead model: the refit of table 1, its inverse, what it says outside its data, and speeds along a bead."""
+"""The bead model: the refit of table 1, its inverse, its behaviour outside the data, and speeds
+along a bead."""
 
 import math
 
@@ -36,8 +37,9 @@ def test_the_refit_of_the_errata():
 
 @pytest.mark.parametrize("column", [2, 3])
 def test_a_second_solver_agrees(column):
+    """scipy's least squares gives the coefficients of the model."""
     table = np.array(TABLE, float)
-    found = least_squares(
+    fit = least_squares(
         lambda x: x[0] * table[:, 1] ** (-1 / 3) + x[1] / table[:, 0] + x[2] - table[:, column],
         [50.0, 10.0, 0.0],
         xtol=1e-15,
@@ -47,7 +49,7 @@ def test_a_second_solver_agrees(column):
     )
     model = wire.load("csw")
     ours = (model.width, model.height)[column - 2]
-    np.testing.assert_allclose([ours.m, ours.p, ours.t], found.x, rtol=1e-6)
+    np.testing.assert_allclose([ours.m, ours.p, ours.t], fit.x, rtol=1e-6)
 
 
 def test_speed_and_width_are_inverse():
@@ -56,23 +58,26 @@ def test_speed_and_width_are_inverse():
     speed, radius = rng.uniform(5.0, 15.0, 500), rng.uniform(30.0, 90.0, 500)
     width = model.widths(speed, radius)
     for v, r, w in zip(speed, radius, width):
-        asked = model.speed_for(w, np.array([r]))
-        assert asked.speed[0] == pytest.approx(v, rel=1e-12)
-        assert not (asked.too_slow[0] or asked.too_fast[0] or asked.too_tight[0])
+        speeds = model.speed_for(w, np.array([r]))
+        assert speeds.speed[0] == pytest.approx(v, rel=1e-12)
+        assert not (speeds.too_slow[0] or speeds.too_fast[0] or speeds.too_tight[0])
 
 
 def test_what_the_errata_say_of_9_5_mm():
+    """Speeds of a 9.5 mm bead agree with the errata, and a bend tighter than the table is
+    flagged."""
     model = wire.load("csw")
-    asked = model.speed_for(9.5, np.array([np.inf, 30.0, 10.0]))
-    np.testing.assert_allclose(asked.speed[:2] * 60.0, [439.0, 731.0], atol=0.6)
-    assert asked.too_tight.tolist() == [False, False, True]
-    assert asked.speed[2] == asked.speed[1]
-    # at one wire feed the bead is lower where it runs faster
-    straight, bend = model.heights(asked.speed[:2], np.array([np.inf, 30.0]))
+    speeds = model.speed_for(9.5, np.array([np.inf, 30.0, 10.0]))
+    np.testing.assert_allclose(speeds.speed[:2] * 60.0, [439.0, 731.0], atol=0.6)
+    assert speeds.too_tight.tolist() == [False, False, True]
+    assert speeds.speed[2] == speeds.speed[1]
+    # at constant wire feed a faster bead is lower
+    straight, bend = model.heights(speeds.speed[:2], np.array([np.inf, 30.0]))
     assert bend < straight
 
 
 def test_outside_the_table_the_speed_is_kept_within_and_flagged():
+    """Outside the table the speed is clamped and flagged."""
     model = wire.load("csw")
     wide, narrow = model.speed_for(20.0, np.array([50.0])), model.speed_for(3.0, np.array([50.0]))
     assert (wide.speed[0], narrow.speed[0]) == (300.0 / 60.0, 900.0 / 60.0)
@@ -82,7 +87,9 @@ def test_outside_the_table_the_speed_is_kept_within_and_flagged():
         False,
         True,
     )
-    assert model.speed_for(0.1, np.array([40.0])).too_fast[0]  # narrower than any speed gives
+    assert model.speed_for(0.1, np.array([40.0])).too_fast[
+        0
+    ]  # narrower than at any speed of the table
 
 
 def columns(rows):
@@ -140,8 +147,8 @@ def test_tables_that_are_none_are_told_in_the_units_of_the_table(rows, told):
 
 
 def test_the_height_of_beads_of_one_section():
-    """Height times width is that of a straight bead wherever the wire follows the speed: the integral of the section along
-    a bead is the wire that went into it, whatever the bends."""
+    """Height times width is the section of a straight bead wherever the wire feed follows the
+    speed: the deposited volume equals the wire volume, whatever the bends."""
     model = wire.load("csw")
     rng = np.random.default_rng(8)
     widths = rng.uniform(7.0, 13.0, 200)
@@ -150,11 +157,11 @@ def test_the_height_of_beads_of_one_section():
     assert straight * 60.0 == pytest.approx((model.width.m / (9.5 - model.width.t)) ** 3, rel=1e-12)
     section = 9.5 * float(model.height.value_at(np.array([straight]), np.array([np.inf]))[0])
     np.testing.assert_allclose(heights * widths, section, rtol=1e-12)
-    # asked for outside of the table: the section of the straight bead that is really laid
+    # a width outside the table uses the section of the widest straight bead in it
     slow = model.heights_of_section(widths, 50.0) * widths
-    at = np.array([5.0]), np.array([np.inf])
+    slowest = np.array([5.0]), np.array([np.inf])
     np.testing.assert_allclose(
-        slow, float(model.heights(*at)[0] * model.widths(*at)[0]), rtol=1e-12
+        slow, float(model.heights(*slowest)[0] * model.widths(*slowest)[0]), rtol=1e-12
     )
 
 
@@ -232,28 +239,29 @@ def test_radius_of_circles(radius):
 
 
 def test_radius_of_a_straight_way_with_a_corner():
-    way = np.array(
+    points = np.array(
         [[x, 0.0] for x in np.linspace(-50, 0, 51)] + [[0.0, y] for y in np.linspace(1, 50, 50)]
     )
-    radius = model_notes.radii(way, False, 8.0)
+    radius = model_notes.radii(points, False, 8.0)
     assert np.isinf(radius[:40]).all() and np.isinf(radius[62:]).all()
     assert radius[50] == pytest.approx(8.0 / (math.pi / 2.0), rel=0.02)
 
 
 def test_speeds_a_machine_can_follow():
+    """Speeds respect the acceleration limit and are as high as it allows."""
     rng = np.random.default_rng(3)
     points = np.cumsum(rng.uniform(0.1, 2.0, (300, 2)), axis=0)
     points = np.vstack([points, points[:1]])
-    asked = rng.uniform(5.0, 15.0, 301)
-    asked[-1] = asked[0]
+    requested = rng.uniform(5.0, 15.0, 301)
+    requested[-1] = requested[0]
     for closed in (True, False):
-        got = model_notes.limit_acceleration(points, asked, closed, 20.0)
+        got = model_notes.limit_acceleration(points, requested, closed, 20.0)
         step = np.linalg.norm(np.diff(points, axis=0), axis=1)
-        assert (got <= asked).all()
+        assert (got <= requested).all()
         assert (np.abs(np.diff(got**2)) <= 2.0 * 20.0 * step + 1e-9).all()
-        # none could be higher: each is held by what was asked there or by a neighbour
-        held = np.isclose(got, asked)
-        for k in np.flatnonzero(~held):
+        # none could be higher: each is limited by its request or by a neighbour
+        reaches_request = np.isclose(got, requested)
+        for k in np.flatnonzero(~reaches_request):
             sides = [j for j in (k - 1, k + 1) if 0 <= j < len(got)]
             by_neighbour = [
                 np.isclose(got[k] ** 2 - got[j] ** 2, 40.0 * step[min(j, k)]) for j in sides
@@ -289,13 +297,13 @@ def test_semicolons_and_a_byte_order_mark_are_read_and_decimal_commas_are_not(tm
         wire.load("mine.csv", tmp_path)
 
 
-def straight_table(tmp_path, more):
+def straight_table(tmp_path, extra_rows):
     rows = [
         "inf,300,9,3,6.5",
         "inf,600,7,2.5,6.5",
         "inf,900,6,2,6.5",
         "inf,1200,5.4,1.8,6.5",
-        *more,
+        *extra_rows,
     ]
     (tmp_path / "mine.csv").write_text(HEAD + "\n".join(rows) + "\n", encoding="utf-8")
     return wire.load("mine.csv", tmp_path)
@@ -325,7 +333,8 @@ def refused_table(tmp_path, rows):
 
 
 def test_a_table_that_contradicting_rows_spoil_is_refused_for_these(tmp_path):
-    """It was said that beads get wider with speed, and to check the columns."""
+    """The message names the contradicting rows instead of claiming that beads get wider with
+    speed."""
     rows = ["inf,300,4,3,6.5", "inf,300,10,3,6.5", "inf,600,7.5,2.5,6.5", "inf,900,7.2,2,6.5"]
     code, message = refused_table(tmp_path, rows)
     assert code == "TABLE_CONTRADICTS"

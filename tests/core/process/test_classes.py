@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Texts of bead classes: they read back to what was said, and what is wrong with them is named."""
+"""Texts of bead classes restore their values, and errors in them are reported."""
 
 import math
 import random
@@ -25,25 +25,31 @@ KEYS = {
 @pytest.mark.parametrize("seed", range(20))
 def test_texts_read_back(seed):
     rng = random.Random(seed)
-    given = {}
+    classes = {}
     for name in rng.sample(CLASSES, rng.randint(0, len(CLASSES))):
         values = {key: rng.uniform(*ends) for key, ends in KEYS.items() if rng.random() < 0.6}
         schedule = rng.choice([None, rng.randint(1, 65535)])
-        given[name] = BeadClass(name, **values, schedule=schedule)
-    records = BEAD_CLASSES.read(BEAD_CLASSES.text(given.values()))
-    found = {one.name: one for one in records}
-    assert set(found) == {name for name, one in given.items() if one.own_values()}
-    for name, one in found.items():
+        classes[name] = BeadClass(name, **values, schedule=schedule)
+    records = BEAD_CLASSES.read(BEAD_CLASSES.text(classes.values()))
+    read_classes = {bead_class.name: bead_class for bead_class in records}
+    assert set(read_classes) == {
+        name for name, bead_class in classes.items() if bead_class.own_values()
+    }
+    for name, bead_class in read_classes.items():
         assert (
-            set(one.own_values()) == set(given[name].own_values())
-            and one.schedule == given[name].schedule
+            set(bead_class.own_values()) == set(classes[name].own_values())
+            and bead_class.schedule == classes[name].schedule
         )
-        for key, value in one.own_values().items():
-            assert math.isclose(value, given[name].own_values()[key], rel_tol=1e-11, abs_tol=1e-11)
-    read = BEAD_CLASSES.read(BEAD_CLASSES.to_json(records))
-    assert [one.name for one in read] == [one.name for one in records]
-    for one, other in zip(read, records, strict=True):
-        assert one.own_values() == pytest.approx(other.own_values(), rel=1e-15)
+        for key, value in bead_class.own_values().items():
+            assert math.isclose(
+                value, classes[name].own_values()[key], rel_tol=1e-11, abs_tol=1e-11
+            )
+    from_json = BEAD_CLASSES.read(BEAD_CLASSES.to_json(records))
+    assert [bead_class.name for bead_class in from_json] == [
+        bead_class.name for bead_class in records
+    ]
+    for bead_class, original in zip(from_json, records, strict=True):
+        assert bead_class.own_values() == pytest.approx(original.own_values(), rel=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -70,6 +76,7 @@ def test_what_is_wrong_is_named(text, words):
 
 
 def test_a_class_changes_what_it_names_alone():
+    """A class overrides only the values that it names."""
     process = ProcessParameters(
         travel_speed=6.0, schedule=2, lead_on=0.5, classes="fill: travel_speed 9, lead 10"
     )

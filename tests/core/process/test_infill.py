@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Void and double deposit of layers: by formula, and against areas that shapely finds."""
+"""Void and double deposit of layers: by formula, and against areas from shapely."""
 
 import importlib.util
 import math
@@ -61,66 +61,69 @@ def layer(*beads, loops=SECTION, spacing=WIDTH, is_sparse=False):
 
 
 def toolpath(*layers, **values):
-    given = {"bead_width": WIDTH, **values}
-    return Toolpath(tuple(layers), FRAME, HEIGHT, 0.05, family="solid", **given)
+    parameters = {"bead_width": WIDTH, **values}
+    return Toolpath(tuple(layers), FRAME, HEIGHT, 0.05, family="solid", **parameters)
 
 
 def lines(*heights, **values):
-    """Lines that reach far beyond both ends of the section."""
+    """Lines that extend far beyond both ends of the section."""
     return [line((-50, y), (150, y), **values) for y in heights]
 
 
-def coverage(one, number=0):
-    return void_and_double.measure(one, 1.0).layers[number].coverage
+def coverage(path, number=0):
+    return void_and_double.measure(path, 1.0).layers[number].coverage
 
 
 def test_lines_that_touch_leave_nothing_void():
-    one = coverage(toolpath(layer(*lines(2, 6, 10))))
-    assert (one.void, one.over) == pytest.approx((0.0, 0.0), abs=2e-3)
-    # what reaches beyond both ends is as wide as the section; the nominal bead reaches all but its corners
+    """Adjacent lines leave no void."""
+    shares = coverage(toolpath(layer(*lines(2, 6, 10))))
+    assert (shares.void, shares.over) == pytest.approx((0.0, 0.0), abs=2e-3)
+    # lines outside are as wide as the section; the nominal bead reaches all but its corners
     reached = 1200.0 - (4.0 - math.pi) * (0.5 * WIDTH) ** 2
-    assert one.outside == pytest.approx((200.0 - 100.0) * 12.0 / reached, rel=2e-3)
+    assert shares.outside == pytest.approx((200.0 - 100.0) * 12.0 / reached, rel=2e-3)
 
 
 def test_a_gap_is_void_and_its_place_is_in_its_middle():
-    one = coverage(toolpath(layer(*lines(2, 10))))
-    assert one.void == pytest.approx(4.0 / 12.0, rel=5e-3)
-    assert one.over == pytest.approx(0.0, abs=2e-3)
-    assert one.void_size == pytest.approx(4.0, abs=0.3)
-    assert one.over_place is None
-    along, across = (one.void_place - FRAME[:3, 3]) @ FRAME[:3, :2]
+    shares = coverage(toolpath(layer(*lines(2, 10))))
+    assert shares.void == pytest.approx(4.0 / 12.0, rel=5e-3)
+    assert shares.over == pytest.approx(0.0, abs=2e-3)
+    assert shares.void_size == pytest.approx(4.0, abs=0.3)
+    assert shares.over_place is None
+    along, across = (shares.void_place - FRAME[:3, 3]) @ FRAME[:3, :2]
     assert 0.0 < along < 100.0 and across == pytest.approx(6.0, abs=0.3)
-    assert (one.void_place - FRAME[:3, 3]) @ FRAME[:3, 2] == pytest.approx(0.0, abs=1e-9)
+    assert (shares.void_place - FRAME[:3, 3]) @ FRAME[:3, 2] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_lines_that_overlap_are_double():
-    one = coverage(toolpath(layer(*lines(2, 6, 9), loops=(rectangle(100, 11),))))
-    # also beyond both ends, where lines overlap as much
-    assert one.over == pytest.approx(200.0 * 1.0 / 1100.0, rel=0.02)
-    assert one.over_size == pytest.approx(1.0, abs=0.3)
-    assert ((one.over_place - FRAME[:3, 3]) @ FRAME[:3, 1]) == pytest.approx(7.5, abs=0.3)
+    shares = coverage(toolpath(layer(*lines(2, 6, 9), loops=(rectangle(100, 11),))))
+    # including both ends, where lines overlap equally
+    assert shares.over == pytest.approx(200.0 * 1.0 / 1100.0, rel=0.02)
+    assert shares.over_size == pytest.approx(1.0, abs=0.3)
+    assert ((shares.over_place - FRAME[:3, 3]) @ FRAME[:3, 1]) == pytest.approx(7.5, abs=0.3)
 
 
 def test_a_notch_that_the_nominal_bead_does_not_reach_is_not_void():
     notched = np.array(
         [(0, 0), (100, 0), (100, 12), (60, 12), (60, 20), (57, 20), (57, 12), (0, 12)], dtype=float
     )
-    one = coverage(toolpath(layer(*lines(2, 6, 10), loops=(notched,))))
-    assert one.void == pytest.approx(0.0, abs=3e-3)
+    shares = coverage(toolpath(layer(*lines(2, 6, 10), loops=(notched,))))
+    assert shares.void == pytest.approx(0.0, abs=3e-3)
     wide = notched.copy()
     wide[4:6, 0] = (66.0, 57.0)
     wide[3, 0] = 66.0
-    one = coverage(toolpath(layer(*lines(2, 6, 10), loops=(wide,))))
-    assert one.void == pytest.approx(72.0 / 1272.0, rel=0.05)
+    shares = coverage(toolpath(layer(*lines(2, 6, 10), loops=(wide,))))
+    assert shares.void == pytest.approx(72.0 / 1272.0, rel=0.05)
 
 
 def test_a_section_narrower_than_the_nominal_bead_counts_as_a_whole():
-    one = coverage(toolpath(layer(line((-50, 1), (150, 1), width=1.0), loops=(rectangle(100, 2),))))
-    assert one.void == pytest.approx(0.5, rel=0.02)
+    shares = coverage(
+        toolpath(layer(line((-50, 1), (150, 1), width=1.0), loops=(rectangle(100, 2),)))
+    )
+    assert shares.void == pytest.approx(0.5, rel=0.02)
 
 
 def test_the_width_of_a_bead_is_its_volume_by_length_and_layer_height():
-    """A bead model predicts beads that are wider and lower, or lower alone."""
+    """A bead model predicts beads that are wider and lower, or only lower."""
     law = SpeedLaw(1.0, 1.0, 1.0, 100.0)
     beads = lines(2, 6, 10, width=1.25 * WIDTH, height=0.8 * HEIGHT)
     assert coverage(toolpath(layer(*beads), law=law)).void == pytest.approx(0.0, abs=2e-3)
@@ -130,7 +133,7 @@ def test_the_width_of_a_bead_is_its_volume_by_length_and_layer_height():
 
 @pytest.mark.parametrize("ends", [(6.0, 2.0), (2.0, 6.0), (5.0, 5.0)])
 def test_round_ends_add_no_volume_to_tapering_strokes(ends):
-    """The area of a stroke, by trapezoids, is what it covers."""
+    """The area of a stroke by trapezoids equals the covered area."""
     points = np.stack([np.linspace(0.0, 30.0, 61), np.zeros(61)], axis=1)
     wide = np.linspace(*ends, 61)
     stroke = Stroke(points, 0.5 * (wide[1:] + wide[:-1]))
@@ -140,8 +143,10 @@ def test_round_ends_add_no_volume_to_tapering_strokes(ends):
 
 
 def test_the_planned_overlap_of_beads_is_neither_void_nor_double():
-    one = coverage(toolpath(layer(*lines(2, 5, 8, 11), loops=(rectangle(100, 13),), spacing=3.0)))
-    assert (one.void, one.over) == pytest.approx((0.0, 0.0), abs=2e-3)
+    shares = coverage(
+        toolpath(layer(*lines(2, 5, 8, 11), loops=(rectangle(100, 13),), spacing=3.0))
+    )
+    assert (shares.void, shares.over) == pytest.approx((0.0, 0.0), abs=2e-3)
 
 
 @pytest.mark.parametrize(
@@ -149,37 +154,38 @@ def test_the_planned_overlap_of_beads_is_neither_void_nor_double():
     [(30, 20, 4, 4), (30, 20, 3.5, 4), (30, 20, 3.2, 4), (10, 10, 3.5, 4), (50, 5.5, 4, 5)],
 )
 def test_blocks_of_any_width_have_neither_void_nor_double_deposit(long, wide, spacing, width):
-    """With beads of one width a block of 20 mm has 2.7 % of void, or 2.1 % of double deposit."""
+    """With beads of one width a block of 20 mm has 2.7 % void, or 2.1 % double deposit."""
     block = solids.box((0, 0, 0), (long, wide, 4))
     values = {"bead_spacing": spacing, "process": ProcessParameters(bead_width=float(width))}
-    one = coverage(solids.planned(block, **values))
-    assert one.void <= 0.01 and one.over <= 0.01 and one.outside <= 0.01
-    assert coverage(solids.planned(block, widths="fixed", **values)).void >= one.void
+    shares = coverage(solids.planned(block, **values))
+    assert shares.void <= 0.01 and shares.over <= 0.01 and shares.outside <= 0.01
+    assert coverage(solids.planned(block, widths="fixed", **values)).void >= shares.void
 
 
 def test_a_bead_without_length_covers_nothing():
     section = Section(np.eye(4), SECTION, WIDTH)
     line_ = Stroke(np.array([(-50.0, 6.0), (150.0, 6.0)]), np.array([WIDTH]))
     point = Stroke(np.array([(5.0, 2.0), (5.0, 2.0)]), np.array([WIDTH])).drop_repeats()
-    alone, both = (
+    line_only, with_point = (
         void_and_double.draw(section, strokes, WIDTH).coverage
         for strokes in ([line_], [point, line_])
     )
-    assert alone.void == both.void == pytest.approx(2.0 / 3.0, abs=5e-3)
+    assert line_only.void == with_point.void == pytest.approx(2.0 / 3.0, abs=5e-3)
 
 
 @pytest.mark.parametrize(("narrowest", "missing"), [(1.0, 0.0), (0.3, 20 * 2 / (1200 + 20 * 2))])
 def test_a_rib_without_a_bead_is_void_where_a_narrow_bead_would_fit(narrowest, missing):
-    """A rib half a bead wide on the long side of a rectangle: beads of adaptive widths could fill it."""
+    """A rib half a bead wide on the long side of a rectangle could be filled by beads of adaptive
+    width."""
     outline = [(0, 0), (100, 0), (100, 12), (60, 12), (60, 32), (58, 32), (58, 12), (0, 12)]
     section = Section(FRAME, (np.array(outline, dtype=float),), WIDTH, narrowest=narrowest)
-    one = coverage(toolpath(Layer(tuple(lines(2, 6, 10)), section=section)))
-    assert one.void == pytest.approx(missing, abs=3e-3)
+    shares = coverage(toolpath(Layer(tuple(lines(2, 6, 10)), section=section)))
+    assert shares.void == pytest.approx(missing, abs=3e-3)
 
 
 def test_sparse_layers_have_no_void_and_curved_layers_are_not_measured():
-    one = toolpath(layer(*lines(2, 6, 7), is_sparse=True), Layer(tuple(lines(2))))
-    measured = void_and_double.measure(one, 0.0)
+    path = toolpath(layer(*lines(2, 6, 7), is_sparse=True), Layer(tuple(lines(2))))
+    measured = void_and_double.measure(path, 0.0)
     assert measured.issues == () and measured.layers[1].coverage is None
     (row,) = void_and_double.as_dict(measured)["layers"]
     assert row["layer"] == 0 and math.isnan(row["void"]) and row["over"] > 0.2
@@ -188,20 +194,22 @@ def test_sparse_layers_have_no_void_and_curved_layers_are_not_measured():
 
 
 def test_issues_name_layer_place_share_and_remedy():
-    one = toolpath(layer(*lines(2, 6, 10)), layer(*lines(2, 10)), layer(), layer(*lines(2, 6, 9.5)))
-    issues = void_and_double.measure(one, 0.03).issues
+    path = toolpath(
+        layer(*lines(2, 6, 10)), layer(*lines(2, 10)), layer(), layer(*lines(2, 6, 9.5))
+    )
+    issues = void_and_double.measure(path, 0.03).issues
     assert [(issue.code, issue.level, issue.layer) for issue in issues] == [
         ("VOIDS", "warning", 1),
         ("VOIDS", "warning", 3),
-    ]  # a layer without a bead has an issue of its own
+    ]  # a layer without a bead has its own issue
     assert "33.4 %" in issues[0].message and "at (7, " in issues[0].message
     assert "strategy.max_void allows 3 %" in issues[0].message
-    assert [issue.layer for issue in void_and_double.measure(one, 0.05).issues] == [1]
+    assert [issue.layer for issue in void_and_double.measure(path, 0.05).issues] == [1]
 
 
 def test_the_report_has_median_and_worst():
-    one = toolpath(layer(*lines(2, 6, 10)), layer(*lines(2, 10)), layer(*lines(2, 6, 9)))
-    figures = void_and_double.as_dict(void_and_double.measure(one, 0.03))
+    path = toolpath(layer(*lines(2, 6, 10)), layer(*lines(2, 10)), layer(*lines(2, 6, 9)))
+    figures = void_and_double.as_dict(void_and_double.measure(path, 0.03))
     void, over = ([row[name] for row in figures["layers"]] for name in ("void", "over"))
     assert figures["void"]["median"] == sorted(void)[1]
     assert (figures["void"]["worst"], figures["void"]["layer"]) == (void[1], 1)
@@ -211,18 +219,20 @@ def test_the_report_has_median_and_worst():
 
 
 def shapely_shares(path, number):
-    """void, over and outside of a layer in shares of what the nominal bead reaches, by areas: corners of beads mitred, ends round
-    and as long as their volume."""
-    one, nominal = path.layers[number], path.bead_width
-    shells = [geometry.Polygon(loop) for loop in one.section.loops]
-    section = ops.unary_union([shell for shell, sign in signed(shells, one) if sign > 0])
+    """void, over and outside of a layer as shares of the area that the nominal bead reaches, by
+    polygon areas: mitred corners, and round ends that keep the volume."""
+    measured_layer, nominal = path.layers[number], path.bead_width
+    shells = [geometry.Polygon(loop) for loop in measured_layer.section.loops]
+    section = ops.unary_union([shell for shell, sign in signed(shells, measured_layer) if sign > 0])
     section = section.difference(
-        ops.unary_union([shell for shell, sign in signed(shells, one) if sign < 0])
+        ops.unary_union([shell for shell, sign in signed(shells, measured_layer) if sign < 0])
     )
     reached = section.buffer(-0.5 * nominal, 64).buffer(0.5 * nominal, 64)
     covers, deposit = [], 0.0
-    for bead in one.beads:
-        flat = (bead.points - one.section.frame[:3, 3]) @ one.section.frame[:3, :2]
+    for bead in measured_layer.beads:
+        flat = (bead.points - measured_layer.section.frame[:3, 3]) @ measured_layer.section.frame[
+            :3, :2
+        ]
         widths = np.full(len(flat), nominal) if bead.width is None else bead.width
         widths = 0.5 * (widths[1:] + widths[:-1])
         length = np.hypot(*np.diff(flat, axis=0).T)
@@ -236,21 +246,21 @@ def shapely_shares(path, number):
     )
 
 
-def signed(shells, one):
+def signed(shells, measured_layer):
     areas = [
         float(np.sum(loop[:, 0] * np.roll(loop[:, 1], -1) - loop[:, 1] * np.roll(loop[:, 0], -1)))
-        for loop in one.section.loops
+        for loop in measured_layer.section.loops
     ]
     return zip(shells, areas)
 
 
 def cover_of(flat, widths, closed):
-    """Flat bands along each segment, mitred corners between them, round ends."""
+    """Flat bands along each segment, mitred corners between them, and round ends."""
     if not closed:
         for _ in range(2):
             flat, widths = cut(flat, widths, math.pi / 8.0 * widths[0])
             flat, widths = flat[::-1], widths[::-1]
-    pieces = [
+    polygons = [
         geometry.LineString(flat[k : k + 2]).buffer(0.5 * widths[k], cap_style=2)
         for k in range(len(widths))
     ]
@@ -258,31 +268,33 @@ def cover_of(flat, widths, closed):
     if closed:
         joints.append((len(widths) - 1, 0))
     else:
-        pieces += [
+        polygons += [
             geometry.Point(flat[0]).buffer(0.5 * widths[0], 64),
             geometry.Point(flat[-1]).buffer(0.5 * widths[-1], 64),
         ]
     for a, b in joints:
         short = 1e-3
         joint = flat[a + 1]
-        before, after = (flat[a] - joint), (flat[b + 1] - joint)
-        before, after = (short * way / np.hypot(*way) for way in (before, after))
-        turn = math.pi - math.acos(np.clip(before @ after / short**2, -1.0, 1.0))
-        around = geometry.LineString([joint + before, joint, joint + after])
+        incoming, outgoing = (flat[a] - joint), (flat[b + 1] - joint)
+        incoming, outgoing = (
+            short * direction / np.hypot(*direction) for direction in (incoming, outgoing)
+        )
+        turn = math.pi - math.acos(np.clip(incoming @ outgoing / short**2, -1.0, 1.0))
+        around = geometry.LineString([joint + incoming, joint, joint + outgoing])
         style = 2 if turn <= math.radians(95.0) else 1
-        pieces.append(
+        polygons.append(
             around.buffer(0.25 * (widths[a] + widths[b]), 64, cap_style=2, join_style=style)
         )
-    return pieces
+    return polygons
 
 
 def cut(flat, widths, by):
-    """A line without its first `by` mm."""
+    """Cut the first `by` mm off a line."""
     while np.hypot(*(flat[1] - flat[0])) <= by:
         by -= float(np.hypot(*(flat[1] - flat[0])))
         flat, widths = flat[1:], widths[1:]
-    way = flat[1] - flat[0]
-    return np.vstack([flat[0] + by * way / np.hypot(*way), flat[1:]]), widths
+    segment = flat[1] - flat[0]
+    return np.vstack([flat[0] + by * segment / np.hypot(*segment), flat[1:]]), widths
 
 
 FILLS = [
@@ -295,7 +307,7 @@ FILLS = [
 
 @pytest.mark.parametrize("values", FILLS, ids=str)
 def test_planned_layers_against_areas(values):
-    """A ring and a T, cut across other axes than Z too; neither has symmetric layers."""
+    """A ring and a T, also cut across axes other than Z; neither has symmetric layers."""
     strategy = SolidParameters(
         layer_height=4.0, chord_error=0.05, bead_spacing=4.0, direction="1 0 0", **values
     )
@@ -305,15 +317,15 @@ def test_planned_layers_against_areas(values):
     measured = void_and_double.measure(path, 0.03)
     numbers = [2, len(path.layers) // 2, len(path.layers) - 3]
     for number in numbers:
-        one = measured.layers[number].coverage
+        shares = measured.layers[number].coverage
         expected = shapely_shares(path, number)
-        assert (one.void, one.over, one.outside) == pytest.approx(expected, abs=2.5e-3)
+        assert (shares.void, shares.over, shares.outside) == pytest.approx(expected, abs=2.5e-3)
     worst = max(
-        (number for number, one in enumerate(measured.layers)),
+        (number for number, shares in enumerate(measured.layers)),
         key=lambda number: measured.layers[number].coverage.void,
     )
-    place, section = measured.layers[worst].coverage.void_place, path.layers[worst].section
-    assert (place - section.frame[:3, 3]) @ section.frame[:3, 2] == pytest.approx(0.0, abs=1e-6)
+    position, section = measured.layers[worst].coverage.void_place, path.layers[worst].section
+    assert (position - section.frame[:3, 3]) @ section.frame[:3, 2] == pytest.approx(0.0, abs=1e-6)
     picture = void_and_double.picture(path, worst)
     assert picture.inside[picture.void].all()
 
@@ -322,8 +334,8 @@ def test_equal_layers_are_measured_once(monkeypatch):
     calls = []
     draw = void_and_double._picture
     monkeypatch.setattr(void_and_double, "_picture", lambda *args: calls.append(1) or draw(*args))
-    one = layer(*lines(2, 6, 9))
-    moved = replace(one, section=replace(one.section, frame=FRAME + 0.0))
-    measured = void_and_double.measure(toolpath(*[one] * 5, moved), 1.0)
-    assert len(calls) == 2  # once for all, and once for the place of the worst
-    assert len({each.coverage.over for each in measured.layers}) == 1
+    repeated_layer = layer(*lines(2, 6, 9))
+    moved = replace(repeated_layer, section=replace(repeated_layer.section, frame=FRAME + 0.0))
+    measured = void_and_double.measure(toolpath(*[repeated_layer] * 5, moved), 1.0)
+    assert len(calls) == 2  # once for all layers, and once for the position of the worst
+    assert len({measured_layer.coverage.over for measured_layer in measured.layers}) == 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Heights of bent layers, against those of circles about an axis."""
+"""Heights of curved layers, against circles about an axis."""
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ RADIUS, HEIGHT, SPACING = 60.0, 2.0, 5.0
 
 
 def rulings(radius, azimuths):
-    """Straight beads along a cylinder at azimuths, rad."""
+    """Straight beads along a cylinder at azimuths in rad."""
     beads = []
     for azimuth in azimuths:
         out = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
@@ -23,6 +23,7 @@ def rulings(radius, azimuths):
 
 @pytest.mark.parametrize("aside", [0.0, 0.5], ids=["above each other", "between each other"])
 def test_the_height_of_layers_about_a_cylinder_is_that_of_their_radii(aside):
+    """The height of layers around a cylinder is the difference of their radii."""
     step = SPACING / RADIUS
     azimuths = 0.1 + step * np.arange(16)
     layers = (rulings(RADIUS, azimuths), rulings(RADIUS + HEIGHT, azimuths[:-1] + aside * step))

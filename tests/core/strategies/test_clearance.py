@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The nozzle against all that was deposited before, by brute force: beads as swept solids, a plain test of the cone."""
+"""Nozzle clearance from all earlier deposit, by brute force: beads as swept solids, and a plain
+test of the cone."""
 
 import numpy as np
 import pytest
@@ -40,7 +41,7 @@ LOW_HORN = Meridian.chained(
 )
 SLIM = NozzleParameters(half_angle=np.radians(8.0), diameter=0.4, length=40.0)
 STUBBY = NozzleParameters(half_angle=np.radians(50.0), diameter=3.0, length=15.0)
-USUAL = NozzleParameters()
+DEFAULT_NOZZLE = NozzleParameters()
 
 
 def planned(
@@ -79,34 +80,34 @@ def lowest(toolpath, nozzle, lead=0.0, tilt=0.0):
 
 
 def tilted(direction, back):
-    """Turned towards the vertical by `back`."""
+    """Tilt a direction towards the vertical by `back`."""
     level = np.hypot(direction[0], direction[1])
     angle = np.arctan2(level, direction[2]) - back
     return np.array([*(direction[:2] / level * np.sin(angle)), np.cos(angle)])
 
 
 def backs(free, toolpath):
-    """By how much each bead is tilted back, rad."""
+    """Tilt-back angle of each bead in rad."""
     return [
-        np.arccos(np.clip((one.build[0] * other.build[0]).sum(), -1.0, 1.0))
-        for (_, _, one), (_, _, other) in zip(free, toolpath, strict=True)
+        np.arccos(np.clip((bead.build[0] * unrestricted.build[0]).sum(), -1.0, 1.0))
+        for (_, _, bead), (_, _, unrestricted) in zip(free, toolpath, strict=True)
     ]
 
 
 CASES = [
-    (DOME, USUAL, {}),
+    (DOME, DEFAULT_NOZZLE, {}),
     (DOME, SLIM, {}),
     (DOME, STUBBY, {}),
-    (SMALL_DOME, USUAL, {}),
-    (BOTTLE, USUAL, {}),
+    (SMALL_DOME, DEFAULT_NOZZLE, {}),
+    (BOTTLE, DEFAULT_NOZZLE, {}),
     (BOTTLE, SLIM, {}),
-    (DOME, USUAL, {"lead": 0.2}),
-    (DOME, USUAL, {"lead": -0.3, "tilt": 0.1}),
+    (DOME, DEFAULT_NOZZLE, {"lead": 0.2}),
+    (DOME, DEFAULT_NOZZLE, {"lead": -0.3, "tilt": 0.1}),
     (BOTTLE, STUBBY, {"tilt": -0.2}),
-    (BOTTLE, USUAL, {"lead": 0.4}),
+    (BOTTLE, DEFAULT_NOZZLE, {"lead": 0.4}),
     (HORN, STUBBY, {}),
-    (LAVAL, USUAL, {}),
-    (VASE, USUAL, {}),
+    (LAVAL, DEFAULT_NOZZLE, {}),
+    (VASE, DEFAULT_NOZZLE, {}),
     (VASE, STUBBY, {}),
 ]
 
@@ -117,27 +118,38 @@ CASES = [
 def test_the_nozzle_is_clear_of_wide_beads_and_would_not_be_with_less_tilt_back(
     meridian, nozzle, build, turn
 ):
+    """The planned tilt-back clears the nozzle of wide beads, and less would not."""
     free = planned(meridian, nozzle, turn=turn, clearance="none", max_tilt=np.pi, **build)
     toolpath = planned(meridian, nozzle, turn=turn, max_tilt=np.pi, **build)
     assert not [issue for issue in toolpath.issues if issue.level == "error"]
-    laid, low = swept(toolpath), lowest(toolpath, nozzle, **build)
+    deposit, low = swept(toolpath), lowest(toolpath, nozzle, **build)
     touched = 0
     for k, ((_, _, bead), back) in enumerate(zip(toolpath, backs(free, toolpath), strict=True)):
-        some, own = np.unique(np.linspace(0, len(bead) - 1, 5).astype(int)), laid.layer_began(k)
+        samples, layer_start = (
+            np.unique(np.linspace(0, len(bead) - 1, 5).astype(int)),
+            deposit.layer_began(k),
+        )
 
-        def deepest(point, tool, k=k, bead=bead, own=own):
-            return laid.deepest(
-                bead.points[point], tool, laid.begin[k] + point + 1, own, cone(nozzle), low
+        def deepest(point, tool, k=k, bead=bead, layer_start=layer_start):
+            return deposit.deepest(
+                bead.points[point],
+                tool,
+                deposit.begin[k] + point + 1,
+                layer_start,
+                cone(nozzle),
+                low,
             )
 
-        assert max(deepest(j, bead.tool[j]) for j in some) < 1e-4
-        # for the blunt nozzle, beads are tilted back further than they need so that those after them find room
+        assert max(deepest(j, bead.tool[j]) for j in samples) < 1e-4
+        # for the blunt nozzle, beads tilt back further than necessary so that later beads find
+        # space
         if back > np.radians(3.0) and not build and nozzle is not STUBBY:
             touched += 1
-            wanted = free.layers[k].beads[0].build
-            # the nozzle is looked at larger by the chord error of the deposit, for which it is tilted a little further
+            free_directions = free.layers[k].beads[0].build
+            # the nozzle is enlarged by the chord error of the deposit, which tilts it slightly
+            # further
             less = 0.96 * back - np.radians(0.8)
-            assert max(deepest(j, tilted(wanted[j], less)) for j in some) > 0.0
+            assert max(deepest(j, tilted(free_directions[j], less)) for j in samples) > 0.0
     if (
         (meridian is DOME or meridian is BOTTLE)
         and turn is None
@@ -148,16 +160,16 @@ def test_the_nozzle_is_clear_of_wide_beads_and_would_not_be_with_less_tilt_back(
 
 
 def test_where_directions_differ_along_a_bead_each_of_its_points_is_clear():
-    toolpath = planned(DOME, USUAL, turn=(0.3, 5.0), mode="layer")
+    toolpath = planned(DOME, DEFAULT_NOZZLE, turn=(0.3, 5.0), mode="layer")
     assert not [issue for issue in toolpath.issues if issue.level == "error"]
-    laid, low = swept(toolpath), lowest(toolpath, USUAL)
+    laid, low = swept(toolpath), lowest(toolpath, DEFAULT_NOZZLE)
     depths = [
         laid.deepest(
             bead.points[j],
             bead.tool[j],
             laid.begin[k] + j + 1,
             laid.layer_began(k),
-            cone(USUAL),
+            cone(DEFAULT_NOZZLE),
             low,
         )
         for k, (_, _, bead) in enumerate(toolpath)
@@ -170,7 +182,7 @@ def test_where_directions_differ_along_a_bead_each_of_its_points_is_clear():
 @pytest.mark.parametrize(
     ("meridian", "nozzle", "build"),
     [
-        (LOW_HORN, USUAL, {}),
+        (LOW_HORN, DEFAULT_NOZZLE, {}),
         (LOW_HORN, STUBBY, {}),
         (LOW_HORN, STUBBY, {"lead": 0.2}),
         (HORN, STUBBY, {"tilt": 0.3}),
@@ -185,7 +197,7 @@ def test_the_nozzle_is_clear_of_the_platform_and_no_more_tilted_than_that_needs(
     )
     low = (
         cone(nozzle).clear_of(0.0, 0.0) + 0.2
-    )  # what a nozzle touches where it stands on a face, and how far faces are off
+    )  # contact of a nozzle that stands on a face, and the tolerance of faces
     touched = 0
     for (_, _, bead), back in zip(toolpath, backs(free, toolpath), strict=True):
         assert in_platform(bead.points[0], bead.tool[0], cone(nozzle), low, 100.0) < 1e-4
@@ -197,9 +209,9 @@ def test_the_nozzle_is_clear_of_the_platform_and_no_more_tilted_than_that_needs(
 
 
 def test_the_largest_tilt_back_is_told():
-    toolpath = planned(DOME, USUAL)
+    toolpath = planned(DOME, DEFAULT_NOZZLE)
     note = next(issue for issue in toolpath.issues if issue.code == "TILT_BACK")
-    back = np.degrees(backs(planned(DOME, USUAL, clearance="none"), toolpath))
+    back = np.degrees(backs(planned(DOME, DEFAULT_NOZZLE, clearance="none"), toolpath))
     back[back < 1e-5] = 0.0
     assert f"layer {int(np.argmax(back > 1e-6))} on" in note.message
     assert f"{back.max():.2f} deg" in note.message
@@ -207,7 +219,7 @@ def test_the_largest_tilt_back_is_told():
 
 
 def test_a_wall_that_turns_down_outside_cannot_be_reached():
-    # up inside and down again outside: the nozzle would have to come through what stands there
+    # up inside and down again outside: the nozzle would have to pass through the inner wall
     gutter = Meridian.chained(
         [
             line((20.0, 0.0), (20.0, 15.0)),
@@ -216,14 +228,16 @@ def test_a_wall_that_turns_down_outside_cannot_be_reached():
         ]
     )
     issue = next(
-        issue for issue in planned(gutter, USUAL, height=1.5).issues if issue.code == "CLEARANCE"
+        issue
+        for issue in planned(gutter, DEFAULT_NOZZLE, height=1.5).issues
+        if issue.code == "CLEARANCE"
     )
     assert issue.level == "error"
     assert issue.layer >= 11
 
 
 def test_beads_too_wide_for_what_is_left_open_are_told_with_layer_and_remedy():
-    # up, over and down into the well that is left: whichever way the nozzle leans, it meets what stands there
+    # up, over and down into the remaining well: at every tilt the nozzle touches the wall
     well = Meridian.chained(
         [
             line((20.0, 0.0), (20.0, 20.0)),
@@ -232,20 +246,22 @@ def test_beads_too_wide_for_what_is_left_open_are_told_with_layer_and_remedy():
         ]
     )
     issue = next(
-        issue for issue in planned(well, USUAL, height=2.0).issues if issue.code == "CLEARANCE"
+        issue
+        for issue in planned(well, DEFAULT_NOZZLE, height=2.0).issues
+        if issue.code == "CLEARANCE"
     )
     assert issue.level == "error" and issue.layer >= 10 and issue.bead == 0
     assert "beads of 8 mm" in issue.message and "process.bead_width" in issue.message
 
 
 def test_without_clearance_nothing_is_tilted():
-    for i, layer in enumerate(planned(DOME, USUAL, clearance="none").layers):
+    for i, layer in enumerate(planned(DOME, DEFAULT_NOZZLE, clearance="none").layers):
         assert np.arccos(layer.beads[0].build[0, 2]) == pytest.approx(3.0 * i / 45.0, abs=1e-7)
 
 
 def test_beads_as_thin_as_lines_are_tilted_less():
-    thin, wide = (planned(DOME, USUAL, width=width, height=1.0) for width in (0.5, 8.0))
-    free = planned(DOME, USUAL, clearance="none", height=1.0)
+    thin, wide = (planned(DOME, DEFAULT_NOZZLE, width=width, height=1.0) for width in (0.5, 8.0))
+    free = planned(DOME, DEFAULT_NOZZLE, clearance="none", height=1.0)
     assert np.all(np.array(backs(free, thin)) < np.array(backs(free, wide)) + 1e-5)
     assert backs(free, thin)[60] < backs(free, wide)[60] - np.radians(5.0)
 
@@ -254,18 +270,21 @@ def test_beads_as_thin_as_lines_are_tilted_less():
     ("sense", "build"), [("counter-clockwise", {}), ("clockwise", {"lead": 0.2})]
 )
 def test_a_spiral_is_clear_of_all_its_earlier_turns(sense, build):
+    """A spiral clears all its earlier turns."""
     wall = RevolvedWall(SMALL_DOME, np.eye(4))
     strategy = RevolutionParameters(path="spiral", chord_error=0.02, layer_height=1.5)
     process = ProcessParameters(direction=sense)
     toolpath = revolution.plan(
-        wall, strategy, BuildDirectionParameters(**build), process, USUAL, 0.0
+        wall, strategy, BuildDirectionParameters(**build), process, DEFAULT_NOZZLE, 0.0
     )
-    laid, low = swept(toolpath), lowest(toolpath, USUAL, **build)
+    deposit, low = swept(toolpath), lowest(toolpath, DEFAULT_NOZZLE, **build)
     bead = toolpath.layers[0].beads[0]
     turned = np.abs(bead.parameter - bead.parameter[0])
-    own = np.searchsorted(turned, turned - 2.0 * np.pi - 1e-6)
+    turn_start = np.searchsorted(turned, turned - 2.0 * np.pi - 1e-6)
     depths = [
-        laid.deepest(bead.points[i], bead.tool[i], i + 1, own[i], cone(USUAL), low)
+        deposit.deepest(
+            bead.points[i], bead.tool[i], i + 1, turn_start[i], cone(DEFAULT_NOZZLE), low
+        )
         for i in range(1, len(bead), 7)
     ]
     assert -1.0 < max(depths) < 1e-4

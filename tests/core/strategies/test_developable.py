@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids on hubs, checked against what is known of them: beads on their cones, where the solid is and nowhere else."""
+"""Rotary solids against known geometry: beads are on their cones, inside the solid and nowhere
+else."""
 
 import math
 
@@ -19,15 +20,15 @@ from freecad_am.core.process import wire
 from freecad_am.core.strategies.solids.plan import plan as plan_solids
 
 CYLINDER, CONE = Developable(45.0), Developable(60.0, 200.0)
-LOW, HIGH = (
+BOX_LOW, BOX_HIGH = (
     np.array([20.0, -17.0, 20.0]),
     np.array([84.0, 17.0, 95.0]),
 )  # of the box that is a blade
 ERROR = 0.05
 
 
-def box(low=LOW, high=HIGH, turned=0.0, name="blade"):
-    """A box turned about the hub's axis."""
+def box(low=BOX_LOW, high=BOX_HIGH, turned=0.0, name="blade"):
+    """A box rotated about the hub's axis."""
     corners = np.array(
         [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
     )
@@ -45,7 +46,7 @@ def box(low=LOW, high=HIGH, turned=0.0, name="blade"):
 
 
 def collar(inner, outer, low, high, sides=180, name="collar"):
-    """A ring about the axis, closed by flat ends."""
+    """A ring about the axis with flat ends."""
     angle = np.linspace(0.0, 2.0 * np.pi, sides, endpoint=False)
     rows = [
         np.stack([r * np.cos(angle), r * np.sin(angle), np.full(sides, z)], axis=1)
@@ -61,7 +62,7 @@ def collar(inner, outer, low, high, sides=180, name="collar"):
 
 
 def sound(body):
-    """The body, a solid that is closed and not inside out."""
+    """Check that the body is a closed solid with outward triangles, and return it."""
     SolidMesh(body.vertices, body.triangles).refuse_unsound(body.name)
     return body
 
@@ -71,29 +72,30 @@ def solids(surface, *bodies, frame=None):
     return SolidsOnHub("part", (Group(base, bodies),), 0.0)
 
 
-def planned(made, build=None, process=None, model=None, **values):
-    given = {"layer_height": 6.0, "chord_error": ERROR, "bead_spacing": 6.0, **values}
+def planned(hub_solids, build=None, process=None, model=None, **values):
+    parameters = {"layer_height": 6.0, "chord_error": ERROR, "bead_spacing": 6.0, **values}
     return plan_solids(
-        made,
-        DevelopableParameters(**given),
+        hub_solids,
+        DevelopableParameters(**parameters),
         build or BuildDirectionParameters(),
         process or ProcessParameters(),
         model,
     )
 
 
-def away(surface, points):
-    """Distance from the hub by the straight line of its meridian."""
+def distance_from_hub(surface, points):
+    """Distance from the hub along the normal of its meridian line."""
     rho, z = np.hypot(points[:, 0], points[:, 1]), points[:, 2]
     if math.isinf(surface.height):
         return rho - surface.radius
     start, end = np.array([surface.radius, 0.0]), np.array([0.0, surface.height])
-    way = (end - start) / np.hypot(*(end - start))
-    return (rho - start[0]) * way[1] - (z - start[1]) * way[0]
+    direction = (end - start) / np.hypot(*(end - start))
+    return (rho - start[0]) * direction[1] - (z - start[1]) * direction[0]
 
 
-def laid(surface, points):
-    """The plane by polar coordinates about the apex, or by arc length: written without the code under test."""
+def unroll_points(surface, points):
+    """The unrolled plane by polar coordinates about the apex, or by arc length, independent of the
+    tested code."""
     theta = np.arctan2(points[:, 1], points[:, 0])
     if math.isinf(surface.height):
         return np.stack([np.hypot(points[:, 0], points[:, 1]) * theta, points[:, 2]], axis=1)
@@ -108,16 +110,19 @@ def to_lines(points, lines):
     best = np.full(len(points), np.inf)
     for line in lines:
         a, b = line[:-1], line[1:]
-        way = b - a
-        for some in np.array_split(
+        segments = b - a
+        for block in np.array_split(
             np.arange(len(points)), max(1, len(points) * len(a) // 2_000_000)
         ):
-            off = points[some, None] - a
+            off = points[block, None] - a
             share = np.clip(
-                (off * way).sum(axis=2) / np.maximum((way * way).sum(axis=1), 1e-300), 0.0, 1.0
+                (off * segments).sum(axis=2)
+                / np.maximum((segments * segments).sum(axis=1), 1e-300),
+                0.0,
+                1.0,
             )
-            best[some] = np.minimum(
-                best[some], np.linalg.norm(off - share[..., None] * way, axis=2).min(axis=1)
+            best[block] = np.minimum(
+                best[block], np.linalg.norm(off - share[..., None] * segments, axis=2).min(axis=1)
             )
     return best
 
@@ -126,15 +131,18 @@ def to_lines(points, lines):
 @pytest.mark.parametrize("surface", [CYLINDER, CONE], ids=["cylinder", "cone"])
 @pytest.mark.always
 def test_beads_lie_on_their_surfaces_and_in_the_solid(surface, fill):
-    """Points on the cone to the last digits, chords within the chord error, layers the layer height apart."""
+    """Points on the cone to rounding, chords within the chord error, layers one layer height
+    apart."""
     path = planned(solids(surface, box()), fill=fill)
     assert path.family == "developable" and len(path.layers) >= 6
     for index, layer in enumerate(path.layers):
         for bead in layer.beads:
-            assert np.abs(away(surface, bead.points) - 6.0 * index).max() < 1e-9
+            assert np.abs(distance_from_hub(surface, bead.points) - 6.0 * index).max() < 1e-9
             middle = 0.5 * (bead.points[1:] + bead.points[:-1])
-            assert np.abs(away(surface, middle) - 6.0 * index).max() < ERROR
-            inside = ((bead.points > LOW - ERROR) & (bead.points < HIGH + ERROR)).all(axis=1)
+            assert np.abs(distance_from_hub(surface, middle) - 6.0 * index).max() < ERROR
+            inside = ((bead.points > BOX_LOW - ERROR) & (bead.points < BOX_HIGH + ERROR)).all(
+                axis=1
+            )
             assert inside.all()
             normal = np.stack(
                 [
@@ -156,22 +164,23 @@ def test_beads_lie_on_their_surfaces_and_in_the_solid(surface, fill):
 @pytest.mark.parametrize("surface", [CYLINDER, CONE], ids=["cylinder", "cone"])
 @pytest.mark.always
 def test_beads_cover_the_solid_and_nothing_else(surface, fill):
-    """A raster over the surface, in the box or not by its planes, against beads as wide as their spacing."""
+    """A raster over the surface, inside or outside the box by its planes, against beads as wide as
+    their spacing."""
     path = planned(solids(surface, box()), fill=fill)
     layer = 3
     offset = surface.offset(6.0 * layer)
-    z = np.arange(LOW[2] - 6.0, HIGH[2] + 6.0, 0.7)
+    z = np.arange(BOX_LOW[2] - 6.0, BOX_HIGH[2] + 6.0, 0.7)
     theta = np.arange(-0.6, 0.6, 0.7 / offset.radius)
     theta, z = (grid.ravel() for grid in np.meshgrid(theta, z))
     rho = offset.radius if math.isinf(offset.height) else offset.radius * (1.0 - z / offset.height)
     raster = np.stack([rho * np.cos(theta), rho * np.sin(theta), z], axis=1)
-    inside = ((raster > LOW) & (raster < HIGH)).all(axis=1)
-    lines = [laid(offset, bead.points) for bead in path.layers[layer].beads]
-    plane = laid(offset, raster)
+    inside = ((raster > BOX_LOW) & (raster < BOX_HIGH)).all(axis=1)
+    lines = [unroll_points(offset, bead.points) for bead in path.layers[layer].beads]
+    plane = unroll_points(offset, raster)
     distance = to_lines(plane, lines)
     area = (
         np.cos(np.arctan2(1.0, 1.0)) * rho if np.ndim(rho) else np.ones(len(z))
-    )  # of a cell of the raster, to a factor
+    )  # of a raster cell, to a factor
     covered = distance <= 3.0 + 0.02
     assert area[covered & inside].sum() > 0.99 * area[inside].sum() - 4.0 * 0.25 * (6.0**2) * (
         1 - math.pi / 4
@@ -179,7 +188,7 @@ def test_beads_cover_the_solid_and_nothing_else(surface, fill):
     assert area[covered & ~inside].sum() < 0.01 * area[inside].sum()
     assert (
         distance[inside].max() < 3.0 * math.sqrt(2.0) + 0.2
-    )  # nothing left open but the sharp corners of the box
+    )  # nothing open except the sharp corners of the box
 
 
 @pytest.mark.parametrize("surface", [CYLINDER, CONE], ids=["cylinder", "cone"])
@@ -190,20 +199,22 @@ def test_neighbouring_contours_are_the_spacing_apart(surface):
         beads = [bead for bead in path.layers[index].beads if bead.closed]
         assert len(beads) >= 2
         outer, inner = (
-            laid(offset, bead.points) for bead in sorted(beads, key=lambda bead: -bead.length)[:2]
+            unroll_points(offset, bead.points)
+            for bead in sorted(beads, key=lambda bead: -bead.length)[:2]
         )
         assert np.abs(to_lines(inner, [outer]) - 6.0).max() < 0.06
 
 
 def test_order_of_beads_is_around_the_axis_inner_rings_first():
-    made = solids(
+    """Beads are ordered around the axis, inner rings first."""
+    hub_solids = solids(
         CYLINDER, *(box(turned=turn, name=f"blade {k}") for k, turn in enumerate((0.1, 2.2, 4.3)))
     )
-    path = planned(made)
+    path = planned(hub_solids)
     layer = path.layers[2].beads
     middles = [bead.points[:-1].mean(axis=0) for bead in layer]
     angle = [math.atan2(middle[1], middle[0]) % (2.0 * np.pi) for middle in middles]
-    blade = [int(np.argmin([abs(one - turn) for turn in (0.1, 2.2, 4.3)])) for one in angle]
+    blade = [int(np.argmin([abs(value - turn) for turn in (0.1, 2.2, 4.3)])) for value in angle]
     closed = [k for k, bead in enumerate(layer) if bead.closed]
     outer = closed[-3:]
     assert [blade[k] for k in outer] == [0, 1, 2]
@@ -211,43 +222,46 @@ def test_order_of_beads_is_around_the_axis_inner_rings_first():
     assert [blade[k] for k in inner] == [0, 1, 2] and layer[inner[0]].length < layer[
         outer[0]
     ].length
-    assert path.layers[0].first and not any(one.first for one in path.layers[1:])
-    one_by_one = planned(made, order="feature")
+    assert path.layers[0].first and not any(value.first for value in path.layers[1:])
+    one_by_one = planned(hub_solids, order="feature")
     assert len(one_by_one.layers) == 3 * len(path.layers)
-    assert [index for index, one in enumerate(one_by_one.layers) if one.first] == [
+    assert [index for index, value in enumerate(one_by_one.layers) if value.first] == [
         k * len(path.layers) for k in range(3)
     ]
     assert one_by_one.length == pytest.approx(path.length)
 
 
 def test_a_turned_hub_has_the_same_beads_turned():
-    """Frames, and cutting lines: a blade astride the half turn is cut as any other."""
+    """Frames and cuts do not change the beads: a blade across the half turn is cut like any
+    other."""
     plain = planned(solids(CONE, box()), fill="zigzag")
     astride = planned(solids(CONE, box(turned=math.pi)), fill="zigzag")
     frame = upright(np.array([5.0, -3.0, 8.0]), np.array([0.6, 0.0, 0.8]))
     moved = Body("blade", box().vertices @ frame[:3, :3].T + frame[:3, 3], box().triangles)
     leaning = planned(solids(CONE, moved, frame=frame), fill="zigzag")
-    for (_, _, one), (_, _, other), (_, _, third) in zip(plain, astride, leaning, strict=True):
-        np.testing.assert_allclose(other.points, one.points * [-1.0, -1.0, 1.0], atol=1e-6)
+    for (_, _, bead), (_, _, astride_bead), (_, _, leaning_bead) in zip(
+        plain, astride, leaning, strict=True
+    ):
+        np.testing.assert_allclose(astride_bead.points, bead.points * [-1.0, -1.0, 1.0], atol=1e-6)
         np.testing.assert_allclose(
-            third.points, one.points @ frame[:3, :3].T + frame[:3, 3], atol=1e-6
+            leaning_bead.points, bead.points @ frame[:3, :3].T + frame[:3, 3], atol=1e-6
         )
-        np.testing.assert_allclose(third.build, one.build @ frame[:3, :3].T, atol=1e-9)
+        np.testing.assert_allclose(leaning_bead.build, bead.build @ frame[:3, :3].T, atol=1e-9)
 
 
 def test_the_cut_is_turned_until_no_contour_crosses_it():
-    """Two pieces of one body, one of them where the cut would be: opposite to the middle of both."""
-    parts = [box(turned=turn) for turn in (0.0, 2.0, 4.2)]
-    count = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    """Two parts of one body, one of them at the default cut, opposite to the middle of both."""
+    blades = [box(turned=turn) for turn in (0.0, 2.0, 4.2)]
+    count = np.cumsum([0, *(len(blade.vertices) for blade in blades)])
     body = Body(
         "blades",
-        np.vstack([part.vertices for part in parts]),
-        np.vstack([part.triangles + start for part, start in zip(parts, count)]),
+        np.vstack([blade.vertices for blade in blades]),
+        np.vstack([blade.triangles + start for blade, start in zip(blades, count)]),
     )
-    whole = planned(solids(CONE, body))
-    single = planned(solids(CONE, *parts))
-    assert whole.length == pytest.approx(single.length, rel=2e-5)
-    assert whole.bead_count == single.bead_count
+    one_body = planned(solids(CONE, body))
+    single = planned(solids(CONE, *blades))
+    assert one_body.length == pytest.approx(single.length, rel=2e-5)
+    assert one_body.bead_count == single.bead_count
 
 
 def test_solids_all_round_the_hub_have_closed_beads():
@@ -260,7 +274,7 @@ def test_solids_all_round_the_hub_have_closed_beads():
             round_ = [bead for bead in layer.beads if bead.closed]
             assert len(round_) >= 2
             for bead in layer.beads:
-                assert np.abs(away(surface, bead.points) - 4.0 * index).max() < 1e-9
+                assert np.abs(distance_from_hub(surface, bead.points) - 4.0 * index).max() < 1e-9
                 step = np.diff(np.unwrap(np.arctan2(bead.points[:, 1], bead.points[:, 0])))
                 assert abs(abs(step.sum()) - 2.0 * np.pi) < 1e-6 or not bead.closed
                 assert np.linalg.norm(np.diff(bead.points, axis=0), axis=1).max() < 30.0
@@ -295,9 +309,10 @@ def helix(turns, radius=(38.0, 60.0), pitch=40.0, height=14.0, steps=90):
 def test_a_thread_stays_in_one_piece():
     path = planned(solids(CYLINDER, helix(2.5)), layer_height=5.0, chord_error=0.1)
     lengths = [max(bead.length for bead in layer.beads) for layer in path.layers]
-    assert min(lengths) > 2.0 * 2.5 * 2.0 * np.pi * 44.0  # along and back
+    assert min(lengths) > 2.0 * 2.5 * 2.0 * np.pi * 44.0  # out and back
     assert all(
-        np.abs(away(CYLINDER, bead.points) - 5.0 * index).max() < 1e-9 for index, _, bead in path
+        np.abs(distance_from_hub(CYLINDER, bead.points) - 5.0 * index).max() < 1e-9
+        for index, _, bead in path
     )
 
 
@@ -305,15 +320,16 @@ def test_margin_stands_out_beside_and_above():
     plain, blank = planned(solids(CYLINDER, box())), planned(solids(CYLINDER, box()), margin=7.0)
     assert len(blank.layers) >= len(plain.layers) + 1
     for index, _, bead in blank:
-        assert np.abs(away(CYLINDER, bead.points) - 6.0 * index).max() < 1e-9
+        assert np.abs(distance_from_hub(CYLINDER, bead.points) - 6.0 * index).max() < 1e-9
     low = min(bead.points[:, 2].min() for bead in blank.layers[2].beads)
-    assert low == pytest.approx(LOW[2] - 7.0 + 3.0, abs=0.06)
-    top = max(away(CYLINDER, box().vertices))
+    assert low == pytest.approx(BOX_LOW[2] - 7.0 + 3.0, abs=0.06)
+    top = max(distance_from_hub(CYLINDER, box().vertices))
     assert 6.0 * (len(blank.layers) - 1) < top + 7.0
 
 
 @pytest.mark.parametrize("direction", ["counter-clockwise", "clockwise", "alternate"])
 def test_the_torch_leans_outwards_on_outer_contours_alone(direction):
+    """The torch leans outwards on outer contours only."""
     path = planned(
         solids(CYLINDER, box()),
         process=ProcessParameters(direction=direction),
@@ -332,6 +348,7 @@ def test_the_torch_leans_outwards_on_outer_contours_alone(direction):
 
 
 def test_lead_and_tilt_are_those_asked_for():
+    """Lead and tilt have the requested angles away from bends."""
     build = BuildDirectionParameters(
         lead=math.radians(10.0), tilt=math.radians(-7.0), max_turn="inf"
     )
@@ -343,13 +360,13 @@ def test_lead_and_tilt_are_those_asked_for():
     )
     along = step[1:] + step[:-1]
     along /= np.linalg.norm(along, axis=1)[:, None]
-    flat = np.diff(laid(CONE, bead.points), axis=0)
+    flat = np.diff(unroll_points(CONE, bead.points), axis=0)
     heading = np.unwrap(np.arctan2(flat[:, 1], flat[:, 0]))
     turn = np.abs(np.diff(heading))
-    way = np.cumsum(np.hypot(*flat.T))[:-1]
-    bends = way[turn > np.radians(5.0)]  # about which the torch goes round the normal
+    arc_length = np.cumsum(np.hypot(*flat.T))[:-1]
+    bend_stations = arc_length[turn > np.radians(5.0)]  # there the torch rotates around the normal
     straight = (turn < np.radians(0.15)) & (
-        np.abs(way[:, None] - bends).min(axis=1, initial=np.inf) > 0.15
+        np.abs(arc_length[:, None] - bend_stations).min(axis=1, initial=np.inf) > 0.15
     )
     assert straight.sum() > 3
     along, tool, normal = along[straight], bead.tool[1:-1][straight], bead.build[1:-1][straight]
@@ -361,6 +378,7 @@ def test_lead_and_tilt_are_those_asked_for():
 
 
 def test_speeds_hold_the_width():
+    """Speeds hold the width within the table and the acceleration limit."""
     model = wire.load("csw")
     process = ProcessParameters(bead_width=9.5, wire=WireParameters(feed=model.wire_feed))
     path = planned(solids(CONE, box()), process=process, model=model)
@@ -370,40 +388,41 @@ def test_speeds_hold_the_width():
     assert straight <= speed.min() < 1.001 * straight
     for _, _, bead in path:
         assert (np.abs(np.diff(bead.speed[1:] ** 2)) <= 2.0 * 20.0 * bead.length).all()
-        way = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
-        gain = np.abs(np.diff(bead.speed[1:] ** 2)) / (way[1:] + way[:-1])
+        steps = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+        gain = np.abs(np.diff(bead.speed[1:] ** 2)) / (steps[1:] + steps[:-1])
         assert gain.max() < 20.0 * 1.2  # mm/s2, between middles of segments
         assert bead.width.min() > 9.5 - 1e-6  # never faster than the width allows
-    told = {issue.code: issue for issue in path.issues}
-    assert {"BEAD_MODEL", "BEAD_HEIGHT", "TIGHT_BENDS"} <= set(told) and "WIRE_FEED" not in told
-    assert told["BEAD_HEIGHT"].level == "warning" and "6 mm" in told["BEAD_HEIGHT"].message
+    issues = {issue.code: issue for issue in path.issues}
+    assert {"BEAD_MODEL", "BEAD_HEIGHT", "TIGHT_BENDS"} <= set(issues) and "WIRE_FEED" not in issues
+    assert issues["BEAD_HEIGHT"].level == "warning" and "6 mm" in issues["BEAD_HEIGHT"].message
     ten = ProcessParameters(bead_width=14.0, wire=WireParameters(feed=10.0))
-    other = planned(solids(CONE, box()), process=ten, model=model)
+    with_low_feed = planned(solids(CONE, box()), process=ten, model=model)
     assert {"WIRE_FEED", "OUTSIDE_TABLE"} <= {
-        issue.code for issue in other.issues if issue.level == "warning"
+        issue.code for issue in with_low_feed.issues if issue.level == "warning"
     }
     assert all(bead.width is None for _, _, bead in planned(solids(CONE, box())))
 
 
 def test_waits_keep_solids_apart_in_time():
+    """Waits between layers let each solid cool for the requested time."""
     path = planned(
         solids(CYLINDER, box(), box(turned=2.0)),
         wait=40.0,
         process=ProcessParameters(travel_speed=20.0),
     )
     assert any(layer.wait > 0.0 for layer in path.layers)
-    now, ended, at = 0.0, {}, None
+    now, end_times, position = 0.0, {}, None
     for layer in path.layers:
         now += layer.wait
         this = {}
         for bead in layer.beads:
             blade = bead.points[:, 0].mean() > 0.0
-            now += 0.0 if at is None else np.linalg.norm(bead.points[0] - at) / 100.0
-            if blade not in this and blade in ended:
-                assert now - ended[blade] > 40.0 - 1e-9
+            now += 0.0 if position is None else np.linalg.norm(bead.points[0] - position) / 100.0
+            if blade not in this and blade in end_times:
+                assert now - end_times[blade] > 40.0 - 1e-9
             now += bead.length / 20.0
-            this[blade], at = now, bead.points[-1]
-        ended.update(this)
+            this[blade], position = now, bead.points[-1]
+        end_times.update(this)
     assert not any(layer.wait for layer in planned(solids(CYLINDER, box())).layers)
 
 
@@ -438,20 +457,22 @@ def test_what_is_refused():
 @pytest.mark.parametrize("direction", ["counter-clockwise", "clockwise"])
 @pytest.mark.always("clockwise")
 def test_collars_have_margins_and_the_torch_leans_away_from_them(direction):
-    made = solids(CONE, collar(30.0, 80.0, 10.0, 40.0))
+    """Collars have margins, and the torch leans away from them."""
+    hub_solids = solids(CONE, collar(30.0, 80.0, 10.0, 40.0))
     path = planned(
-        made,
+        hub_solids,
         process=ProcessParameters(direction=direction),
         margin=5.0,
         deflection=math.radians(10.0),
         layer_height=8.0,
     )
-    first = [bead for bead in path.layers[0].beads if bead.closed]
+    first_rings = [bead for bead in path.layers[0].beads if bead.closed]
     low, high = (
-        min(first, key=lambda bead: bead.points[:, 2].min()),
-        max(first, key=lambda bead: bead.points[:, 2].max()),
+        min(first_rings, key=lambda bead: bead.points[:, 2].min()),
+        max(first_rings, key=lambda bead: bead.points[:, 2].max()),
     )
-    # up the cone a way of s is s cos(a) of height; beads are half a spacing inside of what is 5 mm larger
+    # along the cone a distance s is a height of s cos(a); beads are half a spacing inside the 5 mm
+    # margin
     reach = 2.0 * math.cos(CONE.taper)
     assert low.points[:, 2] == pytest.approx(np.full(len(low), 10.0 - reach), abs=0.06)
     assert high.points[:, 2] == pytest.approx(np.full(len(high), 40.0 + reach), abs=0.06)
@@ -461,7 +482,8 @@ def test_collars_have_margins_and_the_torch_leans_away_from_them(direction):
 
 
 def test_a_piece_on_a_hub_between_two_layers_is_named():
-    """A chip 32 to 34 mm off the hub, where layers lie at 30 and 36 mm, beside a blade, of one mesh or by itself."""
+    """A chip 32 to 34 mm off the hub, between layers at 30 and 36 mm, next to a blade, in one mesh
+    or separate."""
     blade, chip = box((44, -10, 0), (75, 10, 40)), box((77, -5, 60), (79, 5, 80), name="chip")
     mesh = Body(
         "mesh",
@@ -469,7 +491,9 @@ def test_a_piece_on_a_hub_between_two_layers_is_named():
         np.vstack([blade.triangles, chip.triangles + len(blade.vertices)]),
     )
     for bodies in ((blade, chip), (mesh,)):
-        made = planned(solids(Developable(45.0), *bodies))
-        (issue,) = [one for one in made.issues if one.code == "NOT_DEPOSITED"]
+        planned_path = planned(solids(Developable(45.0), *bodies))
+        (issue,) = [
+            candidate for candidate in planned_path.issues if candidate.code == "NOT_DEPOSITED"
+        ]
         assert "0.4 of its 0.4 cm3" in issue.message and bodies[-1].name in issue.message
     assert not planned(solids(Developable(45.0), blade)).issues

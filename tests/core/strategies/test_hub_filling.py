@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fillings of layers on hubs: equal solids filled once, kinds of beads, overlap, findings with their places."""
+"""Fill of layers on hubs: equal solids filled once, bead roles, overlap, and issues with their
+positions."""
 
 import math
 import re
@@ -24,7 +25,7 @@ HUBS = {"cylinder": Developable(30.0), "cone": Developable(60.0, 200.0)}
 
 
 def box(turned, thick=24.0):
-    """A box on the hub's side, turned about its axis."""
+    """A box on the hub's side, rotated about its axis."""
     corners = np.array(
         [[x, y, z] for x in (20.0, 70.0) for y in (-0.5 * thick, 0.5 * thick) for z in (20.0, 60.0)]
     )
@@ -43,11 +44,11 @@ def box(turned, thick=24.0):
 
 def planned(hub, turns, thick=24.0, width=8.0, fill_width="auto", **values):
     bodies = tuple(box(turn, thick) for turn in turns)
-    made = SolidsOnHub("part", (Group(Base("the hub", HUBS[hub], np.eye(4)), bodies),), 0.0)
-    given = {"layer_height": 12.0, "bead_spacing": 6.0, "order": "feature", **values}
+    hub_solids = SolidsOnHub("part", (Group(Base("the hub", HUBS[hub], np.eye(4)), bodies),), 0.0)
+    parameters = {"layer_height": 12.0, "bead_spacing": 6.0, "order": "feature", **values}
     return plan_solids(
-        made,
-        DevelopableParameters(**given),
+        hub_solids,
+        DevelopableParameters(**parameters),
         BuildDirectionParameters(),
         ProcessParameters(bead_width=width, fill_width=fill_width),
         None,
@@ -58,23 +59,26 @@ def planned(hub, turns, thick=24.0, width=8.0, fill_width="auto", **values):
 @pytest.mark.parametrize("fill", ["contours", "lines"])
 @pytest.mark.always
 def test_equal_solids_are_filled_once_and_are_as_filled_alone(hub, fill, monkeypatch):
+    """Equal solids are filled once, with the same beads as a single solid."""
     turns = (0.1, 0.1 + 2.0 * math.pi / 3.0, 4.0)
     calls = []
     real = filling.fill
-    monkeypatch.setattr(filling, "fill", lambda *given: calls.append(given) or real(*given))
+    monkeypatch.setattr(
+        filling, "fill", lambda *arguments: calls.append(arguments) or real(*arguments)
+    )
     together = planned(hub, turns, fill=fill)
     layers = len(together.layers) // 3
     assert len(calls) == layers
     for number, turn in enumerate(turns):
         alone = planned(hub, (turn,), fill=fill)
-        mine = [
+        own_beads = [
             bead
             for layer in together.layers[number * layers : (number + 1) * layers]
             for bead in layer.beads
         ]
-        theirs = [bead for _, _, bead in alone]
-        assert len(mine) == len(theirs)
-        for a, b in zip(mine, theirs):
+        single_beads = [bead for _, _, bead in alone]
+        assert len(own_beads) == len(single_beads)
+        for a, b in zip(own_beads, single_beads):
             assert (a.role.kind, a.role.ring) == (b.role.kind, b.role.ring) and abs(
                 a.length - b.length
             ) < 1e-4
@@ -94,7 +98,8 @@ def test_equal_solids_are_filled_once_and_are_as_filled_alone(hub, fill, monkeyp
     ],
 )
 def test_the_outermost_bead_ends_at_the_border_as_wide_as_it_counts(width, counts, inset):
-    """A block that is 40 mm high on a cylinder: its outermost contours lie half a bead inside of it above and below."""
+    """A block 40 mm high on a cylinder: its outermost contours are half a bead inside its upper and
+    lower borders."""
     path = planned("cylinder", (0.0,), width=width, fill_width=counts)
     outer = [
         bead.points for _, _, bead in path if bead.role.ring == 0 and bead.role.kind == "contour"
@@ -132,16 +137,18 @@ def test_overlap_sets_the_spacing():
 
 
 def test_places_are_told_in_the_part():
+    """Positions in messages are in part coordinates."""
     turn = 2.0
     with pytest.raises(InfeasibleError) as caught:
         planned("cylinder", (turn,), thick=3.0, thin="refuse")
-    place = np.array(
+    position = np.array(
         [float(word) for word in re.findall(r"\(([^)]*)\)", str(caught.value))[0].split(",")]
     )
-    assert place.shape == (3,)
-    assert math.hypot(place[0], place[1]) == pytest.approx(30.0, rel=1e-3)
+    assert position.shape == (3,)
+    assert math.hypot(position[0], position[1]) == pytest.approx(30.0, rel=1e-3)
     assert (
-        math.atan2(place[1], place[0]) == pytest.approx(turn, abs=0.06) and 20.0 < place[2] < 60.0
+        math.atan2(position[1], position[0]) == pytest.approx(turn, abs=0.06)
+        and 20.0 < position[2] < 60.0
     )
 
 
@@ -149,15 +156,16 @@ def test_places_are_told_in_the_part():
 @pytest.mark.parametrize("hub", HUBS)
 @pytest.mark.always
 def test_patterns_that_end_are_others_round_the_hub_and_that_is_told(hub, fill, instead):
-    """A collar, and a blade on the same hub: the blade gets the pattern asked for, the collar the one that is told."""
+    """A collar and a blade on the same hub: the blade gets the requested pattern, the collar the
+    reported substitute."""
     ring = collar(20.0, 80.0, 70.0, 90.0)
-    made = SolidsOnHub(
+    hub_solids = SolidsOnHub(
         "part", (Group(Base("the hub", HUBS[hub], np.eye(4)), (box(0.3), ring)),), 0.0
     )
 
     def beads(pattern):
         path = plan_solids(
-            made,
+            hub_solids,
             DevelopableParameters(
                 layer_height=12.0, bead_spacing=6.0, fill=pattern, order="feature"
             ),
@@ -177,10 +185,11 @@ def test_patterns_that_end_are_others_round_the_hub_and_that_is_told(hub, fill, 
         assert f"strategy.fill = {fill}" in note.message
     levels = {layer for layer, _, bead in path if bead.points[:, 2].min() > 65.0}
     assert len(notes) == len(levels) > 2
-    other, (same, _) = beads(instead)
-    assert not [issue for issue in other.issues if issue.code == "PATTERN_ROUND_HUB"]
+    with_substitute, (same, _) = beads(instead)
+    assert not [issue for issue in with_substitute.issues if issue.code == "PATTERN_ROUND_HUB"]
     assert len(round_it) == len(same) and all(
-        (one.points == two.points).all() for one, two in zip(round_it, same)
+        (bead_a.points == substitute_bead.points).all()
+        for bead_a, substitute_bead in zip(round_it, same)
     )
     assert fill in {bead.role.kind for bead in aside} and fill not in {
         bead.role.kind for bead in round_it
@@ -201,7 +210,8 @@ def test_beads_wider_apart_than_they_are_wide_are_refused():
 )
 @pytest.mark.always
 def test_no_bead_of_its_width_stands_out(hub, fill, contour):
-    """The box's sides are planes: a bead 9.5 mm wide and straight keeps half of it from them along the hub."""
+    """The box's sides are planes: a straight bead 9.5 mm wide stays half its width away from them
+    along the hub."""
     path = planned(hub, (0.0,), thick=40.0, width=9.5, bead_spacing=6.5, fill=fill, contour=contour)
     cos = math.cos(HUBS[hub].taper)
     for _, _, bead in path:
@@ -219,14 +229,15 @@ def test_no_bead_of_its_width_stands_out(hub, fill, contour):
 
 
 def test_a_single_bead_wider_than_its_region_is_told_with_place_and_overhang():
+    """A single bead wider than its region is reported with position and overhang."""
     path = planned("cylinder", (0.0,), thick=3.0, width=9.5, bead_spacing=6.5)
-    told = next(issue for issue in path.issues if issue.code == "THIN_SINGLE")
-    assert told.level == "note" and "9.5 mm" in told.message
-    out = float(re.findall(r"by up to ([\d.]+) mm", told.message)[0])
-    place = np.array(
-        [float(word) for word in re.findall(r"mm at \(([^)]*)\)", told.message)[0].split(",")]
+    note = next(issue for issue in path.issues if issue.code == "THIN_SINGLE")
+    assert note.level == "note" and "9.5 mm" in note.message
+    out = float(re.findall(r"by up to ([\d.]+) mm", note.message)[0])
+    position = np.array(
+        [float(word) for word in re.findall(r"mm at \(([^)]*)\)", note.message)[0].split(",")]
     )
-    y, z = abs(place[1]), place[2]
+    y, z = abs(position[1]), position[2]
     border = min(1.5 - y, z - 20.0, 60.0 - z)
     assert out == pytest.approx(4.75 - border, abs=0.05) and out > 3.2
     assert not [
@@ -241,38 +252,41 @@ def lengths(path):
 @pytest.mark.parametrize("hub", HUBS)
 @pytest.mark.always("cylinder")
 def test_less_than_the_whole_between_solid_layers(hub):
-    """First and last layers as at 100 %, those between at the density, all of them round hubs too."""
-    given = {
+    """First and last layers are filled at 100 %, those between at the density, also around hubs."""
+    parameters = {
         "layer_height": 6.0,
         "bead_spacing": 1.5,
         "walls": 2,
         "chord_error": 0.05,
         "contour": True,
     }
-    whole = planned(hub, (0.3,), 36.0, fill="lines", **given)
-    part = planned(hub, (0.3,), 36.0, fill="gyroid", fill_density=0.25, solid_layers=1, **given)
-    share = lengths(part) / lengths(whole)
+    solid_path = planned(hub, (0.3,), 36.0, fill="lines", **parameters)
+    sparse_path = planned(
+        hub, (0.3,), 36.0, fill="gyroid", fill_density=0.25, solid_layers=1, **parameters
+    )
+    share = lengths(sparse_path) / lengths(solid_path)
     assert share[[0, -1]] == pytest.approx(1.0, abs=0.02)
-    # 2 walls of 1.5 mm take 3 mm all round of 40 mm by 36 mm or a little more
+    # two walls of 1.5 mm take 3 mm on all sides of 40 mm by 36 mm or slightly more
     assert (share[1:3] > 0.35).all() and (
         share[1:3] < 0.55
-    ).all()  # farther out the flat top comes nearer
-    for layer in part.layers[:3]:
+    ).all()  # farther out the flat top is nearer
+    for layer in sparse_path.layers[:3]:
         assert sorted({bead.role.ring for bead in layer.beads if bead.role.kind == "contour"}) == [
             0,
             1,
         ]
-    alone = planned(hub, (0.3,), 36.0, fill="grid", **{**given, "walls": "inf"})
-    assert {bead.role.kind for _, _, bead in alone} <= {"contour", "centre"}
-    assert not [issue for issue in part.issues if issue.code == "OPEN_GAP"]
+    walls_only = planned(hub, (0.3,), 36.0, fill="grid", **{**parameters, "walls": "inf"})
+    assert {bead.role.kind for _, _, bead in walls_only} <= {"contour", "centre"}
+    assert not [issue for issue in sparse_path.issues if issue.code == "OPEN_GAP"]
 
 
 def test_round_hubs_lines_stand_farther_apart_between_solid_layers():
+    """Around hubs, lines between solid layers have a larger spacing."""
     base, body = Base("the hub", Developable(40.0), np.eye(4)), collar(40.0, 65.0, 10.0, 60.0)
-    made = SolidsOnHub("part", (Group(base, (body,)),), 0.0)
+    hub_solids = SolidsOnHub("part", (Group(base, (body,)),), 0.0)
 
     def path(**values):
-        given = {
+        parameters = {
             "layer_height": 5.0,
             "bead_spacing": 2.0,
             "chord_error": 0.05,
@@ -280,24 +294,27 @@ def test_round_hubs_lines_stand_farther_apart_between_solid_layers():
             **values,
         }
         return plan_solids(
-            made,
-            DevelopableParameters(**given),
+            hub_solids,
+            DevelopableParameters(**parameters),
             BuildDirectionParameters(),
             ProcessParameters(),
             None,
         )
 
-    whole, part = path(fill="lines"), path(fill="grid", fill_density=0.2, solid_layers=1)
-    share = lengths(part) / lengths(whole)
+    solid_path, sparse_path = (
+        path(fill="lines"),
+        path(fill="grid", fill_density=0.2, solid_layers=1),
+    )
+    share = lengths(sparse_path) / lengths(solid_path)
     assert share[[0, -1]] == pytest.approx(1.0, abs=0.01)
     assert share[1:-1] == pytest.approx(
         0.2 + 0.8 * 4.0 / 50.0, abs=0.05
-    )  # the contour along both borders is there anyway
-    assert "PATTERN_ROUND_HUB" in {issue.code for issue in part.issues}
+    )  # the contour along both borders exists in any case
+    assert "PATTERN_ROUND_HUB" in {issue.code for issue in sparse_path.issues}
 
 
 def test_tops_of_a_step_are_filled():
-    """Two boxes side by side, one of them lower, of one body: what is under the top of the lower one is filled."""
+    """One body of two boxes with different heights: layers under the lower top are filled."""
     low, high = box(0.2, 20.0), box(0.9, 20.0)
     squeezed = (
         low.vertices
@@ -307,10 +324,12 @@ def test_tops_of_a_step_are_filled():
     body = Body(
         "step", np.vstack([squeezed, high.vertices]), np.vstack([low.triangles, high.triangles + 8])
     )
-    made = SolidsOnHub("part", (Group(Base("the hub", HUBS["cylinder"], np.eye(4)), (body,)),), 0.0)
+    hub_solids = SolidsOnHub(
+        "part", (Group(Base("the hub", HUBS["cylinder"], np.eye(4)), (body,)),), 0.0
+    )
 
-    def one(layer, **values):
-        given = {
+    def lengths_of_layer(layer, **values):
+        parameters = {
             "layer_height": 4.0,
             "bead_spacing": 1.0,
             "fill": "lines",
@@ -319,8 +338,8 @@ def test_tops_of_a_step_are_filled():
         }
         beads = (
             plan_solids(
-                made,
-                DevelopableParameters(**given),
+                hub_solids,
+                DevelopableParameters(**parameters),
                 BuildDirectionParameters(),
                 ProcessParameters(),
                 None,
@@ -334,16 +353,25 @@ def test_tops_of_a_step_are_filled():
             for lower in (True, False)
         ]
 
-    top = 6  # 24 mm above the hub; 56 mm, or a little less, is the lower one's top
-    whole, part = one(top), one(top, fill_density=0.2, solid_layers=1)
-    assert part[0] == pytest.approx(whole[0], rel=0.02) and part[1] < 0.5 * whole[1]
-    beside, under = one(top - 2), one(top - 2, fill_density=0.2, solid_layers=1)
+    top = 6  # 24 mm above the hub; the lower top is at 56 mm or slightly less
+    solid_lengths, sparse_lengths = (
+        lengths_of_layer(top),
+        lengths_of_layer(top, fill_density=0.2, solid_layers=1),
+    )
+    assert (
+        sparse_lengths[0] == pytest.approx(solid_lengths[0], rel=0.02)
+        and sparse_lengths[1] < 0.5 * solid_lengths[1]
+    )
+    beside, under = (
+        lengths_of_layer(top - 2),
+        lengths_of_layer(top - 2, fill_density=0.2, solid_layers=1),
+    )
     assert under[0] < 0.5 * beside[0] and under[1] < 0.5 * beside[1]
 
 
 @pytest.mark.parametrize("hub", HUBS)
 def test_connected_contours_start_once_and_narrow_places_run_faster(hub):
-    """One closed bead for each solid and layer; the wire that a millimetre of it gets follows its width."""
+    """One closed bead per solid and layer; the wire per mm follows its width."""
     path = planned(
         hub,
         (0.3, 2.4),
@@ -378,8 +406,8 @@ def test_connected_contours_start_once_and_narrow_places_run_faster(hub):
         middle = 0.5 * (bead.width[1:] + bead.width[:-1])
         even = np.abs(np.diff(bead.width)) < 1e-9
         assert bead.speed[1:][even] * middle[even] == pytest.approx(6.0 * 5.0)
-        way = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
-        at = 6.0 * 5.0 / bead.width  # at the points; the acceleration is 500 mm/s2
-        assert (np.abs(np.diff(at**2)) <= 2.0 * 500.0 * way * 1.01 + 1e-9).all()
+        steps = np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
+        nominal_speed = 6.0 * 5.0 / bead.width  # at the points; the acceleration limit is 500 mm/s2
+        assert (np.abs(np.diff(nominal_speed**2)) <= 2.0 * 500.0 * steps * 1.01 + 1e-9).all()
         narrow += int((bead.width < 4.0).sum())
     assert narrow > 0

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Torches that lean on beads of hubs: measured with normals and tangents of the test's own, on finer points than planned."""
+"""Torch lean on beads of hubs, measured with independent normals and tangents on finer points than
+planned."""
 
 import math
 
@@ -14,17 +15,17 @@ from tests.core.strategies.test_developable import (
     CYLINDER,
     box,
     collar,
-    laid,
     planned,
     solids,
     sound,
+    unroll_points,
 )
 
 SURFACES = pytest.mark.parametrize("surface", [CYLINDER, CONE], ids=["cylinder", "cone"])
 
 
 def normals(surface, points):
-    """Out of the hub."""
+    """Outward normals of the hub."""
     tan = 0.0 if math.isinf(surface.height) else surface.radius / surface.height
     out = np.column_stack(
         [points[:, :2] / np.hypot(points[:, 0], points[:, 1])[:, None], np.full(len(points), tan)]
@@ -33,13 +34,13 @@ def normals(surface, points):
 
 
 def angle(a, b):
-    """Between rows (n, 3), deg."""
+    """Angle between rows (n, 3) in deg."""
     return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1)))
 
 
-def finer(bead, pieces=5):
-    """Points and tools (m, 3) that divide the segments, the tool turned evenly on each."""
-    t = np.arange(pieces) / pieces
+def finer(bead, divisions=5):
+    """Points and tools (m, 3) that divide the segments, the tool rotated evenly on each."""
+    t = np.arange(divisions) / divisions
     arc = np.radians(angle(bead.tool[:-1], bead.tool[1:]))[:, None]
     ends = [
         np.where(arc > 1e-9, np.sin(share * arc) / np.maximum(np.sin(arc), 1e-12), share)
@@ -54,16 +55,17 @@ def finer(bead, pieces=5):
     return np.vstack([points, bead.points[-1:]]), np.vstack([tool, bead.tool[-1:]])
 
 
-def turns(bead, pieces=5):
-    """deg/mm between these."""
-    points, tool = finer(bead, pieces)
+def turns(bead, divisions=5):
+    """Tool rotation between these points in deg/mm."""
+    points, tool = finer(bead, divisions)
     return angle(tool[1:], tool[:-1]) / np.linalg.norm(np.diff(points, axis=0), axis=1)
 
 
-def corners(surface, bead, least=20.0):
-    """Way (n,) mm along a bead laid flat and that of its corners (k,), by the test's own plane."""
-    step = np.diff(laid(surface, bead.points), axis=0)
-    way = np.r_[0.0, np.cumsum(np.hypot(*step.T))]
+def corners(surface, bead, min_turn_deg=20.0):
+    """Arc length (n,) in mm along an unrolled bead and at its corners (k,), in independently
+    unrolled coordinates."""
+    step = np.diff(unroll_points(surface, bead.points), axis=0)
+    arc_length = np.r_[0.0, np.cumsum(np.hypot(*step.T))]
     heading = np.degrees(np.arctan2(step[:, 1], step[:, 0]))
     turn = np.abs(
         np.remainder(
@@ -71,16 +73,23 @@ def corners(surface, bead, least=20.0):
         )
         - 180.0
     )
-    return way, way[:-1][turn > least]
+    return arc_length, arc_length[:-1][turn > min_turn_deg]
 
 
-def from_corners(surface, bead, pieces=1):
-    """How far (n,) mm points are from the nearest corner along the bead, in so many pieces of each segment."""
-    way, places = corners(surface, bead)
+def from_corners(surface, bead, divisions=1):
+    """Distance (n,) in mm from points to the nearest corner along the bead, with `divisions` points
+    per segment."""
+    arc_length, corner_stations = corners(surface, bead)
     if bead.closed:
-        places = np.r_[places - way[-1], places, places + way[-1]]
-    fine = np.interp(np.arange(pieces * (len(way) - 1) + 1) / pieces, np.arange(len(way)), way)
-    return np.abs(fine[:, None] - places).min(axis=1)
+        corner_stations = np.r_[
+            corner_stations - arc_length[-1], corner_stations, corner_stations + arc_length[-1]
+        ]
+    fine = np.interp(
+        np.arange(divisions * (len(arc_length) - 1) + 1) / divisions,
+        np.arange(len(arc_length)),
+        arc_length,
+    )
+    return np.abs(fine[:, None] - corner_stations).min(axis=1)
 
 
 def outer(path):
@@ -96,6 +105,7 @@ def outer(path):
 @pytest.mark.parametrize("direction", ["clockwise", "counter-clockwise"])
 @pytest.mark.always
 def test_away_from_corners_the_torch_leans_as_asked(surface, lean, direction):
+    """Away from corners the torch leans by the requested angle, perpendicular to the bead."""
     path = planned(
         solids(surface, box()),
         deflection=math.radians(lean),
@@ -105,18 +115,18 @@ def test_away_from_corners_the_torch_leans_as_asked(surface, lean, direction):
         normal = normals(surface, bead.points)
         np.testing.assert_allclose(
             angle(bead.tool, normal), lean, atol=1e-6
-        )  # everywhere, at corners too
+        )  # everywhere, including corners
         points, tool = finer(bead)
         normal_there = normals(surface, points)
         free = from_corners(surface, bead, 5) > 0.8 * lean
         np.testing.assert_allclose(angle(tool, normal_there)[free], lean, atol=0.05)
         halfway = normal_there[1:] + normal_there[:-1]
         halfway /= np.linalg.norm(halfway, axis=1)[:, None]
-        way = np.diff(points, axis=0)
-        way -= (way * halfway).sum(axis=1)[
+        steps = np.diff(points, axis=0)
+        steps -= (steps * halfway).sum(axis=1)[
             :, None
         ] * halfway  # along the surface, not along the chord
-        across = angle(tool[1:] + tool[:-1], way)[free[1:] & free[:-1]]
+        across = angle(tool[1:] + tool[:-1], steps)[free[1:] & free[:-1]]
         assert len(across) > 4 and np.abs(across - 90.0).max() < 0.12
         middle = bead.points[:-1].mean(axis=0)
         assert ((bead.tool - normal) * (bead.points - middle)).sum(axis=1).min() > 0.0
@@ -137,6 +147,7 @@ def test_away_from_corners_the_torch_leans_as_asked(surface, lean, direction):
 )
 @pytest.mark.always
 def test_nowhere_does_the_torch_turn_faster(surface, fill, most):
+    """The torch rotates no faster than the limit anywhere."""
     build = BuildDirectionParameters(
         lead=math.radians(5.0), tilt=math.radians(12.0), max_turn=math.radians(most)
     )
@@ -150,39 +161,41 @@ def test_nowhere_does_the_torch_turn_faster(surface, fill, most):
     for _, _, bead in path:
         assert turns(bead).max() <= most * (1.0 + 1e-6)
         assert turns(bead.halved(np.arange(len(bead) - 1))).max() <= most * 1.001
-    told = {issue.code: issue for issue in path.issues}
-    assert told["TURN_LIMITED"].level == "note" and "TURN_OF_NORMALS" not in told
-    assert f"({most:g} deg/mm)" in told["TURN_LIMITED"].message
+    issues = {issue.code: issue for issue in path.issues}
+    assert issues["TURN_LIMITED"].level == "note" and "TURN_OF_NORMALS" not in issues
+    assert f"({most:g} deg/mm)" in issues["TURN_LIMITED"].message
 
 
 @SURFACES
 @pytest.mark.parametrize("most", ["inf", "auto"])
 @pytest.mark.always
 def test_the_lean_is_exact_at_points_and_kept_between_them(surface, most):
-    """Whatever the torch does at corners it leans by 15 deg, to rounding at the points of a bead and to 0.1 deg between."""
+    """At corners too the torch leans by 15 deg: exactly at the points of a bead, and within 0.1 deg
+    between them."""
     build = BuildDirectionParameters(tilt=math.radians(15.0), max_turn=most)
     path = planned(solids(surface, box()), build=build, layer_height=6.0)
     for _, _, bead in path:
         lean = angle(bead.tool, normals(surface, bead.points))
-        held = lean[0]
-        assert most == "auto" or abs(held - 15.0) < 1e-9
-        assert np.abs(lean - held).max() < 1e-9
+        lean_of_bead = lean[0]
+        assert most == "auto" or abs(lean_of_bead - 15.0) < 1e-9
+        assert np.abs(lean - lean_of_bead).max() < 1e-9
         points, tool = finer(bead)
-        assert np.abs(angle(tool, normals(surface, points)) - held).max() < 0.1
+        assert np.abs(angle(tool, normals(surface, points)) - lean_of_bead).max() < 0.1
 
 
 def test_without_a_limit_the_torch_jumps_at_corners_and_nowhere_else():
+    """Without a limit the torch rotates abruptly at corners only."""
     build = BuildDirectionParameters(tilt=math.radians(12.0), max_turn="inf")
     path = planned(solids(CYLINDER, box()), build=build, layer_height=12.0)
     assert not [issue for issue in path.issues if issue.code.startswith(("TURN", "LEAN"))]
     bead = outer(path)[1]
-    near = from_corners(CYLINDER, bead) < 0.2
+    near_corner = from_corners(CYLINDER, bead) < 0.2
     fast = turns(bead, 1)
-    assert fast.max() > 50.0 and fast[~(near[1:] & near[:-1])].max() < 1.3
+    assert fast.max() > 50.0 and fast[~(near_corner[1:] & near_corner[:-1])].max() < 1.3
 
 
 def azimuth(bead):
-    """Where the torch leans to on the plane of a cylinder, rad, counted on."""
+    """Unwrapped azimuth of the torch lean in the plane of a cylinder, rad."""
     radial = normals(CYLINDER, bead.points)
     around = np.column_stack([-radial[:, 1], radial[:, 0], np.zeros(len(radial))])
     return np.unwrap(np.arctan2(bead.tool[:, 2], (bead.tool * around).sum(axis=1)))
@@ -192,45 +205,49 @@ def azimuth(bead):
     "seam", [0.0, 45.0, 90.0]
 )  # the seam in the middle of an edge, and at a corner
 def test_corners_are_rounded_alike_on_both_sides_and_smoothly(seam):
+    """Corners are rounded smoothly and symmetrically."""
     process = ProcessParameters(seam=SeamParameters(angle=math.radians(seam)))
     path = planned(solids(CYLINDER, box()), process=process, deflection=math.radians(10.0))
     bead = outer(path)[1]
-    way, places = corners(CYLINDER, bead)
-    assert len(places) == 4
+    arc_length, corner_stations = corners(CYLINDER, bead)
+    assert len(corner_stations) == 4
     to = azimuth(bead)
-    s = np.r_[way[:-1] - way[-1], way, way[1:] + way[-1]]
+    s = np.r_[arc_length[:-1] - arc_length[-1], arc_length, arc_length[1:] + arc_length[-1]]
     turn = to[-1] - to[0]
-    assert abs(abs(turn) - 2.0 * math.pi) < 1e-9  # once round, and the seam goes unseen
+    assert abs(abs(turn) - 2.0 * math.pi) < 1e-9  # one turn, continuous across the seam
     to = np.r_[to[:-1] - turn, to, to[1:] + turn]
     x = np.linspace(0.0, 12.0, 60)
-    for place in places:
-        ahead, behind = np.interp(place - x, s, to), np.interp(place + x, s, to)
-        np.testing.assert_allclose(ahead + behind, 2.0 * np.interp(place, s, to), atol=0.02)
+    for corner in corner_stations:
+        ahead, behind = np.interp(corner - x, s, to), np.interp(corner + x, s, to)
+        np.testing.assert_allclose(ahead + behind, 2.0 * np.interp(corner, s, to), atol=0.02)
         assert abs(abs(behind[-1] - ahead[-1]) - 0.5 * math.pi) < 0.03
     slope = np.abs(np.diff(to) / np.diff(s))
     assert np.abs(np.diff(slope)).max() < 0.5 * slope.max()
 
 
 def test_a_spiral_leans_on_its_first_lap_and_stands_straight_after():
+    """A spiral leans on its first lap and is upright afterwards."""
     lean = 10.0
     path = planned(solids(CYLINDER, box()), fill="spiral", deflection=math.radians(lean))
     around = planned(solids(CYLINDER, box()))
     for layer, ring in zip(path.layers[:4], outer(around)):
         bead = max(layer.beads, key=lambda bead: bead.length)
         assert not bead.closed
-        way = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(bead.points, axis=0), axis=1))]
-        held = angle(bead.tool, normals(CYLINDER, bead.points))
-        first = way < ring.length - 20.0
-        np.testing.assert_allclose(held[first], lean, atol=1e-6)
-        np.testing.assert_allclose(held[way > ring.length + 10.0], 0.0, atol=1e-6)
+        arc_length = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(bead.points, axis=0), axis=1))]
+        lean_angles = angle(bead.tool, normals(CYLINDER, bead.points))
+        is_first_lap = arc_length < ring.length - 20.0
+        np.testing.assert_allclose(lean_angles[is_first_lap], lean, atol=1e-6)
+        np.testing.assert_allclose(lean_angles[arc_length > ring.length + 10.0], 0.0, atol=1e-6)
         out = bead.points - ring.points[:-1].mean(axis=0)
-        assert ((bead.tool - normals(CYLINDER, bead.points)) * out).sum(axis=1)[first].min() > 0.0
+        assert ((bead.tool - normals(CYLINDER, bead.points)) * out).sum(axis=1)[
+            is_first_lap
+        ].min() > 0.0
         assert turns(bead).max() <= 3.0 * (1.0 + 1e-6)
 
 
 @pytest.mark.parametrize("fill", ["contours", "spiral"])
 def test_both_borders_of_a_strip_are_leant_over_wherever_they_run(fill):
-    """A collar whose upper border climbs, in the middle of one side, to five times its height."""
+    """A collar whose upper border rises to five times its height in the middle of one side."""
     plain = collar(40.0, 60.0, 10.0, 40.0, sides=72)
     vertices = plain.vertices.copy()
     top = vertices[:, 2] > 25.0
@@ -256,35 +273,44 @@ def test_both_borders_of_a_strip_are_leant_over_wherever_they_run(fill):
 
 
 def test_holes_are_leant_over_and_beads_further_in_are_not():
+    """The torch leans over holes but not on inner beads."""
     path = planned(solids(CYLINDER, box()), deflection=math.radians(12.0))
     for layer in path.layers[:4]:
-        held = [angle(bead.tool, bead.build).max() for bead in layer.beads]
-        assert sorted(round(value, 6) for value in held)[-2:] == [0.0, 12.0]
+        lean_angles = [angle(bead.tool, bead.build).max() for bead in layer.beads]
+        assert sorted(round(value, 6) for value in lean_angles)[-2:] == [0.0, 12.0]
 
 
 def test_a_ring_too_short_leans_less_and_that_is_told():
+    """A short ring leans less, and a warning states the angle."""
     small = box(np.array([20.0, -6.0, 40.0]), np.array([60.0, 6.0, 52.0]), name="stud")
     build = BuildDirectionParameters(max_turn=math.radians(4.0))
     path = planned(
         solids(CYLINDER, small), build=build, deflection=math.radians(40.0), bead_spacing=4.0
     )
-    (told,) = [issue for issue in path.issues if issue.code == "LEAN_REDUCED"]
-    assert told.level == "warning" and "40 deg" in told.message
-    bead = path.layers[told.layer].beads[told.bead]
-    held = angle(bead.tool, normals(CYLINDER, bead.points))
-    assert np.ptp(held) < 1e-6 and 8.0 < held[0] < 35.0 and f"{held[0]:.3g} to" in told.message
-    # a lean of 4 deg/mm over the ring's length once round the normal is all there is
-    assert math.degrees(2.0 * math.pi * math.sin(math.radians(held[0]))) / bead.length > 2.0
+    (warning,) = [issue for issue in path.issues if issue.code == "LEAN_REDUCED"]
+    assert warning.level == "warning" and "40 deg" in warning.message
+    bead = path.layers[warning.layer].beads[warning.bead]
+    lean_angles = angle(bead.tool, normals(CYLINDER, bead.points))
+    assert (
+        np.ptp(lean_angles) < 1e-6
+        and 8.0 < lean_angles[0] < 35.0
+        and f"{lean_angles[0]:.3g} to" in warning.message
+    )
+    # 4 deg/mm over the length of the ring limits the rotation around the normal
+    assert math.degrees(2.0 * math.pi * math.sin(math.radians(lean_angles[0]))) / bead.length > 2.0
     assert turns(bead).max() <= 4.0 * (1.0 + 1e-6)
 
 
 def test_normals_that_turn_faster_are_followed():
+    """Normals that rotate faster than the limit are followed with a warning."""
     path = planned(
         solids(CYLINDER, box()), build=BuildDirectionParameters(max_turn=math.radians(0.5))
     )
-    (told,) = [issue for issue in path.issues if issue.code.startswith("TURN")]
+    (warning,) = [issue for issue in path.issues if issue.code.startswith("TURN")]
     assert (
-        told.code == "TURN_OF_NORMALS" and told.level == "warning" and "1.27 deg/mm" in told.message
+        warning.code == "TURN_OF_NORMALS"
+        and warning.level == "warning"
+        and "1.27 deg/mm" in warning.message
     )
     assert all((bead.tool == bead.build).all() for _, _, bead in path)
     quiet = planned(solids(CYLINDER, box()))
@@ -293,7 +319,8 @@ def test_normals_that_turn_faster_are_followed():
 
 @pytest.mark.parametrize("lean", [12.0, 35.0])
 def test_without_a_limit_the_torch_goes_round_the_normal_at_corners(lean):
-    """Between points of a corner, where it turns straight from one to the next, it leans as much."""
+    """At a corner, where it rotates directly from one point to the next, the torch keeps its
+    lean."""
     build = BuildDirectionParameters(max_turn="inf")
     path = planned(
         solids(CYLINDER, box()), build=build, deflection=math.radians(lean), layer_height=12.0

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points of beads on hubs: none so near to the next that no controller could tell the time of the move."""
+"""Points of beads on hubs: no two so close that a controller could not resolve the time of the
+move."""
 
 import numpy as np
 import pytest
@@ -34,7 +35,7 @@ def test_points_that_all_but_coincide_are_one(seed):
     if line[-1, 0] > 2.0 * MIN_DISTANCE_MM:
         assert gaps.min() > 0.5 * MIN_DISTANCE_MM
     assert cKDTree(got).query(line)[0].max() < 2.5 * MIN_DISTANCE_MM or len(got) > 2
-    # nothing of the line is left out: every point of it is near the new one
+    # no part of the line is lost: every point of it is near the new one
     share = np.linspace(0.0, 1.0, 50)[:, None, None]
     fine = ((1.0 - share) * got[:-1] + share * got[1:]).reshape(-1, 2)
     assert cKDTree(fine).query(line)[0].max() < 2.5 * MIN_DISTANCE_MM + gaps.max() / 50.0
@@ -42,7 +43,8 @@ def test_points_that_all_but_coincide_are_one(seed):
 
 @pytest.mark.parametrize("seed", range(20))
 def test_narrow_beads_have_no_move_of_less_than_a_tenth_of_a_millisecond(seed):
-    """Beads of 30 % of their width are laid 3.3 times as fast: at 20 mm/s points 3 um apart are 0.05 ms apart."""
+    """Beads of 30 % width are printed 3.3 times as fast: at 20 mm/s points 3 um apart are 0.05 ms
+    apart."""
     rng = np.random.default_rng(seed)
     count = int(rng.integers(3, 150))
     angle = rng.uniform(-0.5, 0.5, count)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Ways through states: as good as the best of all ways there are."""
+"""Paths through states are as good as the best of all possible paths."""
 
 from itertools import product
 
@@ -14,14 +14,14 @@ from freecad_am.core.strategies.clearance.tilt_search import (
 )
 
 
-def cost(states, allowed, weight, change, way):
-    n = len(way)
-    own = sum(
-        weight[k] * (states[k, way[k]] ** 2).sum() if allowed[k, way[k]] else BARRED
+def cost(states, allowed, weight, change, path):
+    n = len(path)
+    state_cost = sum(
+        weight[k] * (states[k, path[k]] ** 2).sum() if allowed[k, path[k]] else BARRED
         for k in range(n)
     )
-    return own + sum(
-        change[k] * ((states[k, way[k]] - states[k + 1, way[k + 1]]) ** 2).sum()
+    return state_cost + sum(
+        change[k] * ((states[k, path[k]] - states[k + 1, path[k + 1]]) ** 2).sum()
         for k in range(n - 1)
     )
 
@@ -29,24 +29,26 @@ def cost(states, allowed, weight, change, way):
 @pytest.mark.parametrize("same", [False, True], ids=["own states", "the same states"])
 @pytest.mark.parametrize("seed", range(5))
 def test_no_way_is_better(seed, same):
+    """No other path is cheaper."""
     rng = np.random.default_rng(seed)
     b, n, s = 3, 5, 4
     states = rng.normal(size=(1, 1, s, 2) if same else (b, n, s, 2))
     allowed = rng.random((b, n, s)) > 0.4
     weight, change = rng.uniform(0.1, 1, (b, n)), rng.uniform(0, 2, (b, n - 1))
-    found = least_cost_states(states, allowed, weight, change)
+    paths = least_cost_states(states, allowed, weight, change)
     for k in range(b):
-        own = np.broadcast_to(states[0] if same else states[k], (n, s, 2))
+        chain_states = np.broadcast_to(states[0] if same else states[k], (n, s, 2))
         best = min(
-            cost(own, allowed[k], weight[k], change[k], way) for way in product(range(s), repeat=n)
+            cost(chain_states, allowed[k], weight[k], change[k], path)
+            for path in product(range(s), repeat=n)
         )
-        assert cost(own, allowed[k], weight[k], change[k], found[k]) == pytest.approx(
+        assert cost(chain_states, allowed[k], weight[k], change[k], paths[k]) == pytest.approx(
             best, rel=1e-12
         )
 
 
 def test_states_of_many_are_chosen_as_one_by_one():
-    """A chain of more states than are worked on together: the same way, whichever way it is computed."""
+    """A chain with more states than are processed together gives the same path."""
     rng = np.random.default_rng(4)
     n, s = 12, MAX_JOINT_STATES + 9
     states, allowed = rng.normal(size=(1, 1, s, 2)), rng.random((1, n, s)) > 0.5
@@ -56,23 +58,24 @@ def test_states_of_many_are_chosen_as_one_by_one():
         states, *(np.repeat(v, 2, axis=0) for v in (allowed, weight, change))
     )
     assert (together == alone).all()
-    own = least_cost_states(np.repeat(states, n, axis=1), allowed, weight, change)
-    assert (own == alone).all()
+    repeated = least_cost_states(np.repeat(states, n, axis=1), allowed, weight, change)
+    assert (repeated == alone).all()
 
 
 @pytest.mark.parametrize("seed", range(20))
 def test_the_best_way_leads_through_useful_states_whatever_else_is_barred(seed):
+    """The best path uses only useful states, whatever else is barred."""
     rng = np.random.default_rng(seed)
     n, s = 9, 12
-    states, known = rng.normal(size=(1, 1, s, 2)), rng.random((1, n, s)) > 0.6
-    known[..., 0] = True
-    allowed = known | (rng.random((1, n, s)) > 0.5)
+    states, is_known = rng.normal(size=(1, 1, s, 2)), rng.random((1, n, s)) > 0.6
+    is_known[..., 0] = True
+    allowed = is_known | (rng.random((1, n, s)) > 0.5)
     weight, change = rng.uniform(0.1, 1, (1, n)), rng.uniform(0, 2, (1, n - 1))
-    useful = useful_states(states, allowed, known, weight, change)
+    useful = useful_states(states, allowed, is_known, weight, change)
     assert useful.sum() < allowed.sum()
     for share in (0.0, 0.3, 0.6, 1.0):
-        true = known | (allowed & (rng.random((1, n, s)) > share))
-        (way,) = least_cost_states(states, true, weight, change)
-        assert useful[np.arange(n), way].all()
+        true = is_known | (allowed & (rng.random((1, n, s)) > share))
+        (path,) = least_cost_states(states, true, weight, change)
+        assert useful[np.arange(n), path].all()
         (again,) = least_cost_states(states, true & useful, weight, change)
-        assert (again == way).all()
+        assert (again == path).all()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The volume of parts of several solids, against sums and inclusion-exclusion."""
+"""The volume of parts with several solids, against sums and inclusion-exclusion."""
 
 import math
 
@@ -26,10 +26,10 @@ def cylinder(radius, high, sides):
     points = np.vstack(
         [np.c_[ring, np.zeros(sides)], np.c_[ring, np.full(sides, high)], [[0, 0, 0], [0, 0, high]]]
     )
-    k, after = np.arange(sides), np.roll(np.arange(sides), -1)
-    faces = [(k, after, after + sides), (k, after + sides, k + sides)]
-    faces += [(after, k, np.full(sides, 2 * sides))]
-    faces += [(k + sides, after + sides, np.full(sides, 2 * sides + 1))]
+    k, following = np.arange(sides), np.roll(np.arange(sides), -1)
+    faces = [(k, following, following + sides), (k, following + sides, k + sides)]
+    faces += [(following, k, np.full(sides, 2 * sides))]
+    faces += [(k + sides, following + sides, np.full(sides, 2 * sides + 1))]
     return Body("cylinder", points, np.vstack([np.stack(face, axis=1) for face in faces]))
 
 
@@ -72,7 +72,7 @@ def test_what_solids_share_counts_once(name):
 
 
 def test_the_balance_of_a_toolpath_has_it():
-    """Layers of 3 mm on a part 40 mm high come to 39 or 42 mm."""
+    """Layers of 3 mm on a part 40 mm high reach 39 or 42 mm."""
     bodies, volume, _ = CASES["touching"]
     strategy = SolidParameters(layer_height=3.0, bead_spacing=10.0, chord_error=0.01)
     solids = prepare_stack(bodies, strategy, "part")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The paper's three parts (Chalvin 2020, eqs. 20 to 22) against their equations, and the rules of seams and beads."""
+"""The paper's three parts (Chalvin 2020, eqs. 20 to 22) against their equations, and the rules of
+seams and beads."""
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from freecad_am.core.parameters.strategy import RevolutionParameters
 from freecad_am.core.strategies.revolution import plan as revolution
 
 NOZZLE = NozzleParameters()
-FREE = BuildDirectionParameters(clearance="none", max_tilt=np.pi)
+UNRESTRICTED = BuildDirectionParameters(clearance="none", max_tilt=np.pi)
 
 
 def parabola(rho, theta, low, high):
@@ -33,7 +34,9 @@ MOVED = np.array(
 )
 
 
-def plan(meridian, build=FREE, process=None, platform=0.0, frame=None, turn=None, **strategy):
+def plan(
+    meridian, build=UNRESTRICTED, process=None, platform=0.0, frame=None, turn=None, **strategy
+):
     start, end = turn or (0.0, 2.0 * np.pi)
     wall = RevolvedWall(meridian, np.eye(4) if frame is None else frame, start, end, turn is None)
     process = process or ProcessParameters()
@@ -41,13 +44,14 @@ def plan(meridian, build=FREE, process=None, platform=0.0, frame=None, turn=None
 
 
 def cylindrical(bead, frame=None):
-    """Radius, height, unwrapped azimuth of the points, and build directions along radius, azimuth and axis."""
+    """Radius, height and unwrapped azimuth of the points, and build directions along radius,
+    azimuth and axis."""
     frame = np.eye(4) if frame is None else frame
     p, b = (bead.points - frame[:3, 3]) @ frame[:3, :3], bead.build @ frame[:3, :3]
-    at = np.arctan2(p[:, 1], p[:, 0])
-    c, s = np.cos(at), np.sin(at)
+    azimuth = np.arctan2(p[:, 1], p[:, 0])
+    c, s = np.cos(azimuth), np.sin(azimuth)
     turned = np.stack([b[:, 0] * c + b[:, 1] * s, b[:, 1] * c - b[:, 0] * s, b[:, 2]], axis=1)
-    return np.hypot(p[:, 0], p[:, 1]), p[:, 2], np.unwrap(at), turned
+    return np.hypot(p[:, 0], p[:, 1]), p[:, 2], np.unwrap(azimuth), turned
 
 
 def sphere_truth(s):
@@ -85,16 +89,17 @@ def test_the_laval_nozzle_has_137_layers_on_its_two_parabolas():
         assert np.abs(r - x).max() < 1e-7
         slope = np.array([rho / x, 0.0, 1.0])
         assert np.abs(b - slope / np.linalg.norm(slope)).max() < 1e-8
-    # along either parabola layers are exactly a layer height apart: arc length of x^2 = 2 p z in closed form
+    # along either parabola layers are exactly a layer height apart: arc length of x^2 = 2 p z in
+    # closed form
     along = [_parabola_length(*cylindrical(layer.beads[0])[:2]) for layer in toolpath.layers]
     steps = np.diff(along)
-    inside = np.abs(steps - 1.0) < 0.3  # all but the one across the throat
+    inside = np.abs(steps - 1.0) < 0.3  # all except the one across the throat
     assert inside.sum() == 135
     assert np.abs(steps[inside] - 1.0).max() < 1e-7
 
 
 def _parabola_length(radius, height):
-    """Signed arc length from the apex of the parabola the point is on, rising up the wall."""
+    """Signed arc length from the apex of the parabola through the point, rising along the wall."""
     p, sign = (10.0, -1.0) if height[0] <= 96.5 else (3.0, 1.0)
     q = radius[0] / p
     return sign * 0.5 * p * (q * np.hypot(1.0, q) + np.arcsinh(q))
@@ -168,13 +173,14 @@ def test_a_part_of_a_turn_gives_open_beads(direction, signs):
 
 
 def test_iso_height_says_where_the_spacing_leaves_the_band():
+    """Constant height reports the layers whose spacing leaves the band."""
     toolpath = plan(SPHERE, spacing="iso-height")
     heights = [cylindrical(layer.beads[0])[1][0] for layer in toolpath.layers]
     assert heights == pytest.approx(np.arange(45.0), abs=1e-9)
     warning = next(issue for issue in toolpath.issues if issue.code == "SPACING")
     z = np.arange(46.0)
-    apart = np.hypot(1.0, np.diff(np.sqrt(45.0**2 - z**2)))
-    assert f"{int((apart > 1.2).sum())} of 46 layers" in warning.message
+    distances = np.hypot(1.0, np.diff(np.sqrt(45.0**2 - z**2)))
+    assert f"{int((distances > 1.2).sum())} of 46 layers" in warning.message
     assert warning.level == "warning"
     assert "SPACING" not in {issue.code for issue in plan(CYLINDER, spacing="iso-height").issues}
     assert "SPACING" not in {issue.code for issue in plan(SPHERE).issues}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How large toolpaths will be is told before they are made, about right, and absurd ones are refused at once."""
+"""The size of a toolpath is estimated before planning, and absurd sizes are rejected at once."""
 
 import dataclasses
 import json
@@ -33,7 +33,7 @@ from tests.core.strategies.test_developable import CONE, CYLINDER, box, collar, 
 from tests.core.strategies.test_surface import TILTED, bend, tube
 from tests.core.strategies.test_wall_fronts import WALLS
 
-FREE = BuildDirectionParameters(clearance="none", max_tilt=np.pi)
+UNRESTRICTED = BuildDirectionParameters(clearance="none", max_tilt=np.pi)
 DOME = RevolvedWall(Meridian.chained([arc((0.0, 0.0), 45.0, 0.0, np.pi / 2)]), np.eye(4))
 VASE = RevolvedWall(
     Meridian.chained([line((60.0, 0.0), (20.0, 50.0)), line((20.0, 50.0), (45.0, 70.0))]), np.eye(4)
@@ -42,27 +42,29 @@ SECTOR = dataclasses.replace(VASE, start=0.3, end=1.7, full=False)
 PROCESS = ProcessParameters()
 
 
-def turned(wall, **values):
+def plan_revolution(wall, **values):
     strategy = RevolutionParameters(**values)
     return estimated_size.revolution_size(wall, strategy), revolution.plan(
-        wall, strategy, FREE, PROCESS, NozzleParameters(), 0.0
+        wall, strategy, UNRESTRICTED, PROCESS, NozzleParameters(), 0.0
     )
 
 
-def on_part(wall, **values):
+def plan_wall(wall, **values):
     strategy = SurfaceParameters(**values)
     family = surface if wall.closes_around else wall_fronts
-    return estimated_size.wall_size(wall, strategy), family.plan(wall, strategy, FREE, PROCESS)
-
-
-def on_hub(made, **values):
-    strategy = DevelopableParameters(**{"layer_height": 3.0, "bead_spacing": 3.0, **values})
-    return estimated_size.solids_size(made, strategy), plan_solids(
-        made, strategy, BuildDirectionParameters(), PROCESS, None
+    return estimated_size.wall_size(wall, strategy), family.plan(
+        wall, strategy, UNRESTRICTED, PROCESS
     )
 
 
-def on_faces(wall, **values):
+def plan_rotary_solid(hub_solids, **values):
+    strategy = DevelopableParameters(**{"layer_height": 3.0, "bead_spacing": 3.0, **values})
+    return estimated_size.solids_size(hub_solids, strategy), plan_solids(
+        hub_solids, strategy, BuildDirectionParameters(), PROCESS, None
+    )
+
+
+def plan_cladding(wall, **values):
     sheet = dataclasses.replace(
         wall, first=(), rims=(), behind=np.zeros(len(wall.vertices), dtype=bool)
     )
@@ -76,21 +78,27 @@ def on_faces(wall, **values):
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: turned(DOME, layer_height=0.7),
-        lambda: turned(VASE, layer_height=0.5, chord_error=0.002),
-        lambda: turned(VASE, layer_height=0.4, spacing="iso-height"),
-        lambda: turned(SECTOR, layer_height=0.5),
-        lambda: turned(DOME, layer_height=0.5, min_points=300, chord_error=0.1),
-        lambda: on_part(tube(), layer_height=1.0),
-        lambda: on_part(bend(TILTED), layer_height=3.0, chord_error=0.001),
-        lambda: on_part(WALLS["three tangent faces"][0](), layer_height=2.0),
-        lambda: on_part(WALLS["a bend"][0](), layer_height=5.0, chord_error=0.001),
-        lambda: on_hub(solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), chord_error=0.01),
-        lambda: on_hub(solids(CONE, box(), box(turned=2.0)), chord_error=0.002, fill="lines"),
-        lambda: on_hub(solids(CYLINDER, box()), margin=30.0, layer_height=6.0, bead_spacing=8.0),
-        lambda: on_faces(WALLS["a bend"][0](), layers=1, chord_error=0.01),
+        lambda: plan_revolution(DOME, layer_height=0.7),
+        lambda: plan_revolution(VASE, layer_height=0.5, chord_error=0.002),
+        lambda: plan_revolution(VASE, layer_height=0.4, spacing="iso-height"),
+        lambda: plan_revolution(SECTOR, layer_height=0.5),
+        lambda: plan_revolution(DOME, layer_height=0.5, min_points=300, chord_error=0.1),
+        lambda: plan_wall(tube(), layer_height=1.0),
+        lambda: plan_wall(bend(TILTED), layer_height=3.0, chord_error=0.001),
+        lambda: plan_wall(WALLS["three tangent faces"][0](), layer_height=2.0),
+        lambda: plan_wall(WALLS["a bend"][0](), layer_height=5.0, chord_error=0.001),
+        lambda: plan_rotary_solid(
+            solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), chord_error=0.01
+        ),
+        lambda: plan_rotary_solid(
+            solids(CONE, box(), box(turned=2.0)), chord_error=0.002, fill="lines"
+        ),
+        lambda: plan_rotary_solid(
+            solids(CYLINDER, box()), margin=30.0, layer_height=6.0, bead_spacing=8.0
+        ),
+        lambda: plan_cladding(WALLS["a bend"][0](), layers=1, chord_error=0.01),
         # layers around a bent pipe become three times as long
-        lambda: on_faces(
+        lambda: plan_cladding(
             WALLS["a half shell"][0](),
             layers=3,
             layer_height=14.0,
@@ -112,45 +120,48 @@ def on_faces(wall, **values):
     "<lambda>13",
 )
 def test_counts_are_about_right(make):
-    told, made = make()
-    assert 0.65 < told.layers / len(made.layers) < 1.35, (told, len(made.layers))
-    assert 0.2 < told.points / made.point_count < 1.6, (told, made.point_count)
+    """Estimated counts are about right."""
+    estimate, toolpath = make()
+    assert 0.65 < estimate.layers / len(toolpath.layers) < 1.35, (estimate, len(toolpath.layers))
+    assert 0.2 < estimate.points / toolpath.point_count < 1.6, (estimate, toolpath.point_count)
 
 
 def test_the_turns_of_a_spiral_count_as_layers():
-    told, made = turned(VASE, layer_height=0.5, path="spiral")
-    assert told.points == pytest.approx(made.point_count, rel=0.2)
-    assert told.layers == pytest.approx(
-        np.ptp(next(iter(made))[2].parameter) / (2.0 * np.pi), rel=0.05
+    estimate, toolpath = plan_revolution(VASE, layer_height=0.5, path="spiral")
+    assert estimate.points == pytest.approx(toolpath.point_count, rel=0.2)
+    assert estimate.layers == pytest.approx(
+        np.ptp(next(iter(toolpath))[2].parameter) / (2.0 * np.pi), rel=0.05
     )
 
 
 FINE = {
-    "a dome": lambda **values: turned(DOME, **values),
-    "a spiral": lambda **values: turned(VASE, path="spiral", **values),
-    "planes": lambda **values: turned(VASE, spacing="iso-height", **values),
-    "a tube": lambda **values: on_part(tube(), **values),
-    "a smooth tube": lambda **values: on_part(bend(), spacing="smooth", **values),
-    "lines up a tube": lambda **values: on_part(tube(), spacing="iso-parameter", **values),
-    "a sheet": lambda **values: on_part(WALLS["an opening"][0](), **values),
-    "a collar": lambda **values: on_hub(solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), **values),
-    "a blade": lambda **values: on_hub(solids(CONE, box()), **values),
+    "a dome": lambda **values: plan_revolution(DOME, **values),
+    "a spiral": lambda **values: plan_revolution(VASE, path="spiral", **values),
+    "planes": lambda **values: plan_revolution(VASE, spacing="iso-height", **values),
+    "a tube": lambda **values: plan_wall(tube(), **values),
+    "a smooth tube": lambda **values: plan_wall(bend(), spacing="smooth", **values),
+    "lines up a tube": lambda **values: plan_wall(tube(), spacing="iso-parameter", **values),
+    "a sheet": lambda **values: plan_wall(WALLS["an opening"][0](), **values),
+    "a collar": lambda **values: plan_rotary_solid(
+        solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)), **values
+    ),
+    "a blade": lambda **values: plan_rotary_solid(solids(CONE, box()), **values),
 }
 
 
 @pytest.mark.parametrize("name", FINE)
 def test_layers_that_are_too_many_are_refused_at_once_with_what_is_enough(name):
-    """Made, they would take hours."""
+    """Planning them would take hours, so they are rejected at once with a sufficient value."""
     with pytest.raises(InputError) as caught:
         FINE[name](layer_height=1e-6)
     error = caught.value
     assert (error.code, error.where) == ("TOO_MANY", "strategy.layer_height")
-    told = re.fullmatch(
+    match = re.fullmatch(
         r"0.000001 mm gives about ([\d,]+) layers, above the limit of 20,000; use at least ([\d.e-]+) mm",
         error.message,
     )
-    assert told, error.message
-    layers, enough = int(told[1].replace(",", "")), float(told[2])
+    assert match, error.message
+    layers, enough = int(match[1].replace(",", "")), float(match[2])
     assert layers * 1e-6 == pytest.approx(enough * MOST_LAYERS, rel=0.15)  # both are rounded
 
 
@@ -170,6 +181,7 @@ def test_layers_that_are_too_many_are_refused_at_once_with_what_is_enough(name):
     ],
 )
 def test_points_that_are_too_many_are_told_by_what_makes_them(family, values, key):
+    """An excess of points is attributed to the parameter that causes it."""
     strategy = family(**values)
     with pytest.raises(InputError) as caught:
         estimated_size.refuse_absurd(
@@ -178,9 +190,9 @@ def test_points_that_are_too_many_are_told_by_what_makes_them(family, values, ke
     error = caught.value
     assert (error.code, error.where) == ("TOO_MANY", key)
     value = getattr(strategy, key.split(".")[1])
-    told, rest = error.message.split(" mm gives about ", 1)
-    assert float(told) == value and "e" not in told  # without an exponent
-    assert rest.startswith("200,000,000 points, above the limit of 50,000,000")
+    value_text, remainder = error.message.split(" mm gives about ", 1)
+    assert float(value_text) == value and "e" not in value_text  # without an exponent
+    assert remainder.startswith("200,000,000 points, above the limit of 50,000,000")
     enough = float(error.message.split("at least ")[1].split()[0])
     assert (
         enough == pytest.approx(value * (16.0 if key.endswith("error") else 4.0), rel=0.1)
@@ -205,16 +217,16 @@ def test_what_is_said_to_be_enough_is_taken():
 
 
 def test_beads_by_overlap_are_told_by_their_width():
-    made, thin = (
+    hub_solids, thin = (
         solids(CYLINDER, collar(40.0, 70.0, 0.0, 40.0)),
         dataclasses.replace(PROCESS, bead_width=1e-5),
     )
     strategy = DevelopableParameters(layer_height=3.0, bead_overlap=0.3)
     estimated_size.refuse_absurd(
-        estimated_size.solids_size(made, strategy), strategy
-    )  # the feature knows no width yet
+        estimated_size.solids_size(hub_solids, strategy), strategy
+    )  # the feature has no width yet
     with pytest.raises(InputError, match=r"0.00001 mm gives about [\d,]+ points") as caught:
-        plan_solids(made, strategy, BuildDirectionParameters(), thin, None)
+        plan_solids(hub_solids, strategy, BuildDirectionParameters(), thin, None)
     assert (caught.value.code, caught.value.where) == ("TOO_MANY", "process.bead_width")
 
 
@@ -225,9 +237,9 @@ def test_large_jobs_are_not_refused():
         RevolutionParameters(layer_height=0.5),
         RevolutionParameters(layer_height=0.5, chord_error=0.001),
     ):
-        found = estimated_size.revolution_size(tank, strategy)
-        estimated_size.refuse_absurd(found, strategy)
-    assert 25e6 < found.points < estimated_size.MOST_POINTS
+        estimate = estimated_size.revolution_size(tank, strategy)
+        estimated_size.refuse_absurd(estimate, strategy)
+    assert 25e6 < estimate.points < estimated_size.MOST_POINTS
 
 
 @pytest.mark.parametrize(
@@ -244,18 +256,20 @@ def test_large_jobs_are_not_refused():
     ],
 )
 def test_large_jobs_are_told(family, points, told):
-    found = estimated_size.size_issues(estimated_size.Size(180.0, points), family())
-    assert [(issue.level, issue.code) for issue in found] == (
+    """Large jobs are announced with time and memory."""
+    issues = estimated_size.size_issues(estimated_size.Size(180.0, points), family())
+    assert [(issue.level, issue.code) for issue in issues] == (
         [] if told is None else [("note", "LARGE")]
     )
     if told:
-        assert found[0].message.startswith(
+        assert issues[0].message.startswith(
             f"planning about {points:,} points in 180 layers takes about {told} of"
         )
 
 
 def test_many_layers_of_few_points_are_told():
-    """A cup in layers of 8 um, each of 25 points: minutes, which the points alone do not tell."""
+    """A cup in layers of 8 um with 25 points each: minutes, which the number of points does not
+    show."""
     assert (
         estimated_size.size_issues(estimated_size.Size(500.0, 12_500.0), RevolutionParameters())
         == ()
@@ -278,10 +292,10 @@ def test_tilts_that_take_long_to_find_are_told():
     assert estimated_size.tilting_issues(3_000) == ()
     (issue,) = estimated_size.tilting_issues(
         6_812
-    )  # 60 s of the processor for the first tilts, 174 s in all
+    )  # 60 s of processor time for the first tilts, 174 s in total
     assert (issue.level, issue.code) == ("note", "LARGE") and "6,800 points" in issue.message
     assert "takes about 1.1 min of processor time" in issue.message
-    # a wall all of whose beads turn too fast: 6 s for its first tilts, 70 s for slower ones
+    # a wall whose beads all turn too fast: 6 s for its first tilts, 70 s for slower ones
     assert estimated_size.tilting_issues(1_065) == estimated_size.tilting_issues(500, 6) == ()
     (issue,) = estimated_size.tilting_issues(1_065, 6)
     assert (issue.level, issue.code) == (
@@ -292,7 +306,7 @@ def test_tilts_that_take_long_to_find_are_told():
 
 
 def test_layers_of_a_wide_margin_are_told_by_what_filling_them_takes():
-    """Its layers, each another one, are long straight beads of few points."""
+    """Its layers are all different, and consist of long straight beads with few points."""
     block = estimated_size.solids_size(
         solids(CYLINDER, box()), DevelopableParameters(layer_height=6.0, bead_spacing=8.0)
     )
@@ -316,15 +330,16 @@ def test_remedies_that_take_long_to_find_are_told():
     ("height", "told"), [(1.0, "1,500,000 nodes takes about 1.3 min"), (2.0, None)]
 )
 def test_curved_layers_are_told_by_their_grid(height, told):
-    """A plate of 96 cm3 whose layers of 1 mm took 105 s of the processor, which its 60,000 points do not tell."""
-    made = solids(CYLINDER, box((-60.0, -40.0, 0.0), (60.0, 40.0, 10.0)))
+    """A plate of 96 cm3 whose layers of 1 mm took 105 s of processor time, which its 60,000 points
+    do not show."""
+    hub_solids = solids(CYLINDER, box((-60.0, -40.0, 0.0), (60.0, 40.0, 10.0)))
     strategy = SolidParameters(layer_height=height, bead_spacing=1.9 * height, layers="geodesic")
-    found = estimated_size.size_issues(estimated_size.solids_size(made, strategy), strategy)
-    assert [issue.code for issue in found] == ([] if told is None else ["LARGE"])
-    assert told is None or (told in found[0].message and "layers: planes" in found[0].message)
+    issues = estimated_size.size_issues(estimated_size.solids_size(hub_solids, strategy), strategy)
+    assert [issue.code for issue in issues] == ([] if told is None else ["LARGE"])
+    assert told is None or (told in issues[0].message and "layers: planes" in issues[0].message)
     assert (
         estimated_size.size_issues(
-            estimated_size.solids_size(made, dataclasses.replace(strategy, layers="planes")),
+            estimated_size.solids_size(hub_solids, dataclasses.replace(strategy, layers="planes")),
             strategy,
         )
         == ()
@@ -340,17 +355,19 @@ def test_curved_layers_are_told_by_their_grid(height, told):
     ],
 )
 def test_curved_layers_that_take_much_memory_too_are_told_by_both(points, told):
-    """Of a grid that takes 1,000 s of the processor, and points that take 150 s, 175 s and 1,125 s."""
-    found = estimated_size.size_issues(
+    """For a grid that takes 1,000 s of processor time, and points that take 150 s, 175 s and 1,125
+    s."""
+    issues = estimated_size.size_issues(
         estimated_size.Size(100.0, points, nodes=2e7), SolidParameters(layers="geodesic")
     )
-    assert len(found) == len(told)
-    for issue, word in zip(found, told, strict=True):
+    assert len(issues) == len(told)
+    for issue, word in zip(issues, told, strict=True):
         assert issue.code == "LARGE" and word in issue.message
 
 
 def bellows(high):
-    """A mesh of rings of 60 and 72 mm, 12 mm apart, which meet at right angles, on its lowest ring."""
+    """A mesh of rings of 60 and 72 mm, 12 mm apart, that meet at right angles, on its lowest
+    ring."""
     angle = 2.0 * np.pi * np.arange(72) / 72
     rings = [
         np.column_stack([r * np.cos(angle), r * np.sin(angle), np.full(72, 12.0 * k)])
@@ -365,21 +382,21 @@ def bellows(high):
     ("high", "told"), [(1, None), (8, "takes about 1.5 min of processor time")]
 )
 def test_folds_of_a_mesh_are_told_by_their_length(high, told):
-    """Layers of a real mesh of 40,000 vertices took 90 s of the processor without a word, for its beads have few points.
-    This one takes 36 s."""
+    """A real mesh of 40,000 vertices took 90 s of processor time without a notice, because its
+    beads have few points. This one takes 36 s."""
     wall = mesh_wall(*bellows(high), 3.0, "bellows", 5.0)
     edge = wall.vertices[:, 2] < 1e-6
     wall = dataclasses.replace(
         wall, first=(FirstCurve(wall.vertices[edge], *2 * (np.eye(3)[[0] * edge.sum()],), True),)
     )
     strategy = SurfaceParameters(layer_height=3.0, chord_error=0.2)
-    found = estimated_size.wall_size(wall, strategy)
-    assert found.folds < 4_000.0 * (
+    estimate = estimated_size.wall_size(wall, strategy)
+    assert estimate.folds < 4_000.0 * (
         2 * high - 1
     )  # around each ring it bends over some rows of facets
-    told_of = estimated_size.size_issues(found, strategy)
-    assert [issue.code for issue in told_of] == ([] if told is None else ["LARGE"])
-    assert told is None or (told in told_of[0].message and "rounded edges" in told_of[0].message)
+    issues = estimated_size.size_issues(estimate, strategy)
+    assert [issue.code for issue in issues] == ([] if told is None else ["LARGE"])
+    assert told is None or (told in issues[0].message and "rounded edges" in issues[0].message)
 
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -420,11 +437,12 @@ print(json.dumps([size.gigabytes, used, size.points, size.vertices]))
     [(180, 60, 3.0, 0.0), (48, 16, 1.5, 0.0), (240, 80, 2.0, 4.0)],
 )
 def test_the_memory_of_a_mesh_wall_is_announced_as_it_is_used(count, rows, edge, wave):
-    """Announced was a thirtieth of it, as points alone were counted. Measured in a process of its own, to a factor of 2.5."""
+    """The announced memory was a thirtieth of the use, because only points were counted. The use is
+    measured in a separate process, to a factor of 2.5."""
     script = MEMORY_SCRIPT.format(count=count, rows=rows, edge=edge, wave=wave)
-    made = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", script], capture_output=True, text=True, check=True, cwd=ROOT
     )
-    announced, used, points, vertices = json.loads(made.stdout)
+    announced, used, points, vertices = json.loads(process.stdout)
     assert used / 2.5 < announced < 2.5 * used
     assert 0 < points * estimated_size.GIGABYTES_A_POINT < announced and vertices > 5000

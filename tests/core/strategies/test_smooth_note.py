@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where the band does not suffice for the turn that smooth layers stay below, the finding says so."""
+"""If the band is too narrow for the turn limit of smooth layers, the issue says so."""
 
 import numpy as np
 import pytest
@@ -25,14 +25,14 @@ from freecad_am.core.strategies.walls import plan as surface
 )
 def test_a_band_too_narrow_is_told(band, level, words):
     torus = Torus(60.0, 15.0)
-    first = intersect_implicit(
+    base_layer = intersect_implicit(
         torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360)
     )
-    wall = SurfaceWall("torus", (60.0, 15.0), np.eye(4), 1.2, first.curve.points[:-1])
+    wall = SurfaceWall("torus", (60.0, 15.0), np.eye(4), 1.2, base_layer.curve.points[:-1])
     strategy = SurfaceParameters(layer_height=5.0, spacing="smooth", band=band)
     toolpath = surface.plan(
         wall, strategy, BuildDirectionParameters(clearance="none"), ProcessParameters()
     )
-    (told,) = [issue for issue in toolpath.issues if issue.code == "TURN"]
-    assert told.level == level
-    assert all(word in told.message for word in words)
+    (turn_issue,) = [issue for issue in toolpath.issues if issue.code == "TURN"]
+    assert turn_issue.level == level
+    assert all(word in turn_issue.message for word in words)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The spiral against the surface it runs on."""
+"""The spiral against its surface."""
 
 import numpy as np
 import pytest
@@ -98,7 +98,8 @@ def test_a_part_of_a_turn_has_no_spiral():
 
 @pytest.mark.parametrize("meridian, flat_top", [(FUNNEL, True), (BENT, True), (SPHERE, False)])
 def test_the_places_where_it_lies_over_itself_are_told(meridian, flat_top):
-    """Where the room above the turn before is less than a layer height: from 0 in the second turn, to 0 in the last."""
+    """Where the space above the turn below is less than a layer height: from 0 in the second turn,
+    to 0 in the last."""
     toolpath = spiral(meridian, layer_height=2.0)
     bead = toolpath.layers[0].beads[0]
     turned = bead.parameter - 0.3

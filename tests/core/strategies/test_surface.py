@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The paper's bend on a pipe (R = 60, r = 15, Rc = 32, ERRATA) and a cylinder, as toolpaths."""
+"""Toolpaths of the paper's bend on a pipe (R = 60, r = 15, Rc = 32, ERRATA) and of a cylinder."""
 
 import numpy as np
 import pytest
@@ -25,14 +25,14 @@ def bend(frame=None, end=0.5 * np.pi):
     v = 2.0 * np.pi * np.arange(480) / 480
     reach = BEND + TUBE * np.cos(v)
     u = np.arccos((BEND**2 - PIPE**2 + reach**2) / (2.0 * BEND * reach))
-    first = Torus(BEND, TUBE).point(u, v) @ frame[:3, :3].T + frame[:3, 3]
-    return SurfaceWall(TORUS, (BEND, TUBE), frame, end, first, label="Bend")
+    base_curve = Torus(BEND, TUBE).point(u, v) @ frame[:3, :3].T + frame[:3, 3]
+    return SurfaceWall(TORUS, (BEND, TUBE), frame, end, base_curve, label="Bend")
 
 
 def tube(height=20.0):
     v = 2.0 * np.pi * np.arange(480) / 480
-    first = np.column_stack([10.0 * np.cos(v), 10.0 * np.sin(v), 0.0 * v])
-    return SurfaceWall(CONE, (10.0, 0.0), np.eye(4), height, first, label="Tube")
+    base_curve = np.column_stack([10.0 * np.cos(v), 10.0 * np.sin(v), 0.0 * v])
+    return SurfaceWall(CONE, (10.0, 0.0), np.eye(4), height, base_curve, label="Tube")
 
 
 def planned(
@@ -56,7 +56,7 @@ def planned(
 
 
 def parameters(points, frame=None):
-    """u and v of points of the bend, by its equation alone."""
+    """u and v of points of the bend by its equation only."""
     if frame is not None:
         points = (points - frame[:3, 3]) @ frame[:3, :3]
     x, y, z = points.T
@@ -70,7 +70,7 @@ def codes(toolpath):
 @pytest.mark.parametrize("frame", [None, TILTED], ids=["as the paper", "anywhere"])
 def test_layers_trimmed_at_the_end(frame):
     toolpath = planned(bend(frame))
-    assert len(toolpath.layers) == 15  # 16 with the one wholly past the end (ERRATA)
+    assert len(toolpath.layers) == 15  # 16 including the one wholly beyond the end (ERRATA)
     for _, _, bead in toolpath:
         u, _ = parameters(bead.points, frame)
         reach = np.hypot(
@@ -92,22 +92,23 @@ def test_layers_trimmed_at_the_end(frame):
 @pytest.mark.parametrize("turn", [90.0, 120.0, 150.0, 170.0, 179.0])
 @pytest.mark.always
 def test_bends_end_at_their_end_however_far_they_turn(turn, spacing, end):
-    """Angles about the bend's axis from its start on, 0 to a whole turn; and the farthest places of the wall are covered."""
-    last = np.radians(turn)
-    toolpath = planned(bend(end=last), spacing=spacing, end=end, layer_height=8.0)
+    """Angles about the bend's axis from its start, 0 to a full turn; the farthest points of the
+    wall are covered."""
+    end_angle = np.radians(turn)
+    toolpath = planned(bend(end=end_angle), spacing=spacing, end=end, layer_height=8.0)
     points = np.vstack([bead.points for _, _, bead in toolpath])
     x, y, z = points.T
     assert np.hypot(np.hypot(x + BEND, z) - BEND, y) == pytest.approx(TUBE, abs=1e-4)
     around = np.mod(parameters(points)[0], 2.0 * np.pi)
-    assert around.max() <= last + 1e-7
+    assert around.max() <= end_angle + 1e-7
     v = np.linspace(0.0, 2.0 * np.pi, 50)
-    rim = Torus(BEND, TUBE).point(np.full(50, last), v)
-    apart = np.linalg.norm(rim[:, None] - points, axis=2).min(axis=1)
+    rim = Torus(BEND, TUBE).point(np.full(50, end_angle), v)
+    distances = np.linalg.norm(rim[:, None] - points, axis=2).min(axis=1)
     assert (
-        apart.min() < 12.0
-    )  # nothing stops long before the end on its inside, where layers reach it first
+        distances.min() < 12.0
+    )  # no layer stops far before the end on the inside of the bend, where layers reach it first
     if end == "trim":
-        assert apart.max() < 12.0
+        assert distances.max() < 12.0
 
 
 def test_points_lie_on_the_wall_and_the_first_layer_on_the_pipe():
@@ -128,7 +129,7 @@ def test_whole_layers_stop_below_the_end():
 
 
 def test_a_straight_tube_ends_at_its_end():
-    """Layers at 0, 5, 10, 15 and 20 mm of a tube of 20 mm, whichever way the end is treated."""
+    """Layers at 0, 5, 10, 15 and 20 mm of a tube of 20 mm, with either treatment of the end."""
     for end in ("trim", "whole"):
         toolpath = planned(tube(), end=end)
         heights = [layer.beads[0].points[:, 2] for layer in toolpath.layers]
@@ -140,9 +141,10 @@ def test_a_straight_tube_ends_at_its_end():
 
 def test_iso_parameter_layers_gather_and_say_so():
     toolpath = planned(bend(), spacing="iso-parameter")
-    assert len(toolpath.layers) == 18  # 19 with the one wholly past the end
+    assert len(toolpath.layers) == 18  # 19 including the one wholly beyond the end
     issue = codes(toolpath)["SPACING"]
-    # 2.49 mm with the one wholly past the end, which is not deposited: see test_wall_comparison
+    # 2.49 mm including the one wholly beyond the end, which is not deposited: see
+    # test_wall_comparison
     assert issue.level == "warning" and "2.58" in issue.message and issue.layer == 17
     exact = codes(planned(bend()))["SPACING"]
     assert exact.level == "note"
@@ -197,7 +199,7 @@ def test_fixed_layer_and_capped_directions():
 
 
 def turns(bead, vectors):
-    """Turn per mm from point to point, rad."""
+    """Rotation per mm from point to point, rad."""
     cosine = np.clip((vectors[1:] * vectors[:-1]).sum(axis=1), -1.0, 1.0)
     return np.arccos(cosine) / np.linalg.norm(np.diff(bead.points, axis=0), axis=1)
 
@@ -207,11 +209,14 @@ def turns(bead, vectors):
     [("local", 0.0, 10.0), ("local", 0.3, 10.0), ("symmetry-plane", 0.2, 2.0)],
 )
 def test_directions_turn_no_faster_than_their_limit(mode, lead, degrees):
-    """Fronts turn by up to 97 degrees at their corners (ERRATA), and the free directions with them."""
-    most = np.radians(degrees)
-    free, limited = (planned(bend(), mode=mode, lead=lead, max_turn=turn) for turn in ("inf", most))
-    fastest = [max(turns(bead, bead.tool).max() for _, _, bead in one) for one in (free, limited)]
-    assert fastest[0] > 1.5 * most and fastest[1] <= most + 1e-6
+    """Fronts turn by up to 97 degrees at their corners (ERRATA), and the unlimited directions with
+    them."""
+    limit = np.radians(degrees)
+    free, limited = (
+        planned(bend(), mode=mode, lead=lead, max_turn=turn) for turn in ("inf", limit)
+    )
+    fastest = [max(turns(bead, bead.tool).max() for _, _, bead in path) for path in (free, limited)]
+    assert fastest[0] > 1.5 * limit and fastest[1] <= limit + 1e-6
     departure = max(
         np.arccos(np.clip((a.tool * b.tool).sum(axis=1), -1.0, 1.0)).max()
         for (_, _, a), (_, _, b) in zip(free, limited, strict=True)
@@ -300,11 +305,12 @@ def test_refusals():
     "options", [{}, {"end": "whole"}, {"spacing": "smooth"}, {"spacing": "iso-parameter"}], ids=str
 )
 def test_notes_tell_of_layers_that_are_deposited(options):
+    """Notes refer only to deposited layers."""
     toolpath = planned(bend(), **options)
     count = len(toolpath.layers)
     assert all(issue.layer is None or issue.layer < count for issue in toolpath.issues)
-    told = codes(toolpath).get("CORNERS")
-    if told is None:
+    note = codes(toolpath).get("CORNERS")
+    if note is None:
         assert options.get("spacing") or options == {"end": "whole"}
         return
     turning = [0.0] * count
@@ -315,7 +321,7 @@ def test_notes_tell_of_layers_that_are_deposited(options):
             float(np.degrees(np.arccos(np.clip((into * out).sum(axis=1), -1, 1)).max())),
         )
     cornered = [index for index, turn in enumerate(turning) if turn > 1e-3]
-    assert told.message.startswith(
+    assert note.message.startswith(
         f"{len(cornered)} of {count} fronts have corners, first layer {cornered[0]}"
     )
-    assert f"by {max(turning):.3g} deg" in told.message and told.layer == int(np.argmax(turning))
+    assert f"by {max(turning):.3g} deg" in note.message and note.layer == int(np.argmax(turning))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Layers trimmed at the end of the wall: they end on it, lie below it, and leave nothing uncovered."""
+"""Layers trimmed at the end of the wall: they end on it, stay below it and leave no gap."""
 
 import numpy as np
 import pytest
@@ -20,37 +20,37 @@ PLACED = Placed(TORUS, np.eye(4))
 
 @pytest.fixture(scope="module", params=[0.0, 0.3, np.pi])
 def layers(request):
-    first = intersect_implicit(TORUS, PIPE, (0.0, 1.5), even_grid(TORUS, 360, request.param))
-    return constant_distance.layers(TORUS, first, HEIGHT, END)
+    base_layer = intersect_implicit(TORUS, PIPE, (0.0, 1.5), even_grid(TORUS, 360, request.param))
+    return constant_distance.layers(TORUS, base_layer, HEIGHT, END)
 
 
-def points_of(piece):
-    """Ten places per arc of the front, and the ends."""
-    w = piece.front.curve.refined(10)
-    if not piece.closed:
-        w = np.r_[w[:-1], w + piece.front.curve.period]
-        w = np.r_[piece.low, w[(w > piece.low) & (w < piece.high)], piece.high]
-    return piece.front.curve.at(w)[0]
+def points_of(bead_curve):
+    """Ten points per arc of the front, and the ends."""
+    w = bead_curve.front.curve.refined(10)
+    if not bead_curve.closed:
+        w = np.r_[w[:-1], w + bead_curve.front.curve.period]
+        w = np.r_[bead_curve.low, w[(w > bead_curve.low) & (w < bead_curve.high)], bead_curve.high]
+    return bead_curve.front.curve.at(w)[0]
 
 
 def test_pieces_end_on_the_line_and_lie_below_it(layers):
-    pieces = [trimmed(PLACED, layer, END) for layer in layers]
-    assert [len(layer) for layer in pieces] == [1] * 15 + [0]
-    assert [layer[0].closed for layer in pieces[:-1]] == [
+    trimmed_layers = [trimmed(PLACED, layer, END) for layer in layers]
+    assert [len(layer) for layer in trimmed_layers] == [1] * 15 + [0]
+    assert [layer[0].closed for layer in trimmed_layers[:-1]] == [
         layer.u.max() <= END for layer in layers[:-1]
     ]
-    assert sum(layer[0].closed for layer in pieces[:-1]) == 10
-    for layer, (piece,) in zip(layers, pieces[:-1]):
-        points = points_of(piece)
+    assert sum(layer[0].closed for layer in trimmed_layers[:-1]) == 10
+    for layer, (bead_curve,) in zip(layers, trimmed_layers[:-1]):
+        points = points_of(bead_curve)
         assert layer.curve.nearest(points)[0] == pytest.approx(0.0, abs=1e-9)
         assert TORUS.inverse(points)[0].max() <= END + 1e-7
-        if not piece.closed:
+        if not bead_curve.closed:
             assert TORUS.inverse(points[[0, -1]])[0] == pytest.approx(END, abs=1e-7)
 
 
 def test_trimmed_layers_cover_the_wall(layers):
     beads = np.vstack(
-        [points_of(piece) for layer in layers for piece in trimmed(PLACED, layer, END)]
+        [points_of(bead_curve) for layer in layers for bead_curve in trimmed(PLACED, layer, END)]
     )
     u, v = np.meshgrid(
         np.linspace(0.3, END, 150), np.linspace(0.0, 2.0 * np.pi, 150), indexing="ij"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Points of beads on walls: none so near to the next that no controller tells the time between them."""
+"""Points of beads on walls: no two so close that a controller could not resolve the time between
+them."""
 
 import numpy as np
 import pytest
@@ -23,7 +24,7 @@ def polygon(points, closed):
 
 @pytest.mark.parametrize("ends", [(0.0, 0.0), (TINY, 0.0), (0.0, TINY), (TINY, TINY)])
 def test_corners_next_to_an_end_are_the_end(ends):
-    """A U of which a side may be next to nothing."""
+    """A U with one side of almost zero length."""
     low, high = ends
     corners = [(0, low or 5, 0), (0, 0, 0), (7, 0, 0), (7, high or 5, 0)]
     curve = polygon(corners, False)
@@ -52,12 +53,13 @@ def test_a_seam_next_to_a_corner_keeps_its_place_and_the_turn(shift):
 
 
 def test_two_corners_side_by_side_are_one_that_turns_by_both():
+    """Two adjacent corners become one that turns by both angles."""
     curve = polygon([(0, 0, 0), (6, 0, 0), (6 + TINY, TINY, 0), (6 + TINY, 6, 0)], False)
     line = traced(curve, sample_within_chord(curve, curve.w[0], curve.w[-1], 0.01), False)
     assert np.linalg.norm(np.diff(line.points, axis=0), axis=1).min() >= MIN_DISTANCE_MM
-    at = int(np.argmin(np.linalg.norm(line.points - [6, 0, 0], axis=1)))
-    assert line.points[at] == pytest.approx([6, 0, 0], abs=MIN_DISTANCE_MM)
-    assert line.tangents[at] == pytest.approx(np.array([[1, 0, 0], [0, 1, 0]], dtype=float))
+    corner = int(np.argmin(np.linalg.norm(line.points - [6, 0, 0], axis=1)))
+    assert line.points[corner] == pytest.approx([6, 0, 0], abs=MIN_DISTANCE_MM)
+    assert line.tangents[corner] == pytest.approx(np.array([[1, 0, 0], [0, 1, 0]], dtype=float))
 
 
 def test_what_is_far_enough_apart_is_left_to_the_bit():

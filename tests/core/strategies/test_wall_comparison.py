@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The paper's bend cut by every method: the figures of the errata, and what does not apply says so."""
+"""The paper's bend sliced by every method: the figures of the errata; an inapplicable method gives
+its reason."""
 
 import numpy as np
 import pytest
@@ -17,33 +18,37 @@ from freecad_am.core.strategies.walls.comparison import NORMAL, Refused
 
 def bend(tube=15.0):
     torus = Torus(60.0, tube)
-    first = intersect_implicit(
+    base_layer = intersect_implicit(
         torus, Round.cylinder(32.0, [0, 0, 0], [0, 1, 0]), (0.0, 1.5), even_grid(torus, 360)
     )
-    return SurfaceWall("torus", (60.0, tube), np.eye(4), 0.5 * np.pi, first.curve.points[:-1])
+    return SurfaceWall("torus", (60.0, tube), np.eye(4), 0.5 * np.pi, base_layer.curve.points[:-1])
 
 
 @pytest.fixture(scope="module")
 def compared():
     return {
-        one.method: one
-        for one in wall_comparison.compare(bend(), SurfaceParameters(layer_height=5.0))
+        method_result.method: method_result
+        for method_result in wall_comparison.compare(bend(), SurfaceParameters(layer_height=5.0))
     }
 
 
 def test_iso_parameter_and_constant_distance_are_those_of_the_errata(compared):
-    before, after = compared["iso-parameter"], compared["constant-distance"]
-    assert (before.layers, after.layers) == (19, 16)
-    assert before.smallest == pytest.approx(2.49, abs=0.005)
-    assert before.largest == pytest.approx(5.0, abs=1e-4)
-    assert (after.smallest, after.largest) == pytest.approx((5.0, 5.0), abs=1e-3)
-    # figure 9: the step up the lines v = const is the layer height before, and up to 1.52 times as much after
-    assert all(np.allclose(step, 5.0, atol=1e-4) for step in before.step)
-    assert max(step.max() for step in after.step) == pytest.approx(5.0 * 1.52, abs=0.03)
-    assert before.corners == 0 and before.corner == 0.0
-    assert after.corners == 11 and np.degrees(after.corner) == pytest.approx(
-        94.0, abs=1.0
-    )  # 97 past the end
+    """Both methods have the figures of the errata."""
+    iso_parameter, constant_distance = compared["iso-parameter"], compared["constant-distance"]
+    assert (iso_parameter.layers, constant_distance.layers) == (19, 16)
+    assert iso_parameter.smallest == pytest.approx(2.49, abs=0.005)
+    assert iso_parameter.largest == pytest.approx(5.0, abs=1e-4)
+    assert (constant_distance.smallest, constant_distance.largest) == pytest.approx(
+        (5.0, 5.0), abs=1e-3
+    )
+    # figure 9: the step along the lines v = const is the layer height for iso-parameter, and up to
+    # 1.52 times as much for constant distance
+    assert all(np.allclose(step, 5.0, atol=1e-4) for step in iso_parameter.step)
+    assert max(step.max() for step in constant_distance.step) == pytest.approx(5.0 * 1.52, abs=0.03)
+    assert iso_parameter.corners == 0 and iso_parameter.corner == 0.0
+    assert constant_distance.corners == 11 and np.degrees(
+        constant_distance.corner
+    ) == pytest.approx(94.0, abs=1.0)  # 97 beyond the end
 
 
 def test_layers_normal_to_the_centreline_fan_out(compared):
@@ -54,8 +59,8 @@ def test_layers_normal_to_the_centreline_fan_out(compared):
     assert normal.turn == pytest.approx(0.0, abs=1e-6)  # meridians are geodesics
     starts = [np.isfinite(distance).any() for distance in normal.distance]
     assert all(starts)
-    last, place = normal.distance[-1], normal.around[-1]
-    assert place[np.argmax(last)] == pytest.approx(
+    last_distances, positions = normal.distance[-1], normal.around[-1]
+    assert positions[np.argmax(last_distances)] == pytest.approx(
         0.0, abs=2e-3
     )  # v = 0 is the outside of the bend
     assert np.isnan(normal.distance[0]).any() and np.isfinite(normal.distance[-1]).all()
@@ -67,20 +72,23 @@ def test_smooth_keeps_band_and_turn(compared):
     assert smooth.turn <= np.radians(6.0)
     assert (
         np.radians(6.0) < exact.turn < np.radians(60.0)
-    )  # beside corners; a corner is not a turn per mm
+    )  # next to corners; a corner is not a turn per mm
 
 
 def test_the_figures_hang_together(compared):
-    for one in compared.values():
+    """The figures of a method are consistent with each other."""
+    for method_result in compared.values():
         assert (
-            len(one.around)
-            == len(one.distance)
-            == len(one.step)
-            == one.layers - 1
-            == len(one.curves) - 1
+            len(method_result.around)
+            == len(method_result.distance)
+            == len(method_result.step)
+            == method_result.layers - 1
+            == len(method_result.curves) - 1
         )
-        assert one.smallest <= one.mean <= one.largest
-        for around, distance, step in zip(one.around, one.distance, one.step, strict=True):
+        assert method_result.smallest <= method_result.mean <= method_result.largest
+        for around, distance, step in zip(
+            method_result.around, method_result.distance, method_result.step, strict=True
+        ):
             assert len(around) == len(distance) == len(step)
             assert -0.5 <= around[0] < around[-2] <= 0.5 and (np.diff(around) > 0.0).all()
             assert around[-1] == pytest.approx(around[0] + 1.0)
@@ -88,7 +96,7 @@ def test_the_figures_hang_together(compared):
             assert (step >= distance - 1e-3)[
                 np.isfinite(step)
             ].all()  # the nearest point is nearer than the one below
-        reach = np.concatenate(one.curves)
+        reach = np.concatenate(method_result.curves)
         assert (
             np.nanmin(reach[:, 0] ** 2 + reach[:, 2] ** 2) >= (32.0 - 1e-3) ** 2
         )  # above the pipe
@@ -100,9 +108,9 @@ def test_a_method_that_cannot_be_is_told_with_its_reason(monkeypatch):
         raise InputError("NOT_NORMAL", "wall", "not for this wall")
 
     monkeypatch.setattr(wall_comparison.normal_layers, "layers", refuse)
-    found = wall_comparison.compare(bend(), SurfaceParameters(layer_height=10.0))
-    assert Refused(NORMAL, "not for this wall") in found
-    assert sum(isinstance(one, Refused) for one in found) == 1
+    results = wall_comparison.compare(bend(), SurfaceParameters(layer_height=10.0))
+    assert Refused(NORMAL, "not for this wall") in results
+    assert sum(isinstance(method_result, Refused) for method_result in results) == 1
 
 
 def test_unknown_spacings_are_refused():

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls without a closed parameter as toolpaths: order, support, seams, directions, ends, on analytic walls."""
+"""Toolpaths of walls without a closed parameter: order, support, seams, directions and ends, on
+analytic walls."""
 
 import numpy as np
 import pytest
@@ -25,21 +26,21 @@ SILL = HalfSpace(np.zeros(3), np.array([0.0, 1.0, 0.0]))
 
 @pytest.fixture(scope="module", autouse=True)
 def sliced_once():
-    """The fronts of a wall depend on nothing but its layer height, and take most of the time of a plan: they are found once
-    for all plans of it."""
-    found, layers = {}, fronts.slice_layers
+    """Slice each wall once for all plans: its fronts depend only on wall, layer height and
+    smoothing, and take most of the time of a plan."""
+    slices, layers = {}, fronts.slice_layers
 
-    def kept(wall, height, smoothing=None, progress=lambda fraction, text: None):
+    def slice_once(wall, height, smoothing=None, progress=lambda fraction, text: None):
         key = id(wall), height, smoothing
-        if key not in found:
-            found[key] = (
+        if key not in slices:
+            slices[key] = (
                 wall,
                 layers(wall, height, smoothing, progress),
-            )  # the wall too, so that its number stays its own
-        return found[key][1]
+            )  # keep the wall too, so that its id stays unique
+        return slices[key][1]
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(fronts, "slice_layers", kept)
+        patch.setattr(fronts, "slice_layers", slice_once)
         yield
 
 
@@ -52,15 +53,15 @@ def planned(wall, height, process=None, strategy=None, **build):
 
 
 def dense(beads):
-    """Points all along beads."""
-    parts = []
+    """Points along beads."""
+    samples = []
     for bead in beads:
         share = np.arange(60)[:, None, None] / 60.0
-        parts += [
+        samples += [
             (bead.points[:-1] + share * np.diff(bead.points, axis=0)).reshape(-1, 3),
             bead.points[-1:],
         ]
-    return np.vstack(parts)
+    return np.vstack(samples)
 
 
 def codes(toolpath):
@@ -68,7 +69,7 @@ def codes(toolpath):
 
 
 def gutter():
-    """Three tangent faces: two flat sides and half a cylinder between them, 40 mm high, standing on Z = 0."""
+    """Three tangent faces: two flat sides joined by half a cylinder, 40 mm high, on Z = 0."""
     radius, flat = 10.0, 25.0
     arc = np.pi * radius
     s = np.linspace(-flat - arc / 2.0, flat + arc / 2.0, 96)
@@ -119,8 +120,8 @@ WALLS = {
 MADE = {}
 
 
-def made(name):
-    """Wall, layer height, and a toolpath whose chords are off by 0.0003 mm."""
+def planned_wall(name):
+    """Wall, layer height, and a toolpath with a chord error of 0.0003 mm."""
     if name not in MADE:
         make, height = WALLS[name]
         wall = make()
@@ -137,7 +138,7 @@ def made(name):
 @pytest.mark.parametrize("name", WALLS)
 @pytest.mark.always("a half shell", "a bend", "a cap")
 def test_layers_are_a_height_apart_and_cover_the_wall(name):
-    wall, height, toolpath = made(name)
+    wall, height, toolpath = planned_wall(name)
     for below, layer in zip(toolpath.layers, toolpath.layers[1:]):  # chords are off by 0.0003 mm
         tree = cKDTree(dense([bead for bead in below.beads if not bead.role.closing]))
         for bead in layer.beads:
@@ -160,23 +161,24 @@ def test_layers_are_a_height_apart_and_cover_the_wall(name):
 @pytest.mark.parametrize("name", WALLS)
 @pytest.mark.always("three tangent faces", "a bend", "a cap", "a half shell")
 def test_every_bead_lies_on_something_deposited_before(name):
-    _, height, toolpath = made(name)
-    before = []  # of each layer, the last one first
+    """Every bead is supported by an earlier one."""
+    _, height, toolpath = planned_wall(name)
+    trees = []  # of each layer, the last one first
     for layer in toolpath.layers:
-        for bead in layer.beads if before else ():
+        for bead in layer.beads if trees else ():
             over = bead.points
-            for tree in before:
+            for tree in trees:
                 over = over[tree.query(over)[0] >= 1.01 * height]
                 if not len(over):
                     break
             assert not len(over)
-        before.insert(0, cKDTree(dense(layer.beads)))
+        trees.insert(0, cKDTree(dense(layer.beads)))
 
 
 @pytest.mark.always("a half shell", "three tangent faces", "a bend", "a cap")
 @pytest.mark.parametrize("name", WALLS)
 def test_directions_are_tangent_to_the_wall_normal_to_the_bead_and_continuous(name):
-    wall, height, _ = made(name)
+    wall, height, _ = planned_wall(name)
     toolpath = planned(wall, height, max_turn="inf")
     for _, _, bead in toolpath:
         normal = wall.project(bead.points)[1]
@@ -189,59 +191,63 @@ def test_directions_are_tangent_to_the_wall_normal_to_the_bead_and_continuous(na
             if not bead.role.closing:  # away from the layer below
                 foot = tree.data[tree.query(bead.points)[1]]
                 assert ((bead.points - foot) * bead.build).sum(axis=1).min() > 0.0
-    most = np.radians(15.0)
-    for _, _, bead in planned(wall, height, max_turn=most):
+    max_turn = np.radians(15.0)
+    for _, _, bead in planned(wall, height, max_turn=max_turn):
         turn = np.arccos(np.clip((bead.tool[1:] * bead.tool[:-1]).sum(axis=1), -1.0, 1.0))
-        assert (turn / np.linalg.norm(np.diff(bead.points, axis=0), axis=1)).max() < most * (
+        assert (turn / np.linalg.norm(np.diff(bead.points, axis=0), axis=1)).max() < max_turn * (
             1.0 + 1e-6
         ) + 1e-6
 
 
 def test_pieces_alternate_so_that_links_are_short():
-    wall, height, toolpath = made("an opening")
+    """Beads alternate in direction so that links are short."""
+    wall, height, toolpath = planned_wall("an opening")
     assert codes(toolpath)["SPLIT"].message == "a front splits in 2 at layer 7"
     assert codes(toolpath)["MERGE"].message == "2 fronts merge at layer 21"
     beads = [bead for _, _, bead in toolpath]
     links = np.array(
         [
-            np.linalg.norm(after.points[0] - before.points[-1])
-            for before, after in zip(beads, beads[1:])
-            if not before.role.closing and not after.role.closing
+            np.linalg.norm(next_bead.points[0] - current.points[-1])
+            for current, next_bead in zip(beads, beads[1:])
+            if not current.role.closing and not next_bead.role.closing
         ]
     )
     assert (links < 1.01 * height).sum() >= len(
         links
-    ) - 17  # but for the ways across the opening, once a layer
+    ) - 17  # except the links across the opening, once per layer
     assert links.max() < 40.0  # the sheet is 60 mm wide
     as_found = planned(wall, height)
     for _, _, bead in as_found:
-        assert bead.role.closing or (bead.points[-1] - bead.points[0])[0] > 0.0  # all the same way
+        assert (
+            bead.role.closing or (bead.points[-1] - bead.points[0])[0] > 0.0
+        )  # all in the same direction
 
 
 def test_seams_follow_each_other_at_the_angle_asked_for():
-    wall, height, _ = made("a bend")
+    """Seams of successive layers are at the requested angle."""
+    wall, height, _ = planned_wall("a bend")
     seam = SeamParameters(np.radians(-60.0))
-    whole = planned(wall, height, ProcessParameters(seam=seam), {"end": "whole"})
-    starts = np.array([layer.beads[0].points[0] for layer in whole.layers])
+    planned_path = planned(wall, height, ProcessParameters(seam=seam), {"end": "whole"})
+    starts = np.array([layer.beads[0].points[0] for layer in planned_path.layers])
     steps = np.linalg.norm(np.diff(starts, axis=0), axis=1)
     assert steps.min() > height - 1e-3 and steps.max() < 1.5 * height
-    for layer in whole.layers[:3]:  # there the centre is that of the tube within a hair
+    for layer in planned_path.layers[:3]:  # there the centre is almost that of the tube
         x, y, z = layer.beads[0].points[0]
         assert np.degrees(np.arctan2(y, np.hypot(x + 60.0, z) - 60.0)) == pytest.approx(
             -60.0, abs=8.0
         )
     clockwise = ProcessParameters(seam=SeamParameters(0.0, np.radians(30.0)), direction="clockwise")
-    other = planned(wall, height, clockwise, {"end": "whole"})
-    for one, two in zip(whole.layers, other.layers):
+    clockwise_path = planned(wall, height, clockwise, {"end": "whole"})
+    for layer_a, layer_b in zip(planned_path.layers, clockwise_path.layers):
         turning = [
             np.cross(bead.points[:-1], bead.points[1:]).sum(axis=0) @ bead.build.mean(axis=0)
-            for bead in (one.beads[0], two.beads[0])
+            for bead in (layer_a.beads[0], layer_b.beads[0])
         ]
         assert turning[0] > 0.0 > turning[1]
 
 
 def test_seam_of_an_upright_tube():
-    """The angle is that about the axis, from X; steps add up."""
+    """The angle is about the axis, from X; steps add up."""
     toolpath = planned(
         tube(FLOOR, 20.0, 1.5), 5.0, ProcessParameters(seam=SeamParameters(0.4, 0.3))
     )
@@ -254,14 +260,15 @@ def test_seam_of_an_upright_tube():
 
 
 def test_whole_layers_stop_below_the_first_that_is_cut():
-    wall, height, _ = made("a bend")
-    trim, whole = planned(wall, height), planned(wall, height, strategy={"end": "whole"})
-    assert [layer.beads[0].closed for layer in whole.layers] == [True] * 10
-    assert sum(bead.closed for _, _, bead in trim) == 10
-    for _, _, bead in trim:
+    """With whole layers the path stops below the first layer that is cut."""
+    wall, height, _ = planned_wall("a bend")
+    trimmed, whole_layers = planned(wall, height), planned(wall, height, strategy={"end": "whole"})
+    assert [layer.beads[0].closed for layer in whole_layers.layers] == [True] * 10
+    assert sum(bead.closed for _, _, bead in trimmed) == 10
+    for _, _, bead in trimmed:
         if not bead.closed and not bead.role.closing:  # flush with the end, in the plane X = -60
             assert bead.points[[0, -1], 0] == pytest.approx(-60.0, abs=1e-6)
-    assert "REMAINDER" in codes(whole) and "REMAINDER" not in codes(trim)
+    assert "REMAINDER" in codes(whole_layers) and "REMAINDER" not in codes(trimmed)
     straight = planned(tube(FLOOR, 20.0, 1.5), 5.0, strategy={"end": "whole"})
     assert len(straight.layers) == 5 and "REMAINDER" not in codes(straight)
 
@@ -290,7 +297,7 @@ def test_layers_along_lines_need_a_parameter():
 
 
 def test_smooth_layers_say_what_they_cost():
-    wall, height, exact = made("a bend")
+    wall, height, exact = planned_wall("a bend")
     smooth = planned(
         wall,
         height,
@@ -330,22 +337,26 @@ def test_random_walls(seed):
 
 
 def test_a_bend_of_one_surface_has_by_fronts_the_layers_that_its_parameter_gives():
-    """Layers of 8 mm by the equation of the torus: at that distance, on it, and in the places that the tube's own way finds;
-    the tools in the plane of the bend. The fronts close what their corners leave, which the other way does not."""
+    """Layers of 8 mm by the equation of the torus: at that distance, on it, and where the
+    parametric method finds them; the tools in the plane of the bend. The fronts also close the gaps
+    of their corners, which the parametric method does not."""
     v = 2.0 * np.pi * np.arange(480) / 480
     reach = 60.0 + 15.0 * np.cos(v)
     u = np.arccos((60.0**2 - 32.0**2 + reach**2) / (2.0 * 60.0 * reach))
-    first = np.stack([reach * np.cos(u) - 60.0, 15.0 * np.sin(v), reach * np.sin(u)], axis=1)
-    one = SurfaceWall(TORUS, (60.0, 15.0), np.eye(4), 0.5 * np.pi, first)
+    base_curve = np.stack([reach * np.cos(u) - 60.0, 15.0 * np.sin(v), reach * np.sin(u)], axis=1)
+    parametric_wall = SurfaceWall(TORUS, (60.0, 15.0), np.eye(4), 0.5 * np.pi, base_curve)
     several = bend(PIPE, 0.4, 0.5 * np.pi, 3.0)
     toolpath = planned(several, 8.0, mode="symmetry-plane")
     build = BuildDirectionParameters("symmetry-plane", clearance="none", max_tilt=np.pi)
     by_parameter = tubes.plan(
-        one, SurfaceParameters(layer_height=8.0, chord_error=0.001), build, ProcessParameters()
+        parametric_wall,
+        SurfaceParameters(layer_height=8.0, chord_error=0.001),
+        build,
+        ProcessParameters(),
     )
     layers = [[bead for bead in layer.beads if not bead.role.closing] for layer in toolpath.layers]
     assert [len(layer) for layer in layers] == [len(layer.beads) for layer in by_parameter.layers]
-    for below, above, other in zip(layers, layers[1:], by_parameter.layers[1:]):
+    for below, above, parametric_layer in zip(layers, layers[1:], by_parameter.layers[1:]):
         points = np.vstack([bead.points for bead in above])
         x, y, z = points.T
         assert np.abs(np.hypot(np.hypot(x + 60.0, z) - 60.0, y) - 15.0).max() < 1e-6
@@ -353,22 +364,23 @@ def test_a_bend_of_one_surface_has_by_fronts_the_layers_that_its_parameter_gives
             [bead.points[slice(None) if bead.closed else slice(1, -1)] for bead in above]
         )
         assert cKDTree(dense(below)).query(inside)[0] == pytest.approx(8.0, abs=3e-3)
-        assert cKDTree(dense(other.beads)).query(points)[0].max() < 0.02
+        assert cKDTree(dense(parametric_layer.beads)).query(points)[0].max() < 0.02
     assert max(np.abs(bead.tool[:, 1]).max() for _, _, bead in toolpath) < 1e-9
 
 
 def test_other_directions_leave_the_layers_as_they_are(monkeypatch):
-    """What would clear the nozzle is tried with another direction: a minute of it went into the same layers."""
-    wall, asked, layers = tube(FLOOR, 40.0, 5.0), [], fronts.slice_layers
+    """Remedies for contacts are tested with other directions; slicing the same layers again took a
+    minute."""
+    wall, heights, layers = tube(FLOOR, 40.0, 5.0), [], fronts.slice_layers
     monkeypatch.setattr(
         fronts,
         "slice_layers",
-        lambda wall, height, *rest: asked.append(height) or layers(wall, height, *rest),
+        lambda wall, height, *arguments: heights.append(height) or layers(wall, height, *arguments),
     )
     leaning, upright = planned(wall, 6.0), planned(wall, 6.0, mode="fixed")
-    assert asked == [6.0]
-    for (_, _, one), (_, _, other) in zip(leaning, upright, strict=True):
-        assert (one.points == other.points).all()
+    assert heights == [6.0]
+    for (_, _, leaning_bead), (_, _, upright_bead) in zip(leaning, upright, strict=True):
+        assert (leaning_bead.points == upright_bead.points).all()
     planned(wall, 7.0)
     planned(wall, 7.0, strategy={"spacing": "smooth"})
-    assert asked == [6.0, 7.0, 7.0]
+    assert heights == [6.0, 7.0, 7.0]
