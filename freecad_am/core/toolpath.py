@@ -84,6 +84,120 @@ class BeadEnds:
         return self.start_length + self.end_length + (self.start_ramp + self.end_ramp)
 
 
+SCARF_END_MM = 0.02  # mm; a scarf may end at a point this far before its end
+LEAST_SECTION = 0.25  # section at both ends of a scarf seam, as a fraction of the bead's section
+
+
+@dataclass(frozen=True)
+class Scarf:
+    """A scarf seam: the section of a closed bead rises along its start and falls along its end.
+
+    length: mm of either ramp. height: mm, layer height for beads without a height. The second ramp
+    begins LEAST_SECTION of the length before the seam. Both ramps together deposit as much as the
+    bead without a scarf.
+    """
+
+    length: float
+    height: float
+
+    @property
+    def overlap(self) -> float:
+        """Length by which the bead continues past its seam, mm."""
+        return (1.0 - LEAST_SECTION) * self.length
+
+    def positions(self, total: float, steps: int) -> Array:
+        """Return the positions of the ramp steps along a closed bead, mm.
+
+        Parameters
+        ----------
+        total : float
+            Length of the bead, mm.
+        steps : int
+            Number of steps of a ramp.
+
+        Returns
+        -------
+        (k,) array
+            Ascending positions, without the seam.
+        """
+        share = np.arange(1, steps + 1) / steps
+        before_seam = share[share <= LEAST_SECTION]
+        before = total - self.length * before_seam[::-1]
+        return np.asarray(np.r_[self.length * share, before])
+
+    def sections(self, position: Array, total: float) -> Array:
+        """Return the sections at positions along a bead, as fractions of its full section.
+
+        Parameters
+        ----------
+        position : (n,) array
+            Positions from the seam, mm; beyond `total` in the overlap.
+        total : float
+            Length of the bead without overlap, mm.
+
+        Returns
+        -------
+        (n,) array
+            Fractions.
+        """
+        rate = (1.0 - LEAST_SECTION) / self.length
+        into = np.minimum(position, self.length)
+        past = np.maximum(position - total + LEAST_SECTION * self.length, 0.0)
+        return np.asarray(LEAST_SECTION + rate * into - rate * past)
+
+    def _filled(self, position: Array, total: float) -> Array:
+        """Return the integrals (n,) of the sections from the seam, mm; arguments as in `sections`."""
+        rate = (1.0 - LEAST_SECTION) / self.length
+        missing = np.minimum(position, self.length)
+        past = np.maximum(position - total + LEAST_SECTION * self.length, 0.0)
+        start = (1.0 - LEAST_SECTION) * missing - 0.5 * rate * missing**2
+        return np.asarray(position - start - 0.5 * rate * past**2)
+
+    def taper(self, bead: Bead, count: int) -> Bead:
+        """Return a bead with its overlap, at the sections of the scarf.
+
+        The overlap rises with the start below it. Speeds give the sections at a constant wire feed.
+
+        Parameters
+        ----------
+        bead : Bead
+            The bead of n points, continued past its seam.
+        count : int
+            Number of points without the overlap.
+
+        Returns
+        -------
+        Bead
+            The bead; its points up to the seam are unchanged.
+        """
+        step = lengths(np.diff(bead.points, axis=0))
+        position = np.r_[0.0, np.cumsum(step)]
+        total = float(position[count - 1])
+        height = np.full(len(bead), self.height) if bead.height is None else bead.height
+        past = np.maximum(position - total, 0.0) / self.length
+        points = bead.points + (height * past)[:, None] * bead.build
+        time = np.diff(self._filled(position, total)) / bead.speed[1:]
+        ramped = time < (1.0 - 1e-9) * step / bead.speed[1:]
+        surplus = time.sum() - (step / bead.speed[1:])[: count - 1].sum()
+        # beads of varying speed need a small correction to deposit the same volume
+        time[ramped] *= 1.0 - surplus / time[ramped].sum()
+        speed = lengths(np.diff(points, axis=0)) / time
+        tangents = bead.tangents
+        if tangents is not None:
+            rise = (height / self.length)[:, None] * bead.build
+            tangents = tangents.copy()
+            tangents[count - 1 :, 1] += rise[count - 1 :]
+            tangents[count:, 0] += rise[count:]
+            tangents /= np.linalg.norm(tangents, axis=2, keepdims=True)
+        return dataclasses.replace(
+            bead,
+            points=points,
+            speed=np.r_[speed[:1], speed],
+            height=height * self.sections(position, total),
+            tangents=tangents,
+        )
+
+
 @dataclass(frozen=True, eq=False)
 class Bead:
     """One uninterrupted deposit of n points, n >= 2.
@@ -97,7 +211,8 @@ class Bead:
     mm, predicted; None without a bead model. wire_share: mm of wire per mm of bead if the wire feed
     follows the travel speed, else None. tangents: (n, 2, 3) unit tangents on arrival at and
     departure from each point, equal except at corners; None if the strategy does not provide them.
-    ends: separate speeds at the ends, or None. external: (n, k) external axis values, rad; None
+    ends: separate speeds at the ends, or None. scarf: shape of the seam of a closed bead, which
+    `run_on` applies; on an open bead, the applied shape; or None. external: (n, k) external axis values, rad; None
     until planned. phase: (n,) segment phases, see `motion.PHASES`; None until planned.
     """
 
@@ -115,6 +230,7 @@ class Bead:
     ends: BeadEnds | None = None
     external: Array | None = None
     phase: Array | None = None
+    scarf: Scarf | None = None
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -277,13 +393,15 @@ class Bead:
         )
 
     def run_on(self, overlap: float) -> Bead:
-        """Open a closed bead and extend it past the seam by up to `overlap` mm."""
+        """Open a closed bead and extend it past the seam, by up to `overlap` mm or by its scarf."""
+        overlap = self.overlap_of(overlap)
         if overlap <= 0.0 or not self.closed:
             return self
         along = np.r_[0.0, np.cumsum(lengths(np.diff(self.points, axis=0)))]
         overlap = min(overlap, float(along[-1]))
-        count = max(1, int(np.searchsorted(along, overlap)))
-        share = float((overlap - along[count - 1]) / (along[count] - along[count - 1]))
+        slack = 0.0 if self.scarf is None else SCARF_END_MM
+        count = max(1, int(np.searchsorted(along, overlap - slack)))
+        share = float(min((overlap - along[count - 1]) / (along[count] - along[count - 1]), 1.0))
 
         def again(column: Array) -> Array:
             end = column[count - 1] + share * (column[count] - column[count - 1])
@@ -297,7 +415,7 @@ class Bead:
         last, tangent = self.outline.at(np.array([count - 1]), share)
         position[-1] = last[0]
         turn = self.parameter[-1] - self.parameter[0]
-        return dataclasses.replace(
+        extended = dataclasses.replace(
             self,
             points=np.concatenate([self.points, position]),
             build=directions(self.build),
@@ -316,6 +434,11 @@ class Bead:
             ),
             **self._predicted(lambda column: np.concatenate([column, again(column)])),
         )
+        return extended if self.scarf is None else self.scarf.taper(extended, len(self))
+
+    def overlap_of(self, overlap: float) -> float:
+        """Return the seam overlap of the bead, mm; `overlap` is that of beads without a scarf."""
+        return overlap if self.scarf is None else self.scarf.overlap
 
     def _tangents_run_on(self, count: int, last: Array) -> Array:
         """Return the tangents of the bead extended to its point `count`, ending along `last` (1, 3)."""

@@ -509,6 +509,11 @@
         <translation>Longueur de la buse à partir de son bout.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length over which the section of a closed bead rises at its start and falls at its end, on top of the start, so that the seam has no step; 0: none.</source>
+        <translation>Longueur sur laquelle la section d&apos;un cordon fermé croît à son début et décroît à sa fin, au-dessus du début, pour une couture sans marche ; 0 : aucune.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Length that divides the translation rows of the Jacobian.</source>
         <translation>Divise les lignes de translation du jacobien.</translation>
@@ -3872,6 +3877,11 @@
         <translation>Longueur de la buse à partir de son bout.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Length over which the section of a closed bead rises at its start and falls at its end, on top of the start, so that the seam has no step; 0: none.</source>
+        <translation>Longueur sur laquelle la section d&apos;un cordon fermé croît à son début et décroît à sa fin, au-dessus du début, pour une couture sans marche ; 0 : aucune.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Length that divides the translation rows of the Jacobian.</source>
         <translation>Divise les lignes de translation du jacobien.</translation>
@@ -5420,6 +5430,11 @@
         <location filename="../../freecad_am/core/parameters/scan.py"/>
         <source>Scan within</source>
         <translation>Numérisation à moins de</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/process.py"/>
+        <source>Scarf</source>
+        <translation>Biseau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -7487,6 +7502,11 @@
         <translation>une région autour du moyeu n&apos;est nulle part aussi large qu&apos;un cordon ({0} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>a scarf changes the section by the travel speed at a constant wire feed; remove it, or use process.wire.feed_mode: constant</source>
+        <translation>un biseau change la section par la vitesse d&apos;avance à dévidage constant ; supprimez-le, ou choisissez process.wire.feed_mode : constant</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/fanuc/read.py"/>
         <source>a second U{0} is selected</source>
         <translation>un deuxième U{0} est choisi</translation>
@@ -9175,6 +9195,11 @@
         <location filename="../../freecad_am/core/process/seams.py"/>
         <source>is {0} mm, but the longest closed bead is only {1} mm long; use less than half of that length</source>
         <translation>vaut {0} mm, mais le plus long cordon fermé n&apos;a que {1} mm de long ; choisissez moins de la moitié de cette longueur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>is {0} mm, more than half of the longest closed bead; use at most {1} mm</source>
+        <translation>vaut {0} mm, plus de la moitié du plus long cordon fermé ; choisissez au plus {1} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -11613,6 +11638,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>process.overlap has no effect with process.seam.scarf, which overlaps the seam itself; remove one</source>
+        <translation>process.overlap est sans effet avec process.seam.scarf, qui recouvre lui-même la couture ; supprimez l&apos;un des deux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
         <source>process.seam.position: sharpest has no effect: no closed bead turns by {0} deg or more at a point; the beads start by process.seam.angle</source>
         <translation>process.seam.position : sharpest est sans effet : aucun cordon fermé ne tourne de {0} deg ou plus en un point ; les cordons commencent selon process.seam.angle</translation>
     </message>
@@ -11625,6 +11655,11 @@
         <location filename="../../freecad_am/core/process/seams.py"/>
         <source>process.seam.{0} has no effect with process.seam.position: {1}; remove it, or use position: {2}</source>
         <translation>process.seam.{0} est sans effet avec process.seam.position : {1} ; supprimez-le, ou choisissez position : {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>process.start or process.end sets the travel speed where the scarf does; remove the scarf, or their travel_speed</source>
+        <translation>process.start ou process.end fixe la vitesse d&apos;avance là où le biseau le fait ; supprimez le biseau, ou leur travel_speed</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -15023,6 +15058,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>{0} closed bead(s) in {1} layer(s) are shorter than two scarfs of {2} mm and have none; use a shorter process.seam.scarf</source>
+        <translation>{0} cordon(s) fermé(s) dans {1} couche(s) sont plus courts que deux biseaux de {2} mm et n&apos;en ont pas ; choisissez un process.seam.scarf plus court</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
         <source>{0} closed bead(s) in {1} layer(s) start nearer than process.seam.distance, {2} mm, to another start, at worst {3} mm in layer {4}; use a smaller distance</source>
         <translation>{0} cordon(s) fermé(s) dans {1} couche(s) commencent à moins de process.seam.distance, {2} mm, d&apos;un autre début, au pire à {3} mm dans la couche {4} ; choisissez une distance plus petite</translation>
     </message>
@@ -15270,6 +15310,11 @@
         <location filename="../../freecad_am/brep/walls/sheet.py"/>
         <source>{0} has no consistent side, like a twisted band; divide the band, or remove one of its faces</source>
         <translation>{0} ne peuvent pas être tournées d&apos;un même côté (une bande vrillée n&apos;a pas d&apos;extérieur) ; divisez la bande, ou laissez une de ses faces de côté</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/seams.py"/>
+        <source>{0} has no effect: no bead is closed; remove it</source>
+        <translation>{0} est sans effet : aucun cordon n&apos;est fermé ; supprimez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
@@ -16320,6 +16365,11 @@
         <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>{0} mm/s is more than the fastest, {1} mm/s; give the slower speed here</source>
         <translation>{0} mm/s est plus que le plus rapide, {1} mm/s ; donnez ici la vitesse la plus lente</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
+        <source>{0} mm/s would work, but a scarf seam needs {1} mm/s; lower the travel speed, or remove process.seam.scarf</source>
+        <translation>{0} mm/s conviendrait, mais une couture en biseau demande {1} mm/s ; diminuez la vitesse d&apos;avance, ou supprimez process.seam.scarf</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>

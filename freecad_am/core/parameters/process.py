@@ -78,6 +78,13 @@ class SeamParameters:
         low=0.0,
         open_low=True,
     )
+    scarf: float = f.parameter(
+        0.0,
+        f.LENGTH,
+        "Length over which the section of a closed bead rises at its start and falls at its end, "
+        "on top of the start, so that the seam has no step; 0: none.",
+        low=0.0,
+    )
 
     def __post_init__(self) -> None:
         convert_texts(self)

@@ -15,6 +15,8 @@ import numpy as np
 
 from ..geometry.columns import crosses, dots, lengths, unit_rows
 from ..geometry.curves.outline import CORNER
+from ..geometry.ramps import MIN_STEP, STEPS
+from ..geometry.step_count import round_down
 from ..issues import WARNING, InputError, Issue, Text
 from ..parameters.process import (
     BY_ANGLE,
@@ -25,7 +27,7 @@ from ..parameters.process import (
     ProcessParameters,
     SeamParameters,
 )
-from ..toolpath import Bead, Toolpath
+from ..toolpath import Bead, Scarf, Toolpath
 from ..types import Array, Mask
 
 NO_EFFECT = "NO_EFFECT"
@@ -34,6 +36,7 @@ EQUAL_MM = 1e-6  # mm; places at distances that differ less are equally near
 EQUAL_RAD = math.radians(1.0)  # corners whose turns differ less are equally sharp
 LEAST_SENSE = 0.1  # cosine; a bead whose area is nearly along the layer has no sense of rotation
 HALVINGS = 20  # iterations for the largest possible distance between starts
+STEP_SHARE = 0.2  # of the shortest ramp step; a point this close to a step counts as its end
 TOUCH_MM = 1e-7  # mm; stretches nearer to each other are one
 BEFORE_START_MM = 1e-3  # mm; a place this far before the start of the bead counts as at the start
 
@@ -569,3 +572,131 @@ def unused_issues(toolpath: Toolpath, seam: SeamParameters) -> list[Issue]:
             )
         )
     return issues
+
+
+# ---- Scarf seams
+
+SCARF = "process.seam.scarf"
+
+
+def set_scarfs(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
+    """Return the toolpath with scarf seams on closed beads, and points for the steps of their ramps.
+
+    Planning applies the scarfs where it continues beads past their seams.
+
+    Parameters
+    ----------
+    toolpath : Toolpath
+        The toolpath.
+    process : ProcessParameters
+        Length of the scarfs, and what they exclude.
+
+    Returns
+    -------
+    Toolpath
+        The toolpath, with issues about beads too short for a scarf.
+
+    Raises
+    ------
+    InputError
+        BAD_VALUE if every closed bead is too short, or other parameters set the speeds at the
+        ends of beads.
+    """
+    length = process.seam.scarf
+    closed = [bead for _, _, bead in toolpath if bead.closed]
+    if length <= 0.0:
+        return toolpath
+    if not closed:
+        text = Text("{} has no effect: no bead is closed; remove it", SCARF)
+        return dataclasses.replace(
+            toolpath, issues=(*toolpath.issues, Issue(WARNING, NO_EFFECT, text))
+        )
+    _refuse_other_speeds(process)
+    longest = max(bead.length for bead in closed)
+    if longest < 2.0 * length:
+        raise InputError(
+            "BAD_VALUE",
+            SCARF,
+            "is {:g} mm, more than half of the longest closed bead; use at most {:.4g} mm",
+            length,
+            0.5 * longest,
+        )
+    short: list[int] = []
+    layers = []
+    for number, layer in enumerate(toolpath.layers):
+        fits = [bead.closed and bead.length >= 2.0 * length for bead in layer.beads]
+        short += [number for bead, fit in zip(layer.beads, fits) if bead.closed and not fit]
+        beads = tuple(
+            _with_scarf(bead, length, toolpath.layer_height) if fit else bead
+            for bead, fit in zip(layer.beads, fits)
+        )
+        layers.append(dataclasses.replace(layer, beads=beads))
+    return dataclasses.replace(
+        toolpath,
+        layers=tuple(layers),
+        issues=(*toolpath.issues, *_scarf_issues(short, process)),
+    )
+
+
+def _with_scarf(bead: Bead, length: float, height: float) -> Bead:
+    """Return a closed bead with a scarf and points at the steps of its ramps."""
+    scarf, loop = Scarf(length, height), _Loop(bead)
+    steps = max(1, min(STEPS, round_down(length / MIN_STEP)))
+    positions = scarf.positions(loop.total, steps)
+    gap = np.abs(positions[:, None] - loop.arc).min(axis=1)
+    positions = positions[gap > STEP_SHARE * MIN_STEP]
+    segment = np.searchsorted(loop.arc, positions, "right") - 1
+    shares = (positions - loop.arc[segment]) / loop.length[segment]
+    return dataclasses.replace(bead.divided(segment, shares), scarf=scarf)
+
+
+def _scarf_issues(short: Sequence[int], process: ProcessParameters) -> list[Issue]:
+    """Return warnings about beads without a scarf, in layers `short`, and about the overlap."""
+    issues = []
+    if short:
+        issues.append(
+            Issue(
+                WARNING,
+                "SEAM_SCARF",
+                Text(
+                    "{} closed bead(s) in {} layer(s) are shorter than two scarfs of {:g} mm and "
+                    "have none; use a shorter process.seam.scarf",
+                    len(short),
+                    len(set(short)),
+                    process.seam.scarf,
+                ),
+                short[0],
+            )
+        )
+    elif process.overlap > 0.0:
+        issues.append(
+            Issue(
+                WARNING,
+                NO_EFFECT,
+                Text(
+                    "process.overlap has no effect with process.seam.scarf, which overlaps the "
+                    "seam itself; remove one"
+                ),
+            )
+        )
+    return issues
+
+
+def _refuse_other_speeds(process: ProcessParameters) -> None:
+    """Raise InputError BAD_VALUE if another parameter sets the speed or the wire at the ends of beads."""
+    if process.wire.feed_mode != "constant":
+        raise InputError(
+            "BAD_VALUE",
+            SCARF,
+            "a scarf changes the section by the travel speed at a constant wire feed; remove it, or "
+            "use process.wire.feed_mode: constant",
+        )
+    processes = [process, *(process.for_class(entry.name) for entry in process.classes)]
+    phases = [phase for one_process in processes for phase in (one_process.start, one_process.end)]
+    if any(phase.there and phase.travel_speed is not None for phase in phases):
+        raise InputError(
+            "BAD_VALUE",
+            SCARF,
+            "process.start or process.end sets the travel speed where the scarf does; remove the "
+            "scarf, or their travel_speed",
+        )

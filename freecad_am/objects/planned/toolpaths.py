@@ -130,7 +130,7 @@ def layers_of(inputs: Given) -> CoreToolpath:
     )
     if model is not None and not family.is_filled:
         layers = model_notes.hold_widths(layers, process, model)
-    toolpath = classes.set_bead_ends(layers, process)
+    toolpath = seams.set_scarfs(classes.set_bead_ends(layers, process), process)
     if not family.is_filled:
         toolpath = enforce_layer_time(
             toolpath, getattr(inputs.strategy, "min_layer_time", 0.0), process.rapid_speed

@@ -29,6 +29,7 @@ SCHEMAS: dict[str, Schema] = {
     "bead_ends": Schema("core.toolpath:BeadEnds"),
     "bead_path": Schema("core.planning.joint_path:BeadPath"),
     "bead_role": Schema("core.toolpath:BeadRole"),
+    "bead_scarf": Schema("core.toolpath:Scarf"),
     "cell_obstacle": Schema("core.parameters.cell_records:Obstacle"),
     "cell_parameters": Schema("core.parameters.cell:CellParameters", 3),
     "clad_faces": Schema("core.geometry.walls.patch_wall:CladFaces"),

@@ -12,12 +12,17 @@ from shapely.geometry import LinearRing, Point, Polygon
 from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.issues import InputError
 from freecad_am.core.layers.stacking import prepare_stack
+from freecad_am.core.parameters.bead_classes import BeadClass, BeadEnd
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.filled import SolidParameters
-from freecad_am.core.parameters.process import ProcessParameters, SeamParameters
+from freecad_am.core.parameters.process import (
+    ProcessParameters,
+    SeamParameters,
+    WireParameters,
+)
 from freecad_am.core.process import seams
 from freecad_am.core.strategies.solids.plan import plan
-from freecad_am.core.toolpath import Bead, Layer, Toolpath
+from freecad_am.core.toolpath import LEAST_SECTION, Bead, Layer, Toolpath
 
 CHORD_ERROR = 0.05  # mm
 UP = np.array([0.0, 0.0, 1.0])
@@ -381,3 +386,119 @@ def test_parameters_of_another_position_are_reported():
     open_only = toolpath_of([ring.layers[0].beads[0].part(slice(0, 20))])
     (issue,) = seams.unused_issues(open_only, SeamParameters(position="sharpest"))
     assert issue.code == "NO_EFFECT" and "no bead is closed" in issue.message
+
+
+# ---- Scarf seams
+
+
+def scarfed(bead, length, **process):
+    given = ProcessParameters(seam=SeamParameters(scarf=length), **process)
+    ((_, _, made),) = seams.set_scarfs(toolpath_of([bead]), given)
+    return made
+
+
+def deposited(bead):
+    """Deposit time of each segment, s: volume at a constant wire feed."""
+    return np.linalg.norm(np.diff(bead.points, axis=0), axis=1) / bead.speed[1:]
+
+
+@pytest.mark.parametrize("tangents", [False, True])
+@pytest.mark.parametrize("seed", range(12))
+def test_a_scarf_deposits_the_volume_of_the_bead_without_one(seed, tangents):
+    """Also where widths and so speeds vary, and from another seam than the scarf was made for."""
+    random = np.random.default_rng(seed)
+    bead = random_loop(seed)
+    if seed >= 6:
+        speed = random.uniform(3.0, 9.0, len(bead))
+        bead = dataclasses.replace(bead, speed=speed)
+    if tangents:
+        outline = bead.outline
+        around = np.stack(
+            [
+                np.r_[outline.arriving[-1:], outline.arriving],
+                np.r_[outline.leaving, outline.leaving[:1]],
+            ],
+            axis=1,
+        )
+        around /= np.linalg.norm(around, axis=2, keepdims=True)
+        bead = dataclasses.replace(bead, tangents=around)
+    length = float(random.uniform(2.0, 0.5 * bead.length))
+    prepared = scarfed(bead, length)
+    assert prepared.closed and deposited(prepared).sum() == pytest.approx(
+        deposited(bead).sum(), rel=1e-3
+    )
+    for start in (0, 3):
+        uncut = prepared.started_at(start)
+        made = uncut.run_on(0.0)
+        assert deposited(made).sum() == pytest.approx(deposited(uncut).sum(), rel=1e-9)
+        assert (made.points[: len(uncut)] == uncut.points).all() and not made.closed
+        assert made.points[len(uncut) :, 2].min() > 0.0
+        ramp = made.height * np.ones(len(made))
+        assert ramp[[0, -1]] == pytest.approx(2.0 * LEAST_SECTION, abs=0.03)
+        assert ramp.max() == pytest.approx(2.0, rel=1e-9)
+        assert made.points[-1, 2] == pytest.approx(2.0 * (1.0 - LEAST_SECTION), abs=0.03)
+        assert made.run_on(5.0) is made
+    curve = made.outline.at(np.arange(len(made) - 1), 0.5)[0]
+    assert curve[:, 2].min() > -0.1 and curve[:, 2].max() < 2.0
+
+
+def test_both_ramps_of_a_scarf_fill_the_layer_without_a_step():
+    """The heights of both ramps over each other, from the points by interpolation: full where they overlap, within 7 %."""
+    bead = closed_bead(circle(20.0, 200))
+    made = scarfed(bead, 20.0).run_on(0.0)
+    flat = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(made.points[:, :2], axis=0), axis=1))]
+    total = bead.length
+    at = np.linspace(0.0, total, 4001)
+    below = np.interp(at, flat, made.height)
+    above = np.interp(at + total, flat, made.height, right=0.0)
+    total_height = below + above
+    assert total_height.mean() == pytest.approx(2.0, rel=1e-3)
+    both = above > 0.0
+    assert total_height[both] == pytest.approx(2.0 * (1.0 + LEAST_SECTION**2), rel=1e-3)
+    assert total_height.min() > 2.0 * (1.0 - LEAST_SECTION)
+    # the overlap rises with the deposit below it, and its top never passes the layer
+    underside = np.interp(at + total, flat, made.points[:, 2], right=np.nan)[both]
+    assert (np.abs(underside - below[both]) <= 2.0 * LEAST_SECTION + 1e-6).all()
+    assert (underside + above[both] <= 2.0 + 1e-6).all()
+    assert np.abs(np.diff(made.points[:, 2])).max() < 2.0 / 19.0
+    speed = made.speed[1:]
+    assert speed.max() / 6.0 < 1.0 / LEAST_SECTION + 0.1 and speed.min() == pytest.approx(
+        6.0, rel=1e-3
+    )
+    assert (np.abs(np.log(speed[1:] / speed[:-1])) < 0.17).all()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_moved_bead_has_the_same_scarf(seed):
+    pose = Rotation.random(random_state=seed)
+    shift = np.array([10.0, -3.0, 7.0])
+    bead = random_loop(seed)
+    made = scarfed(bead, 12.0).run_on(0.0)
+    other = scarfed(moved(bead, pose, shift), 12.0).run_on(0.0)
+    assert pose.apply(made.points) + shift == pytest.approx(other.points, abs=1e-6)
+    assert made.speed == pytest.approx(other.speed, rel=1e-6)
+
+
+def test_scarfs_that_do_not_fit_are_rejected_or_reported():
+    ring, dot = closed_bead(circle(20.0)), closed_bead(circle(3.0))
+    process = ProcessParameters(seam=SeamParameters(scarf=20.0), overlap=4.0)
+    made = seams.set_scarfs(toolpath_of([ring], [ring, dot, dot]), process)
+    (issue,) = made.issues
+    assert (issue.code, issue.layer) == ("SEAM_SCARF", 1) and "2 closed bead(s)" in issue.message
+    assert [bead.scarf is not None for _, _, bead in made] == [True, True, False, False]
+    assert codes(seams.set_scarfs(toolpath_of([ring]), process)) == ["NO_EFFECT"]
+    line = ring.part(slice(0, 30))
+    assert codes(seams.set_scarfs(toolpath_of([line]), process)) == ["NO_EFFECT"]
+    with pytest.raises(InputError, match=r"use at most 9\.4"):
+        seams.set_scarfs(toolpath_of([dot]), process)
+    slow_end = BeadEnd(length=5.0, travel_speed=3.0)
+    for values, text in (
+        ({"wire": WireParameters(feed_mode="proportional")}, "constant wire feed"),
+        ({"end": slow_end}, "where the scarf does"),
+        (
+            {"classes": (BeadClass("contour", end_length=5.0, end_travel_speed=3.0),)},
+            "where the scarf",
+        ),
+    ):
+        with pytest.raises(InputError, match=text):
+            seams.set_scarfs(toolpath_of([ring]), dataclasses.replace(process, **values))

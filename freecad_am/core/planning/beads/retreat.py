@@ -145,7 +145,7 @@ def _way(bead: Bead, length: float) -> _Way:
 
 
 def extend_past_seam(task: Task, path: BeadPath, overlap: float) -> BeadPath:
-    """Extend a closed bead over its start by the seam overlap.
+    """Extend a closed bead over its start by the seam overlap, or by its scarf.
 
     The rotation continues from its end value, and the joints follow.
 
@@ -163,7 +163,7 @@ def extend_past_seam(task: Task, path: BeadPath, overlap: float) -> BeadPath:
     BeadPath
         The extended path, with an open bead.
     """
-    if overlap <= 0.0 or not path.bead.closed or not path.reachable:
+    if path.bead.overlap_of(overlap) <= 0.0 or not path.bead.closed or not path.reachable:
         return path
     bead, n = path.bead.run_on(overlap), len(path.bead)
     fresh = slice(n, None)

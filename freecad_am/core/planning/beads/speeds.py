@@ -316,6 +316,13 @@ def too_fast(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
 
 
 def _advice(bead: Bead, point: int, able: float) -> str:
+    if bead.scarf is not None:
+        return Text(
+            "{:.2f} mm/s would work, but a scarf seam needs {:.3g} mm/s; lower the travel speed, "
+            "or remove process.seam.scarf",
+            able,
+            bead.speed[point],
+        )
     if bead.height is None:
         return Text("lower the travel speed to {:.2f} mm/s", able)
     return Text(

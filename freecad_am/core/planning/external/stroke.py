@@ -220,6 +220,7 @@ def find_room(
     list of Bead
         The bead or its pieces, with external axis values; empty if nothing helps.
     """
+    overlap = bead.overlap_of(overlap)
     moved = _begun_elsewhere(cell, bead, max_lean, previous, overlap) if bead.closed else None
     if moved is not None:
         return [moved]
@@ -307,7 +308,7 @@ def runs_on(cell: Cell, bead: Bead, max_lean: float, overlap: float) -> bool:
     bool
         True if the tilt limit is kept or there is no overlap.
     """
-    external = cell.external
+    external, overlap = cell.external, bead.overlap_of(overlap)
     if overlap <= 0.0 or not bead.closed:
         return True
     assert external is not None and bead.external is not None
