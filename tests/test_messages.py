@@ -233,7 +233,7 @@ def test_errors_of_parameters_are_told_in_french(french):
     sets them."""
     sections = {
         *mutations.SECTIONS.values(),
-        *mutations.LATER.values(),
+        *mutations.RARE_SECTIONS.values(),
         *mutations.STRATEGIES.values(),
     }
     entered = [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes as documents make them: Part and PartDesign revolutions, primitives, sketches."""
+"""Shapes that documents create: Part and PartDesign revolutions, primitives, sketches."""
 
 import math
 import sys
@@ -16,16 +16,16 @@ UPRIGHT = Placement(Vector(), Rotation(Vector(1, 0, 0), 90))
 
 
 def sketch(owner, kind="Sketcher::SketchObject"):
-    made = (
+    sketch_object = (
         owner.newObject(kind, "Profile")
         if hasattr(owner, "newObject")
         else owner.addObject(kind, "Profile")
     )
-    made.Placement = UPRIGHT
+    sketch_object.Placement = UPRIGHT
     corners = [Vector(20, 0, 0), Vector(22, 0, 0), Vector(17, 30, 0), Vector(15, 30, 0)]
     for start, end in zip(corners, corners[1:] + corners[:1], strict=True):
-        made.addGeometry(Part.LineSegment(start, end), False)
-    return made
+        sketch_object.addGeometry(Part.LineSegment(start, end), False)
+    return sketch_object
 
 
 def assert_slanted(wall, angle=360.0):
@@ -77,12 +77,12 @@ def test_sketches_with_an_axis(doc):
     ],
 )
 def test_primitives_wherever_they_stand(doc, kind, values, length):
-    made = doc.addObject(kind, "Primitive")
+    primitive = doc.addObject(kind, "Primitive")
     for name, value in values.items():
-        setattr(made, name, value)
-    made.Placement = Placement(Vector(10, -20, 30), Rotation(Vector(1, 1, 0), 35))
+        setattr(primitive, name, value)
+    primitive.Placement = Placement(Vector(10, -20, 30), Rotation(Vector(1, 1, 0), 35))
     doc.recompute()
-    wall = find_wall(made.Shape)
+    wall = find_wall(primitive.Shape)
     assert wall.meridian.length == pytest.approx(length, abs=1e-6)
-    axis = made.Placement.Rotation.multVec(FreeCAD.Vector(0, 0, 1))
+    axis = primitive.Placement.Rotation.multVec(FreeCAD.Vector(0, 0, 1))
     assert wall.frame[:3, 2] == pytest.approx(list(axis), abs=1e-9)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls found on generated shapes of every kind, against what they were generated from."""
+"""Walls found on generated shapes of every kind equal the curves that generated them."""
 
 import math
 
@@ -16,7 +16,7 @@ ORIGIN, Z = Vector(), Vector(0, 0, 1)
 BALL = Part.makeSphere(45, ORIGIN, Z, 0, 90, 360)
 
 
-def turned(edges, angle=360):
+def revolve(edges, angle=360):
     return Part.Wire(edges).revolve(ORIGIN, Z, angle)
 
 
@@ -44,11 +44,11 @@ def thick_dome(outer=45, inner=43):
 def dome_on_cylinder(angle=360):
     # lids with a kink: a cylinder, and a cap that is not tangent to it
     arc = Part.Arc(Vector(40, 0, 20), Vector(25, 0, 35), Vector(0, 0, 42)).toShape()
-    return turned([*polyline((40, 0), (40, 20)), arc], angle)
+    return revolve([*polyline((40, 0), (40, 20)), arc], angle)
 
 
 def assert_on_wall(wall, shape, tolerance=1e-6):
-    """Points of the wall lie on the shape, and build directions along its surface."""
+    """Assert that points of the wall are on the shape, and build directions along its surface."""
     random = np.random.default_rng(7)
     s = random.uniform(0.0, wall.meridian.length, 60)
     azimuth = random.uniform(wall.start, wall.end, 60)
@@ -62,10 +62,10 @@ def assert_on_wall(wall, shape, tolerance=1e-6):
             assert shape.distToShape(ahead)[0] < 1e-5
 
 
-def same_meridian(one, other, tolerance=1e-6):
-    assert other.meridian.length == pytest.approx(one.meridian.length, abs=tolerance)
-    s = np.linspace(0.0, one.meridian.length, 301)
-    for have, want in zip(other.meridian.at(s)[:2], one.meridian.at(s)[:2], strict=True):
+def same_meridian(meridian, expected, tolerance=1e-6):
+    assert expected.meridian.length == pytest.approx(meridian.meridian.length, abs=tolerance)
+    s = np.linspace(0.0, meridian.meridian.length, 301)
+    for have, want in zip(expected.meridian.at(s)[:2], meridian.meridian.at(s)[:2], strict=True):
         assert have == pytest.approx(want, abs=tolerance)
 
 
@@ -77,14 +77,14 @@ SHAPES = {
     "cylinder": Part.makeCylinder(10, 30),
     "torus": Part.makeTorus(50, 10),
     "whole sphere": Part.makeSphere(20),
-    "freeform": turned([freeform().toShape()]),
+    "freeform": revolve([freeform().toShape()]),
     "thick dome": thick_dome(),
-    "polyline": turned(polyline((10, 0), (10, 5), (5, 9), (7, 20))),
+    "polyline": revolve(polyline((10, 0), (10, 5), (5, 9), (7, 20))),
     "partial": dome_on_cylinder(200),
     "partial solid": Part.makeCylinder(10, 30, ORIGIN, Z, 120),
-    "stepped": turned(polyline((30, 0), (30, 10), (20, 10), (20, 25))),
-    "elliptic dome": turned([half_ellipse()]),
-    "elliptic bowl": turned([half_ellipse(-1)]),
+    "stepped": revolve(polyline((30, 0), (30, 10), (20, 10), (20, 25))),
+    "elliptic dome": revolve([half_ellipse()]),
+    "elliptic bowl": revolve([half_ellipse(-1)]),
     "elliptic tank": Part.Face(
         Part.Wire([half_ellipse(), *polyline((0, 40), (0, -15), (60, -15), (60, 0))])
     ).revolve(ORIGIN, Z, 360),
@@ -180,7 +180,7 @@ def test_the_frame_points_up_and_its_x_is_the_parts(axis, z, x):
     wall = find_wall(Part.makeCone(20, 10, 30, Vector(1, 2, 3), axis))
     assert wall.frame[:3, 2] == pytest.approx(z, abs=1e-12)
     assert wall.frame[:3, 0] == pytest.approx(x, abs=1e-12)
-    # the origin is where the axis meets the plane of the lowest end, whichever end of the cone that is
+    # the origin is where the axis meets the plane of the lowest end, at either end of the cone
     flipped = np.dot(z, np.array(axis)) < 0
     lowest = np.array([1.0, 2.0, 3.0]) + (30.0 * np.array(axis) if flipped else 0.0)
     assert wall.frame[:3, 3] == pytest.approx(lowest, abs=1e-9)
@@ -246,7 +246,7 @@ def test_parts_of_a_turn_that_join_are_one_part_of_a_turn():
 
 
 def test_faces_chosen_are_the_wall_in_any_order():
-    shape = turned(polyline((10, 0), (10, 5), (5, 9), (7, 20)))
+    shape = revolve(polyline((10, 0), (10, 5), (5, 9), (7, 20)))
     wall = find_wall(shape, ("Face3", "Face2"))
     assert wall.meridian.length == pytest.approx(math.hypot(5, 4) + math.hypot(2, 11))
     assert wall.faces == ("Face2", "Face3")
@@ -284,13 +284,15 @@ def test_a_wire_with_an_axis(closed):
     )
     wall = find_wall(Part.Wire(edges), axis=(ORIGIN, Z))
     assert wall.full
-    truth = find_wall(turned(edges))
+    truth = find_wall(revolve(edges))
     same_meridian(truth, wall)
 
 
 def test_the_one_solid_of_revolution_is_found_among_others():
-    both = Part.makeCompound([Part.makeBox(5, 5, 5, Vector(50, 0, 0)), Part.makeCylinder(10, 30)])
-    wall = find_wall(both)
+    compound = Part.makeCompound(
+        [Part.makeBox(5, 5, 5, Vector(50, 0, 0)), Part.makeCylinder(10, 30)]
+    )
+    wall = find_wall(compound)
     assert wall.meridian.length == pytest.approx(30.0)
     assert wall.faces == ("Face7",)
 
@@ -305,21 +307,23 @@ def test_a_sphere_cut_across_its_own_poles_is_found():
 
 
 def test_an_offset_shell_runs_beside_the_original():
-    shell = turned([freeform().toShape()])
+    shell = revolve([freeform().toShape()])
     offset = shell.makeOffsetShape(2, 1e-5)
     wall, original = find_wall(offset), find_wall(shell)
     assert_on_wall(wall, offset)
     s = np.linspace(0.0, original.meridian.length, 101)
     r, h, _ = original.meridian.at(s)
     height = h + original.frame[2, 3] - wall.frame[2, 3]
-    there = wall.meridian.at(np.linspace(0.0, wall.meridian.length, 20001))
-    apart = np.hypot(r[:, None] - there[0][None], height[:, None] - there[1][None]).min(axis=1)
-    assert apart == pytest.approx(np.full(101, 2.0), abs=1e-5)
+    samples = wall.meridian.at(np.linspace(0.0, wall.meridian.length, 20001))
+    distances = np.hypot(r[:, None] - samples[0][None], height[:, None] - samples[1][None]).min(
+        axis=1
+    )
+    assert distances == pytest.approx(np.full(101, 2.0), abs=1e-5)
 
 
 def test_a_gap_is_bridged_and_said():
     shape = Part.makeCompound(
-        [turned(polyline((10, 0), (10, 5))), turned(polyline((9.94, 5), (9.94, 8)))]
+        [revolve(polyline((10, 0), (10, 5))), revolve(polyline((9.94, 5), (9.94, 8)))]
     )
     wall = find_wall(shape)
     assert wall.meridian.length == pytest.approx(8.06)
@@ -327,7 +331,7 @@ def test_a_gap_is_bridged_and_said():
 
 
 def test_slivers_are_passed_over():
-    shape = turned(polyline((10, 0), (10, 5), (10.0002, 5.0002), (10.0002, 8)))
+    shape = revolve(polyline((10, 0), (10, 5), (10.0002, 5.0002), (10.0002, 8)))
     wall = find_wall(shape)
     assert wall.meridian.length == pytest.approx(8.0, abs=1e-3)
     assert wall.faces == ("Face1", "Face3")

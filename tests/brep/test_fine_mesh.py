@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fine triangles of large round faces: as near as asked for, and closed."""
+"""Fine triangles of large round faces are within the requested deflection and closed."""
 
 import numpy as np
 import Part
@@ -41,16 +41,16 @@ def off_ball_with_bore(points):
     ids=["torus", "ball with a bore"],
 )
 def test_a_mesh_of_hundreds_of_thousands_of_triangles(shape, off):
-    """The kernel takes minutes for them, longer than a test may take."""
+    """The kernel needs minutes for that many triangles, longer than a test may take."""
     vertices, triangles, owner, _ = tessellate.fine(shape.copy(), CHORD)
     assert len(triangles) > tessellate.SLOW_TRIANGLES and len(owner) == len(triangles)
     assert (Edges(triangles).count == 2).all()
     assert off(vertices).max() < 1e-6
-    some = vertices[triangles[::97]]
+    sample = vertices[triangles[::97]]
     assert (
         max(
-            off(some.mean(axis=1)).max(),
-            *(off(some[:, [k, k - 1]].mean(axis=1)).max() for k in range(3)),
+            off(sample.mean(axis=1)).max(),
+            *(off(sample[:, [k, k - 1]].mean(axis=1)).max() for k in range(3)),
         )
         < CHORD
     )
@@ -67,22 +67,23 @@ def test_others_are_as_the_kernel_makes_them():
 
 
 def without(face):
-    """The kernel's triangles, but for those of one face as long as that is not a spline."""
+    """Return the kernel's tessellation without the triangles of one face, unless that face is a
+    spline."""
 
-    def made(shape, chord):
-        found = tessellated(shape, chord)
+    def tessellate_without_face(shape, chord):
+        mesh = tessellated(shape, chord)
         bare = (
-            found.owner == face
+            mesh.owner == face
             if shape.Faces[face].Surface.TypeId != "Part::GeomBSplineSurface"
-            else found.owner < 0
+            else mesh.owner < 0
         )
-        return found._replace(triangles=found.triangles[~bare], owner=found.owner[~bare])
+        return mesh._replace(triangles=mesh.triangles[~bare], owner=mesh.owner[~bare])
 
-    return made
+    return tessellate_without_face
 
 
 def test_a_face_that_the_kernel_makes_no_triangles_of_gets_those_of_splines(monkeypatch):
-    """As it does of some countersinks out of STEP files, at any deflection."""
+    """The kernel fails like this on some countersinks from STEP files, at any deflection."""
     monkeypatch.setattr(tessellate, "tessellated", without(0))
     shape = Part.makeCone(8, 5, 4)
     vertices, triangles, owner, nodes = tessellate.fine(shape, 0.02)
@@ -96,14 +97,15 @@ def test_a_face_that_the_kernel_makes_no_triangles_of_gets_those_of_splines(monk
 
 
 def test_a_face_of_which_there_are_no_triangles_at_all_is_named(monkeypatch):
-    """Also where its solid is not the first."""
+    """The error names the face even if its solid is not the first."""
     two = Part.makeCompound([Part.makeBox(5, 5, 5, Vector(20, 0, 0)), Part.makeBox(1, 2, 3)])
-    monkeypatch.setattr(hub, "in_kernel_process", lambda made, *words: made(*words))
+    monkeypatch.setattr(hub, "in_kernel_process", lambda function, *words: function(*words))
 
     def bare(shape, chord):
-        found = tessellated(shape, chord)
-        kept = (found.owner != 4) | (np.ptp(found.vertices[:, 0]) > 1.5)  # of the smaller box
-        return found._replace(triangles=found.triangles[kept], owner=found.owner[kept])
+        mesh = tessellated(shape, chord)
+        # a face of the smaller box
+        is_kept = (mesh.owner != 4) | (np.ptp(mesh.vertices[:, 0]) > 1.5)
+        return mesh._replace(triangles=mesh.triangles[is_kept], owner=mesh.owner[is_kept])
 
     monkeypatch.setattr(tessellate, "tessellated", bare)
     with pytest.raises(InputError) as caught:
@@ -112,7 +114,7 @@ def test_a_face_of_which_there_are_no_triangles_at_all_is_named(monkeypatch):
 
 
 def test_a_face_no_wider_than_vertices_are_made_one_needs_no_triangles():
-    """As of a body whose side was drawn with a step of two millionths of a millimetre."""
+    """Some bodies have a side drawn with a step of two millionths of a millimetre."""
     step = [(0, 0), (20, 0), (20, 6), (10, 6), (10, 6.000002), (0, 6.000002), (0, 0)]
     solid = Part.Face(Part.makePolygon([Vector(x, y, 0) for x, y in step])).extrude(Vector(0, 0, 3))
     assert min(face.Area for face in solid.Faces) == pytest.approx(6e-6, rel=1e-3)
@@ -124,7 +126,7 @@ def test_a_face_no_wider_than_vertices_are_made_one_needs_no_triangles():
 
 @pytest.fixture(scope="module")
 def topless():
-    """A solid of FreeCAD without the square of 3 by 4 mm at the top of its knob."""
+    """Return a solid of FreeCAD without the square of 3 by 4 mm at the top of its knob."""
     solid = Part.makeBox(20, 20, 5).fuse(Part.makeBox(3, 4, 10, Vector(5, 5, 0)))
     return Part.Solid(Part.Shell([face for face in solid.Faces if face.CenterOfMass.z < 9.9]))
 

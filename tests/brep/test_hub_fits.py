@@ -24,24 +24,26 @@ def named(shape):
 def test_splines_are_what_they_were_made_of(solid, placement):
     solid = solid.copy()
     solid.Placement = placement
-    (exact,), (found,) = seats(named(solid), False), seats(named(solid.toNurbs()), False)
+    (exact,), (fitted,) = seats(named(solid), False), seats(named(solid.toNurbs()), False)
     assert all(
         face.Surface.TypeId in ("Part::GeomBSplineSurface", "Part::GeomPlane")
         for face in solid.toNurbs().Faces
     )
-    assert found.base.surface.radius == pytest.approx(exact.base.surface.radius, abs=1e-6)
-    assert found.base.surface.height == pytest.approx(exact.base.surface.height, rel=1e-6)
-    np.testing.assert_allclose(found.base.frame, exact.base.frame, atol=1e-6)
-    np.testing.assert_allclose(found.faces, exact.faces, atol=1e-6)
+    assert fitted.base.surface.radius == pytest.approx(exact.base.surface.radius, abs=1e-6)
+    assert fitted.base.surface.height == pytest.approx(exact.base.surface.height, rel=1e-6)
+    np.testing.assert_allclose(fitted.base.frame, exact.base.frame, atol=1e-6)
+    np.testing.assert_allclose(fitted.faces, exact.faces, atol=1e-6)
 
 
 def test_a_spline_that_is_nearly_one_is_none():
-    """Elliptic cylinders within the tolerance of a round one and not, and a barrel."""
-    for more, taken in ((0.2 * FITTED, True), (4.0 * FITTED, False)):
-        wire = Part.Wire([Part.Ellipse(FreeCAD.Vector(), 60.0 + more, 60.0).toShape()])
-        found = seats(named(Part.Face(wire).extrude(FreeCAD.Vector(0, 0, 100)).toNurbs()), False)
-        assert [seat.base.surface.radius for seat in found] == (
-            [pytest.approx(60.0, abs=FITTED)] if taken else []
+    """Elliptic cylinders within and beyond the tolerance of a round one, and a barrel."""
+    for difference, is_accepted in ((0.2 * FITTED, True), (4.0 * FITTED, False)):
+        wire = Part.Wire([Part.Ellipse(FreeCAD.Vector(), 60.0 + difference, 60.0).toShape()])
+        seats_found = seats(
+            named(Part.Face(wire).extrude(FreeCAD.Vector(0, 0, 100)).toNurbs()), False
+        )
+        assert [seat.base.surface.radius for seat in seats_found] == (
+            [pytest.approx(60.0, abs=FITTED)] if is_accepted else []
         )
     arc = Part.Arc(
         FreeCAD.Vector(60, 0, 0), FreeCAD.Vector(61, 0, 50), FreeCAD.Vector(60, 0, 100)
@@ -54,8 +56,8 @@ def test_a_spline_that_is_nearly_one_is_none():
 
 def test_bores_of_splines_are_bores():
     pipe = Part.makeCylinder(60.0, 50.0).cut(Part.makeCylinder(40.0, 50.0)).toNurbs()
-    (found,) = seats(named(pipe), False)
-    assert found.base.surface.radius == pytest.approx(60.0, abs=1e-6)
+    (seat,) = seats(named(pipe), False)
+    assert seat.base.surface.radius == pytest.approx(60.0, abs=1e-6)
 
 
 @pytest.mark.parametrize("degrees", [20.0, 90.0, 180.0, 200.0, 350.0, 360.0])
@@ -81,18 +83,18 @@ def test_a_face_tells_from_where_to_where_it_goes_round(degrees, start, made):
 
 
 def test_halves_of_a_cylinder_are_one_seat_all_round():
-    """As exchange files have them: two faces of one surface."""
+    """Exchange files have two faces of one surface, which together are one seat."""
     cylinder = Part.makeCylinder(60.0, 140.0)
     half = Part.makeCylinder(60.0, 140.0, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 180.0)
-    one = next(face for face in half.Faces if face.Surface.TypeId == "Part::GeomCylinder")
-    other = one.copy()
-    other.rotate(FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 180.0)
-    (seat,) = seats([("Face1", one), ("Face2", other)], False)
-    (whole,) = seats(named(cylinder), False)
+    half_face = next(face for face in half.Faces if face.Surface.TypeId == "Part::GeomCylinder")
+    second_face = half_face.copy()
+    second_face.rotate(FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 180.0)
+    (seat,) = seats([("Face1", half_face), ("Face2", second_face)], False)
+    (full_seat,) = seats(named(cylinder), False)
     around = np.linspace(-np.pi, np.pi, 500)
     points = np.stack([60.0 * np.cos(around), 60.0 * np.sin(around), np.full(500, 70.0)], axis=1)
     assert np.logical_or.reduce([face.near(points, 0.05) for face in seat.faces]).all()
     assert all(
         face.near(points, 0.05).mean() == pytest.approx(0.5, abs=0.01) for face in seat.faces
     )
-    assert whole.faces[0].span == pytest.approx(2.0 * np.pi)
+    assert full_seat.faces[0].span == pytest.approx(2.0 * np.pi)

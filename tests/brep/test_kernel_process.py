@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Kernel calls beside a window: the same numbers from another process, which can be ended, may crash, and may be missing."""
+"""Kernel calls in another process give the same numbers as in the window; the process may be ended,
+crash or be missing."""
 
 import ctypes
 import os
@@ -30,7 +31,7 @@ PARTS = (
 )
 
 
-# what the process is asked for here; it imports this file
+# ---- functions that the other process runs; it imports this file
 
 
 def pid_of(shape):
@@ -63,22 +64,22 @@ def part(name):
 
 
 def in_thread(function, *arguments):
-    """What a call beside the window returns or raises."""
-    found = []
+    """Return or raise what a call in a thread other than the main one returns or raises."""
+    outcome = []
 
     def run():
         try:
-            found.append(function(*arguments))
+            outcome.append(function(*arguments))
         except BaseException as error:
-            found.append(error)
+            outcome.append(error)
 
     thread = threading.Thread(target=run)
     thread.start()
     thread.join(120)
-    assert found, "it did not come back"
-    if isinstance(found[0], BaseException):
-        raise found[0]
-    return found[0]
+    assert outcome, "it did not come back"
+    if isinstance(outcome[0], BaseException):
+        raise outcome[0]
+    return outcome[0]
 
 
 def flat(value):
@@ -90,17 +91,17 @@ def flat(value):
 
 
 class Ended(BaseException):
-    """The order to end, which may come between any two steps."""
+    """The request to end a thread, which may arrive between any two steps."""
 
 
 def is_gone(pid):
-    """Whether a process that was started here ends soon."""
+    """Return whether a process that was started here ends soon."""
     patience = time.monotonic() + 20
     while time.monotonic() < patience:
         try:
             if os.waitpid(pid, os.WNOHANG)[0]:
                 return True
-        except ChildProcessError:  # it has been waited for
+        except ChildProcessError:  # its parent has already waited for it
             return True
         time.sleep(0.02)
     return False
@@ -108,7 +109,7 @@ def is_gone(pid):
 
 @pytest.fixture(autouse=True)
 def fresh():
-    """No process from before, none left behind."""
+    """Start without earlier processes and leave none."""
     assert not kernel_process.kernel_workers.unable
     yield
     kernel_process.kernel_workers.end()
@@ -116,7 +117,7 @@ def fresh():
 
 @pytest.fixture
 def slow_part(monkeypatch):
-    """A part that is always sent, however quickly it is divided."""
+    """Return a part that is always sent, however fast its tessellation is."""
     monkeypatch.setattr(kernel_process, "MAX_FACES", 0)
     return Part.makeBox(1, 2, 3)
 
@@ -126,25 +127,30 @@ def slow_part(monkeypatch):
 def test_both_come_to_the_same_numbers(name, monkeypatch):
     monkeypatch.setattr(kernel_process, "MAX_FACES", 0)
     shape = part(name)
-    for function, *rest in (
+    for function, *arguments in (
         (tessellate.tessellated, 0.05),
         (sheet.tessellated_for, 2.0),
         (tessellate.triangles_of, 0.1),
         (tessellate._by_face, 0.1),
     ):
-        here = flat(function(shape.copy(), *rest))
-        elsewhere = flat(in_thread(kernel_process.in_kernel_process, function, shape.copy(), *rest))
-        assert len(here) == len(elsewhere)
-        for one, other in zip(here, elsewhere, strict=True):
-            assert np.array_equal(one, other) and np.asarray(one).dtype == np.asarray(other).dtype
-    assert len(kernel_process.kernel_workers.idle) == 1  # it was asked each time
+        local = flat(function(shape.copy(), *arguments))
+        elsewhere = flat(
+            in_thread(kernel_process.in_kernel_process, function, shape.copy(), *arguments)
+        )
+        assert len(local) == len(elsewhere)
+        for local_value, remote_value in zip(local, elsewhere, strict=True):
+            assert (
+                np.array_equal(local_value, remote_value)
+                and np.asarray(local_value).dtype == np.asarray(remote_value).dtype
+            )
+    assert len(kernel_process.kernel_workers.idle) == 1  # the process was used each time
 
 
 def test_one_process_serves_one_call_after_the_other_and_none_the_main_thread(slow_part):
-    first = in_thread(kernel_process.in_kernel_process, pid_of, slow_part)
+    first_pid = in_thread(kernel_process.in_kernel_process, pid_of, slow_part)
     assert (
-        first != os.getpid()
-        and in_thread(kernel_process.in_kernel_process, pid_of, slow_part) == first
+        first_pid != os.getpid()
+        and in_thread(kernel_process.in_kernel_process, pid_of, slow_part) == first_pid
     )
     assert kernel_process.in_kernel_process(pid_of, slow_part) == os.getpid()
 
@@ -168,7 +174,7 @@ def test_a_process_that_the_system_ends_had_too_little_memory(slow_part):
 
 def test_another_thread_may_take_the_process_that_was_free(slow_part, monkeypatch):
     class Taken(list):
-        def __bool__(self):  # there was one when it was asked
+        def __bool__(self):  # the process existed at the time of the check
             return True
 
     monkeypatch.setattr(kernel_process.kernel_workers, "idle", Taken())
@@ -176,19 +182,20 @@ def test_another_thread_may_take_the_process_that_was_free(slow_part, monkeypatc
 
 
 def test_a_process_that_has_left_is_replaced(slow_part):
-    first = in_thread(kernel_process.in_kernel_process, pid_of, slow_part)
+    first_pid = in_thread(kernel_process.in_kernel_process, pid_of, slow_part)
     (process,) = kernel_process.kernel_workers.idle
     process.popen.terminate()
     process.popen.wait(20)
     assert in_thread(kernel_process.in_kernel_process, pid_of, slow_part) not in (
-        first,
+        first_pid,
         os.getpid(),
     )
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="a signal of POSIX")
 def test_a_process_that_has_left_does_not_take_freecad_along():
-    """As in FreeCAD 1.0, whose Python does not ignore the signal of a broken pipe; the one who asks and the one who ends."""
+    """FreeCAD 1.0's Python does not ignore the signal of a broken pipe; both the caller and the
+    ender may receive it."""
     script = "\n".join(
         (
             "import signal",
@@ -210,7 +217,7 @@ def test_a_process_that_has_left_does_not_take_freecad_along():
             "print('still here', first != second, signal.SIGPIPE in signal.sigpending())",
         )
     )
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", script],
         env={**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)},
         capture_output=True,
@@ -218,15 +225,17 @@ def test_a_process_that_has_left_does_not_take_freecad_along():
         timeout=120,
         check=False,
     )
-    assert (done.returncode, done.stdout.splitlines()[-1:]) == (0, ["still here True False"]), (
-        done.stderr
-    )
+    assert (process.returncode, process.stdout.splitlines()[-1:]) == (
+        0,
+        ["still here True False"],
+    ), process.stderr
 
 
 def test_errors_come_back(slow_part):
     with pytest.raises(ValueError, match="no good"):
         in_thread(kernel_process.in_kernel_process, fail, slow_part, "value")
-    with pytest.raises(RuntimeError, match="where: what"):  # one that cannot travel keeps its text
+    # an exception that cannot be pickled keeps its text
+    with pytest.raises(RuntimeError, match="where: what"):
         in_thread(kernel_process.in_kernel_process, fail, slow_part, "input")
 
 
@@ -238,34 +247,39 @@ def test_without_another_python_the_call_is_made_here(slow_part, monkeypatch):
 
 
 def test_a_thread_that_is_ended_takes_its_process_with_it(slow_part, tmp_path):
-    told, ended = tmp_path / "pid", []
+    pid_file, ended_threads = tmp_path / "pid", []
 
     def run():
         try:
-            kernel_process.in_kernel_process(linger, slow_part, str(told))
+            kernel_process.in_kernel_process(linger, slow_part, str(pid_file))
         except Ended:
-            ended.append(True)
+            ended_threads.append(True)
 
     thread = threading.Thread(target=run)
     thread.start()
     patience = time.monotonic() + 60
-    while not (told.exists() and told.read_text(encoding="utf-8")):
+    while not (pid_file.exists() and pid_file.read_text(encoding="utf-8")):
         assert time.monotonic() < patience
         time.sleep(0.02)
     ctypes.pythonapi.PyThreadState_SetAsyncExc(
         ctypes.c_ulong(thread.ident), ctypes.py_object(Ended)
     )
     thread.join(20)
-    assert ended and not thread.is_alive() and not kernel_process.kernel_workers.idle
+    assert ended_threads and not thread.is_alive() and not kernel_process.kernel_workers.idle
     with pytest.raises(ProcessLookupError):
-        os.kill(int(told.read_text(encoding="utf-8")), 0)
+        os.kill(int(pid_file.read_text(encoding="utf-8")), 0)
 
 
 @pytest.mark.parametrize("when", ["before it is listened to", "once it is made", "as it is asked"])
 def test_a_thread_that_is_ended_while_a_process_starts_leaves_none(slow_part, monkeypatch, when):
-    pids, popen, made, start = [], subprocess.Popen, kernel_process.Worker, threading.Thread.start
+    pids, popen, worker_class, start = (
+        [],
+        subprocess.Popen,
+        kernel_process.Worker,
+        threading.Thread.start,
+    )
 
-    def begun(*arguments, **options):
+    def start_process(*arguments, **options):
         process = popen(*arguments, **options)
         pids.append(process.pid)
         return process
@@ -275,7 +289,7 @@ def test_a_thread_that_is_ended_while_a_process_starts_leaves_none(slow_part, mo
             raise Ended
         start(thread)
 
-    class Made(made):
+    class Made(worker_class):
         def __init__(self, python):
             super().__init__(python)
             if when == "once it is made":
@@ -284,22 +298,22 @@ def test_a_thread_that_is_ended_while_a_process_starts_leaves_none(slow_part, mo
         def ask(self, question):
             raise Ended
 
-    monkeypatch.setattr(subprocess, "Popen", begun)
+    monkeypatch.setattr(subprocess, "Popen", start_process)
     monkeypatch.setattr(kernel_process, "Worker", Made)
     if when == "before it is listened to":
         monkeypatch.setattr(threading.Thread, "start", listened)
-    ended = []
+    ended_threads = []
 
     def run():
         try:
             kernel_process.in_kernel_process(pid_of, slow_part)
         except Ended:
-            ended.append(True)
+            ended_threads.append(True)
 
     thread = threading.Thread(target=run)
     thread.start()
     thread.join(20)
-    assert ended and len(pids) == 1 and is_gone(pids[0])
+    assert ended_threads and len(pids) == 1 and is_gone(pids[0])
     assert not kernel_process.kernel_workers.idle and not kernel_process.kernel_workers.unable
 
 

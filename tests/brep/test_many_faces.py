@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parts of hundreds of faces: memory, and how often the geometry kernel is asked, grow with the faces and not faster."""
+"""For parts of hundreds of faces, memory and kernel calls grow no faster than the number of
+faces."""
 
 import math
 import tracemalloc
@@ -44,17 +45,19 @@ def perforated():
 
 @pytest.fixture
 def looks(monkeypatch):
-    """The faces that are looked at closely, time after time."""
-    found = []
+    """Record the faces that the search examines closely."""
+    faces_seen = []
     real = revolution.patch_of
     monkeypatch.setattr(
-        revolution, "patch_of", lambda face, *rest: (found.append(face), real(face, *rest))[1]
+        revolution,
+        "patch_of",
+        lambda face, *arguments: (faces_seen.append(face), real(face, *arguments))[1],
     )
-    return found
+    return faces_seen
 
 
 def peak_of(work):
-    """Bytes of arrays and objects that were alive at once."""
+    """Return the peak of bytes in arrays and objects."""
     tracemalloc.start()
     try:
         work()
@@ -66,15 +69,15 @@ def peak_of(work):
 @pytest.mark.parametrize("make", [gear, perforated])
 @pytest.mark.always("perforated")
 def test_a_thousand_faces_that_are_not_of_revolution_are_soon_refused(make, looks):
-    part = make()
+    shape = make()
 
     def refused():
         with pytest.raises(InputError) as caught:
-            find_wall(part)
+            find_wall(shape)
         assert caught.value.code == "NOT_REVOLUTION"
 
     assert peak_of(refused) < 100e6
-    assert len(looks) < len(part.Faces)
+    assert len(looks) < len(shape.Faces)
 
 
 @pytest.mark.any_version
@@ -89,7 +92,7 @@ def test_hundreds_of_rings_are_one_wall(looks):
 
 def test_the_axis_of_each_hole_is_found_once():
     axes = axis._weighed(list(perforated().Faces))
-    places = {(round(point[0]), round(point[1])) for (point, _), _ in axes}
-    assert len(axes) == 144 and places == {
+    axis_positions = {(round(point[0]), round(point[1])) for (point, _), _ in axes}
+    assert len(axes) == 144 and axis_positions == {
         (10 + 10 * k, 10 + 10 * j) for k in range(12) for j in range(12)
     }

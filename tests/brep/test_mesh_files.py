@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""OBJ and STL files: every face is read as it is, or the file is refused with the line."""
+"""OBJ and STL files: every face is read as stated, or the error names the line."""
 
 import struct
 
@@ -14,8 +14,8 @@ CUBE = [(x, y, z) for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
 QUADS = [(4, 3, 2, 1), (5, 6, 7, 8), (1, 2, 6, 5), (2, 3, 7, 6), (3, 4, 8, 7), (4, 1, 5, 8)]
 
 
-def vertices(points=CUBE, more=""):
-    return "".join(f"v {x} {y} {z}{more}\n" for x, y, z in points)
+def vertices(points=CUBE, extra_lines=""):
+    return "".join(f"v {x} {y} {z}{extra_lines}\n" for x, y, z in points)
 
 
 def faces(rows=QUADS):
@@ -35,7 +35,8 @@ def refused(tmp_path, text, name="part.obj"):
 
 
 def prism(ring, height):
-    """Points of a prism over a polygon that turns left, and its faces by numbers from 1."""
+    """Return the points of a prism over a polygon that turns left, and its faces by numbers from
+    1."""
     n = len(ring)
     points = [(x, y, z) for z in (0.0, height) for x, y in ring]
     rows = [tuple(range(n, 0, -1)), tuple(range(n + 1, 2 * n + 1))]
@@ -46,7 +47,7 @@ def prism(ring, height):
 @pytest.mark.parametrize("start", range(4))
 @pytest.mark.parametrize("extra", [False, True])
 def test_polygons_with_a_dent_are_cut_inside(tmp_path, start, extra):
-    """With a point more on a side, of five corners as of four, whichever corner comes first."""
+    """Polygons with a dent and an extra point on a side, starting at any corner."""
     ring = [(0, 0), (4, 0), (1, 1), (0, 4)]
     ring = ring[start:] + ring[:start]
     if extra:
@@ -58,7 +59,7 @@ def test_polygons_with_a_dent_are_cut_inside(tmp_path, start, extra):
 
 
 def test_dents_of_leaning_polygons(tmp_path):
-    """A dented prism turned in space, whose faces are nearly flat only."""
+    """The faces of a rotated prism with a dent are only nearly flat."""
     points, rows = prism([(0, 0), (4, 0), (1, 1), (0, 4)], 2.0)
     turned = np.linalg.qr(np.random.default_rng(5).normal(size=(3, 3)))[0]
     turned *= np.sign(np.linalg.det(turned))
@@ -70,9 +71,9 @@ def test_dents_of_leaning_polygons(tmp_path):
 @pytest.mark.parametrize(
     "text",
     [
-        vertices(more=" 2.0") + faces(),
-        vertices(more=" 0.1 0.2 0.3") + faces(),
-        vertices(more=" # a corner") + faces(),
+        vertices(extra_lines=" 2.0") + faces(),
+        vertices(extra_lines=" 0.1 0.2 0.3") + faces(),
+        vertices(extra_lines=" # a corner") + faces(),
         vertices().replace(" ", "\t") + faces().replace(" ", "\t"),
         (vertices() + faces()).replace("\n", "\r"),
         vertices().replace("v 0 0 1", "v 0 0 \\\n1") + faces().replace("4 3 2", "4 3 \\\r\n2"),
@@ -118,8 +119,8 @@ def test_lines_points_and_curves_beside_faces_are_told(tmp_path):
     ],
 )
 def test_what_cannot_be_read_of_an_obj_file_is_refused(tmp_path, more, code, word):
-    found, message = refused(tmp_path, vertices() + faces() + more)
-    assert found == code and word in message
+    error, message = refused(tmp_path, vertices() + faces() + more)
+    assert error == code and word in message
 
 
 # ---- STL
@@ -223,7 +224,9 @@ def test_a_unit_that_a_file_states_is_told_unless_it_is_given(tmp_path, name, te
     body = stl_text().split("\n", 1)[1] if name.endswith("stl") else vertices() + faces()
     (tmp_path / name).write_text(text.format(body))
     issues = mesh_content(tmp_path / name).issues
-    assert [(one.level, one.code) for one in issues] == [("warning", "FILE_CONTENT")] * bool(scale)
+    assert [(issue.level, issue.code) for issue in issues] == [("warning", "FILE_CONTENT")] * bool(
+        scale
+    )
     assert not scale or f"part.scale to {scale} mm" in issues[0].message
     assert not mesh_content(tmp_path / name, float(scale or 2.0)).issues
     head = b"UNITS=inch".ljust(80, b"\0")

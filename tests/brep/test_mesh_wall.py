@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls that come as open meshes: layers against what the mesh was made from, starts, mending, refusals."""
+"""Walls from open meshes: layers compared with the source of the mesh, starts, repairs,
+refusals."""
 
 import Mesh
 import numpy as np
@@ -21,8 +22,9 @@ pytestmark = pytest.mark.any_version
 SIDES = 60
 
 
-def turned(low, high, height, rows=12, sides=SIDES, floor=False):
-    """Points and triangles of a cone's side from radius `low` at z = 0 to `high`, open at both ends or closed by a floor."""
+def cone_mesh(low, high, height, rows=12, sides=SIDES, floor=False):
+    """Return points and triangles of a cone's side from radius `low` at z = 0 to `high`, open at
+    both ends or closed by a floor."""
     angle = 2.0 * np.pi * np.arange(sides) / sides
     z = np.linspace(0.0, height, rows + 1)
     radius = np.linspace(low, high, rows + 1)
@@ -45,64 +47,65 @@ def wall(points, faces, height=4.0, substrate=None, edges=(), mend=5.0):
     return wall_on(Body("Vase", points, faces), (), substrate, height, "Vase", "Block", edges, mend)
 
 
-def layers(made, height=4.0):
+def layers(mesh_wall, height=4.0):
     return wall_fronts.plan(
-        made,
+        mesh_wall,
         SurfaceParameters(layer_height=height, chord_error=0.05),
         BuildDirectionParameters(),
         ProcessParameters(),
     ).layers
 
 
-def codes(made):
-    return [issue.code for issue in made.issues]
+def codes(mesh_wall):
+    return [issue.code for issue in mesh_wall.issues]
 
 
 def test_the_smooth_surface_of_a_cylinders_mesh_is_the_cylinder():
-    points, faces = turned(30.0, 30.0, 60.0, rows=30, sides=90)
+    points, faces = cone_mesh(30.0, 30.0, 60.0, rows=30, sides=90)
     rng = np.random.default_rng(4)
     angle, r, z = (
         rng.uniform(0.0, 6.28, 400),
         rng.uniform(28.0, 32.0, 400),
         rng.uniform(8.0, 52.0, 400),
     )
-    asked = np.column_stack([r * np.cos(angle), r * np.sin(angle), z])
-    found, normals = SmoothMesh(points, faces, 2.0).project(asked)
-    assert np.abs(np.hypot(*found[:, :2].T) - 30.0).max() < 5e-4
-    out = found * [1.0, 1.0, 0.0] / 30.0
+    queries = np.column_stack([r * np.cos(angle), r * np.sin(angle), z])
+    projected, normals = SmoothMesh(points, faces, 2.0).project(queries)
+    assert np.abs(np.hypot(*projected[:, :2].T) - 30.0).max() < 5e-4
+    out = projected * [1.0, 1.0, 0.0] / 30.0
     assert np.abs(np.einsum("ij,ij->i", normals, out) - 1.0).max() < 1e-5
-    again, _ = SmoothMesh(points, faces, 2.0).project(found)
-    assert np.abs(again - found).max() < 1e-9
+    again, _ = SmoothMesh(points, faces, 2.0).project(projected)
+    assert np.abs(again - projected).max() < 1e-9
 
 
 @pytest.mark.parametrize("flip", [False, True])
 def test_a_vase_on_the_platform(flip):
-    """Layers of a cone lie a layer height apart along its side, each as long as the cone is round there."""
-    points, faces = turned(20.0, 35.0, 40.0)
+    """Layers of a cone are a layer height apart along its side, and each has the length of the
+    cone's circle."""
+    points, faces = cone_mesh(20.0, 35.0, 40.0)
     if flip:
         faces = faces.copy()
         faces[::5] = faces[::5, ::-1]
-    made = wall(points, faces)
-    assert "FIRST_LAYER" in codes(made) and ("MESH_REPAIRED" in codes(made)) == flip
-    found = layers(made)
+    mesh_wall = wall(points, faces)
+    assert "FIRST_LAYER" in codes(mesh_wall) and ("MESH_REPAIRED" in codes(mesh_wall)) == flip
+    wall_layers = layers(mesh_wall)
     side = np.hypot(15.0, 40.0)
-    assert len(found) == int(side / 4.0) + 1
+    assert len(wall_layers) == int(side / 4.0) + 1
     sagitta = 35.0 * (1.0 - np.cos(np.pi / SIDES))
-    for k, layer in enumerate(found):
+    for k, layer in enumerate(wall_layers):
         assert len(layer.beads) == 1 and layer.beads[0].closed
-        at = layer.beads[0].points
+        bead_points = layer.beads[0].points
         share = 4.0 * k / side
-        assert np.abs(at[:, 2] - 40.0 * share).max() < 0.05
-        radius = np.hypot(at[:, 0], at[:, 1])
+        assert np.abs(bead_points[:, 2] - 40.0 * share).max() < 0.05
+        radius = np.hypot(bead_points[:, 0], bead_points[:, 1])
         assert np.abs(radius - (20.0 + 15.0 * share)).max() < sagitta + 0.05
         assert layer.beads[0].build[:, 2] == pytest.approx(40.0 / side, abs=0.02)
 
 
 def test_a_cup_starts_above_its_floor_and_what_stands_on_its_tip_nowhere():
-    points, faces = turned(20.0, 20.0, 30.0, floor=True)
-    made = wall(points, faces)
-    assert "floor" in " ".join(issue.message for issue in made.issues)
-    heights = [bead.points[:, 2] for layer in layers(made) for bead in layer.beads]
+    points, faces = cone_mesh(20.0, 20.0, 30.0, floor=True)
+    mesh_wall = wall(points, faces)
+    assert "floor" in " ".join(issue.message for issue in mesh_wall.issues)
+    heights = [bead.points[:, 2] for layer in layers(mesh_wall) for bead in layer.beads]
     assert min(z.min() for z in heights) == pytest.approx(2.0, abs=0.1) and len(heights) == 8
     tips = 20.0 * np.array(
         [[1, 0, 0], [0, 1, 0], [-1, 0, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=float
@@ -114,7 +117,7 @@ def test_a_cup_starts_above_its_floor_and_what_stands_on_its_tip_nowhere():
 
 
 def test_open_ends_are_edges_by_their_height():
-    points, faces = turned(20.0, 30.0, 40.0)
+    points, faces = cone_mesh(20.0, 30.0, 40.0)
     down = layers(wall(points, faces, edges=("Edge2",)))
     assert down[0].beads[0].points[:, 2] == pytest.approx(40.0, abs=0.05)
     assert down[-1].beads[0].points[:, 2].max() < 4.0
@@ -125,29 +128,29 @@ def test_open_ends_are_edges_by_their_height():
 
 @pytest.mark.parametrize("scan", [False, True])
 def test_on_a_substrate_what_lies_in_it_is_not_deposited(scan):
-    points, faces = turned(20.0, 20.0, 40.0)
+    points, faces = cone_mesh(20.0, 20.0, 40.0)
     block = Part.makeBox(60, 60, 20, Vector(-30, -30, -10))
-    made = wall(points, faces, substrate=Mesh.Mesh(block.tessellate(1.0)) if scan else block)
-    found = layers(made)
-    for k, layer in enumerate(found):
+    mesh_wall = wall(points, faces, substrate=Mesh.Mesh(block.tessellate(1.0)) if scan else block)
+    wall_layers = layers(mesh_wall)
+    for k, layer in enumerate(wall_layers):
         assert layer.beads[0].points[:, 2] == pytest.approx(10.0 + 4.0 * k, abs=0.05)
-    assert len(found) == 8
+    assert len(wall_layers) == 8
 
 
 def test_small_holes_are_closed_and_the_ends_are_not():
-    points, faces = turned(20.0, 20.0, 40.0, rows=20)
+    points, faces = cone_mesh(20.0, 20.0, 40.0, rows=20)
     gone = (faces == 10 * SIDES + 3).any(axis=1)
-    made = wall(points, faces[~gone], mend=6.0)
-    assert "MENDED" in codes(made) and "1 holes were closed" in " ".join(
-        issue.message for issue in made.issues
+    mesh_wall = wall(points, faces[~gone], mend=6.0)
+    assert "MENDED" in codes(mesh_wall) and "1 holes were closed" in " ".join(
+        issue.message for issue in mesh_wall.issues
     )
-    assert [len(layer.beads) for layer in layers(made)] == [1] * 11
+    assert [len(layer.beads) for layer in layers(mesh_wall)] == [1] * 11
     assert "MENDED" not in codes(wall(points, faces[~gone], mend=1.0))
-    assert "MENDED" not in codes(wall(*turned(1.0, 1.0, 30.0, sides=12), height=1.0))
+    assert "MENDED" not in codes(wall(*cone_mesh(1.0, 1.0, 30.0, sides=12), height=1.0))
 
 
 def test_pieces_that_nothing_starts_on_and_walls_that_cut_themselves_are_refused():
-    points, faces = turned(20.0, 20.0, 40.0)
+    points, faces = cone_mesh(20.0, 20.0, 40.0)
     above = np.vstack([points, points + [0.0, 0.0, 60.0]])
     with pytest.raises(InputError) as caught:
         wall(above, np.vstack([faces, faces + len(points)]))
@@ -162,26 +165,29 @@ def test_pieces_that_nothing_starts_on_and_walls_that_cut_themselves_are_refused
 
 
 def test_facets_that_cross_in_one_place_are_cut_out_and_what_cuts_itself_farther_is_refused():
-    """Two vertices of a tube are pulled out, and one of them under the facets of the other; next to the end of the tube
-    nothing tells what was meant."""
-    points, faces = turned(20.0, 20.0, 40.0, rows=20)
+    """Two vertices of a tube are pulled out, one of them under the facets of the other; next to the
+    end of the tube the intended shape is unknown."""
+    points, faces = cone_mesh(20.0, 20.0, 40.0, rows=20)
 
     def crossed(row):
         moved = points.copy()
-        for up, out, at in ((0, 20.3, 2), (2, 21.0, 2)):
-            place = (row + up) * SIDES + 3
-            moved[place] = [*(moved[place, :2] * out / 20.0), moved[row * SIDES, 2] + 2.0 * at]
+        for up, out, column_ in ((0, 20.3, 2), (2, 21.0, 2)):
+            vertex = (row + up) * SIDES + 3
+            moved[vertex] = [
+                *(moved[vertex, :2] * out / 20.0),
+                moved[row * SIDES, 2] + 2.0 * column_,
+            ]
         return moved
 
-    made = wall(crossed(10), faces, mend=8.0)
-    told = " ".join(issue.message for issue in made.issues if issue.code == "MENDED")
+    mesh_wall = wall(crossed(10), faces, mend=8.0)
+    messages = " ".join(issue.message for issue in mesh_wall.issues if issue.code == "MENDED")
     assert (
-        "8 intersecting triangles were removed, as at (" in told
-        and "leaving holes up to 7.4 mm across" in told
+        "8 intersecting triangles were removed, as at (" in messages
+        and "leaving holes up to 7.4 mm across" in messages
     )
-    found = layers(made)
-    assert [len(layer.beads) for layer in found] == [1] * 11
-    radii = np.concatenate([np.hypot(*layer.beads[0].points[:, :2].T) for layer in found])
+    wall_layers = layers(mesh_wall)
+    assert [len(layer.beads) for layer in wall_layers] == [1] * 11
+    radii = np.concatenate([np.hypot(*layer.beads[0].points[:, :2].T) for layer in wall_layers])
     assert radii.min() > 19.9 and radii.max() < 21.0 and np.median(np.abs(radii - 20.0)) < 0.02
     for bad, mend in ((crossed(10), 7.0), (crossed(18), 8.0)):
         with pytest.raises(InputError) as caught:
@@ -193,33 +199,33 @@ def test_facets_that_cross_in_one_place_are_cut_out_and_what_cuts_itself_farther
 
 
 def test_large_facets_are_followed_where_they_meet():
-    """A drum of 40 facets, 30 to 70 mm large, that meet at 10 to 20 deg: edges of the mesh ran across where they meet, up
-    to 0.7 mm off, and beads with them."""
-    points, faces = turned(60.0, 60.0, 80.0, rows=2, sides=20)
+    """A drum of 40 facets of 30 to 70 mm that meet at 10 to 20 deg: edges of the mesh once ran
+    across these borders, up to 0.7 mm off, and beads with them."""
+    points, faces = cone_mesh(60.0, 60.0, 80.0, rows=2, sides=20)
     angle = 1.5 * np.pi / 10.0 * points[:, 2] / 40.0
     x, y = points[:, 0].copy(), points[:, 1].copy()
     points[:, 0], points[:, 1] = (
         x * np.cos(angle) - y * np.sin(angle),
         x * np.sin(angle) + y * np.cos(angle),
     )
-    made = wall(points, faces)
+    mesh_wall = wall(points, faces)
     share = np.array([(i, j, 12 - i - j) for i in range(13) for j in range(13 - i)]) / 12.0
-    places = np.einsum("sk,mkc->msc", share, points[faces]).reshape(-1, 3)
-    away = np.linalg.norm(made.smooth.project(places)[0] - places, axis=1)
-    assert away.max() < 0.25 and away.max() < made.smoothing + 0.05
-    assert "SMOOTHED" in codes(made)
+    samples = np.einsum("sk,mkc->msc", share, points[faces]).reshape(-1, 3)
+    distances = np.linalg.norm(mesh_wall.smooth.project(samples)[0] - samples, axis=1)
+    assert distances.max() < 0.25 and distances.max() < mesh_wall.smoothing + 0.05
+    assert "SMOOTHED" in codes(mesh_wall)
 
 
 def lying_bend(sides=60, rows=24):
-    """Points and triangles of a quarter of a torus of 60 and 20 mm that lies on a floor beside its open end, at
-    Y = 0, and turns up."""
+    """Return points and triangles of a quarter of a torus of 60 and 20 mm with its side on a floor
+    next to its open end, at Y = 0, that turns upwards."""
     v, u = np.meshgrid(
         np.linspace(0.0, 0.5 * np.pi, rows + 1),
         2.0 * np.pi * np.arange(sides) / sides,
         indexing="ij",
     )
-    away = 60.0 + 20.0 * np.cos(u)
-    points = np.stack([20.0 * np.sin(u), away * np.sin(v), -away * np.cos(v)], axis=-1).reshape(
+    radii = 60.0 + 20.0 * np.cos(u)
+    points = np.stack([20.0 * np.sin(u), radii * np.sin(v), -radii * np.cos(v)], axis=-1).reshape(
         -1, 3
     )
     k, row = np.meshgrid(np.arange(sides), sides * np.arange(rows))
@@ -228,14 +234,15 @@ def lying_bend(sides=60, rows=24):
 
 
 def test_a_first_layer_about_a_floor_goes_on_to_the_open_end_beside_it():
-    """That of a real pipe ended a facet short of it, and those after it, around its ends, ran 0.6 mm past the pipe's end."""
-    made = wall(*lying_bend())
-    (first,) = made.first
-    assert not first.closed
+    """The first layer of a real pipe once ended a facet short of its open end, and the next layers,
+    around its ends, ran 0.6 mm past the pipe's end."""
+    mesh_wall = wall(*lying_bend())
+    (first_curve,) = mesh_wall.first
+    assert not first_curve.closed
     assert (
-        np.abs(first.points[[0, -1], 1]).max() < 0.05
-        and np.abs(first.points[:, 2] + 78.0).max() < 1e-5
+        np.abs(first_curve.points[[0, -1], 1]).max() < 0.05
+        and np.abs(first_curve.points[:, 2] + 78.0).max() < 1e-5
     )
-    for one in layers(made):
-        for bead in one.beads:
+    for layer in layers(mesh_wall):
+        for bead in layer.beads:
             assert bead.points[:, 1].min() > -0.05

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Whether deposit lies on its part: distances against closed forms, and toolpaths that were moved."""
+"""Distances of deposit from its part equal closed forms, and shifted toolpaths are rejected."""
 
 import dataclasses
 
@@ -45,23 +45,26 @@ def test_distances_from_chosen_faces(rng):
 
 
 def test_a_shape_of_which_the_kernel_makes_no_triangles(rng, monkeypatch):
-    """Its own distances from some places, nothing of the others, where it ended as an internal error."""
+    """Some points get the shape's own distances and the others none; this once was an internal
+    error."""
     monkeypatch.setattr(
         off_part, "triangles_of", lambda *_: (np.zeros((0,)), np.zeros((0,), dtype=int))
     )
     radius = 30.0 + rng.uniform(-3.0, 3.0, 150)
     points = ring(rng, radius, 5.0, 45.0, 150)
     shape = Part.makeCylinder(30.0, 50.0)
-    for found, true in (
+    for distances, true in (
         (off_faces(shape, ["Face1"], points, 0.03), np.abs(radius - 30.0)),
         (off_solids(shape, points, 0.03), np.maximum(radius - 30.0, 0.0)),
     ):
-        known = np.isfinite(found)
-        assert 0 < known.sum() < 150 and found[known] == pytest.approx(true[known], abs=1e-6)
+        is_known = np.isfinite(distances)
+        assert 0 < is_known.sum() < 150 and distances[is_known] == pytest.approx(
+            true[is_known], abs=1e-6
+        )
 
 
 def test_distances_outside_of_solids(rng):
-    """Two boxes that touch: no place between them is outside, and past them it is counted from the nearer one."""
+    """Two boxes touch: no point between them is outside, and beyond them the nearer one counts."""
     solids = Part.makeCompound(
         [Part.makeBox(10, 10, 10), Part.makeBox(10, 10, 10, Vector(10, 0, 0))]
     )
@@ -78,8 +81,9 @@ def test_distances_outside_of_solids(rng):
 
 
 def test_solids_that_differ_by_their_place_are_divided_once(rng, monkeypatch):
-    """Bars around an axis: distances are those in the frame of each, also where each is a shape of its own."""
-    bar, asked = Part.makeBox(20, 6, 10, Vector(30, -3, 0)), []
+    """Bars around an axis: distances are those in the frame of each, also if each is a separate
+    shape."""
+    bar, calls = Part.makeBox(20, 6, 10, Vector(30, -3, 0)), []
     shared = [Part.Shape(bar) for _ in range(6)]
     for number, solid in enumerate(shared):
         solid.rotate(Vector(), Vector(0, 0, 1), 60.0 * number)
@@ -92,18 +96,19 @@ def test_solids_that_differ_by_their_place_are_divided_once(rng, monkeypatch):
         off.append(np.linalg.norm(np.maximum(np.abs(local) - [10.0, 3.0, 5.0], 0.0), axis=1))
     divide = off_part.triangles_of
     monkeypatch.setattr(
-        off_part, "triangles_of", lambda *given: asked.append(given) or divide(*given)
+        off_part, "triangles_of", lambda *arguments: calls.append(arguments) or divide(*arguments)
     )
     for solids, count in ((shared, 1), ([solid.copy() for solid in shared], 6)):
-        asked.clear()
-        found = off_solids(Part.makeCompound(solids), points, 0.5)
-        assert len(asked) == count
-        assert found == pytest.approx(np.min(off, axis=0), abs=1e-6 + off_part.DEFLECTION)
-        assert found.max() == pytest.approx(np.min(off, axis=0).max(), abs=1e-6)
+        calls.clear()
+        distances = off_solids(Part.makeCompound(solids), points, 0.5)
+        assert len(calls) == count
+        assert distances == pytest.approx(np.min(off, axis=0), abs=1e-6 + off_part.DEFLECTION)
+        assert distances.max() == pytest.approx(np.min(off, axis=0).max(), abs=1e-6)
 
 
 def test_distances_outside_of_a_mesh_that_cuts_itself(rng):
-    """A rod that sticks in a block: next to its triangles in there the nearest one shows its outside, up to 8 mm away."""
+    """A rod sticks in a block: near its triangles inside the block the nearest triangle shows its
+    outside, up to 8 mm away."""
     vertices, triangles = [], []
     for solid in (Part.makeBox(40, 40, 40), Part.makeBox(40, 4, 4, Vector(20, 18, 18))):
         points, corners = solid.tessellate(1.0)
@@ -122,12 +127,12 @@ def test_distances_outside_of_a_mesh_that_cuts_itself(rng):
     )
 
 
-def moved(toolpath, way):
+def shift_toolpath(toolpath, offset):
     layers = tuple(
         dataclasses.replace(
             layer,
             beads=tuple(
-                dataclasses.replace(bead, points=bead.points + way) for bead in layer.beads
+                dataclasses.replace(bead, points=bead.points + offset) for bead in layer.beads
             ),
         )
         for layer in toolpath.layers
@@ -136,13 +141,13 @@ def moved(toolpath, way):
 
 
 def revolved(doc):
-    part = doc.addObject("Part::Sphere", "Sphere")
-    part.Radius, part.Angle1, part.Angle2 = 45, 0, 90
+    sphere = doc.addObject("Part::Sphere", "Sphere")
+    sphere.Radius, sphere.Angle1, sphere.Angle2 = 45, 0, 90
     doc.recompute()
-    return api.make_feature(doc, part, layer_height=9, chord_error=0.1)
+    return api.make_feature(doc, sphere, layer_height=9, chord_error=0.1)
 
 
-def on_hub(doc):
+def hub_toolpath(doc):
     rod, box = doc.addObject("Part::Feature", "Rod"), doc.addObject("Part::Feature", "Block")
     rod.Shape = Part.makeCylinder(20.0, 100.0)
     box.Shape = Part.makeBox(24.0, 24.0, 40.0, Vector(15.0, -12.0, 30.0)).cut(rod.Shape)
@@ -176,7 +181,7 @@ def clad(doc):
     "make, way",
     [
         (revolved, [1.0, 0, 0]),
-        (on_hub, [0, 0, 9.0]),
+        (hub_toolpath, [0, 0, 9.0]),
         (wall, [0, 1.0, 0]),
         (in_planes, [9.0, 0, 0]),
         (clad, [0, 1.0, 0]),
@@ -191,12 +196,14 @@ def test_deposit_beside_the_part_is_refused(doc, monkeypatch, make, way):
     assert (
         count == sound.point_count
         and worst <= allowed
-        and not [one for one in sound.issues if one.level == "error"]
+        and not [issue for issue in sound.issues if issue.level == "error"]
     )
     plan = stage.planned
-    monkeypatch.setattr(stage, "planned", lambda *given: moved(plan(*given), np.array(way)))
+    monkeypatch.setattr(
+        stage, "planned", lambda *arguments: shift_toolpath(plan(*arguments), np.array(way))
+    )
     toolpath = api.make_toolpath(doc, feature)
-    (issue,) = [one for one in api.issues(toolpath) if one.code == "OFF_PART"]
+    (issue,) = [candidate for candidate in api.issues(toolpath) if candidate.code == "OFF_PART"]
     assert issue.level == "error" and None not in (issue.layer, issue.bead, issue.point)
     assert api.result(toolpath).checks.on_part[1] == pytest.approx(np.abs(way).sum(), rel=0.35)
 
@@ -213,29 +220,40 @@ def test_of_several_features_the_one_beside_its_part_is_refused(doc, monkeypatch
     count, worst, allowed = sound.checks.on_part
     assert count == sound.point_count and worst <= allowed
     lay, numbers = in_sequence.layers_of, iter((0, 1))
-    way = np.array([0, 9.0, 0])
+    offset = np.array([0, 9.0, 0])
     monkeypatch.setattr(
-        in_sequence, "layers_of", lambda given: moved(lay(given), next(numbers) * way)
+        in_sequence,
+        "layers_of",
+        lambda arguments: shift_toolpath(lay(arguments), next(numbers) * offset),
     )
     toolpath = api.make_toolpath(doc, features)
-    (issue,) = [one for one in api.issues(toolpath) if one.code == "OFF_PART"]
+    (issue,) = [candidate for candidate in api.issues(toolpath) if candidate.code == "OFF_PART"]
     assert issue.level == "error" and issue.layer >= 3 and None not in (issue.bead, issue.point)
     assert api.result(toolpath).checks.on_part[1] == pytest.approx(9.0, rel=0.35)
 
 
 def test_triangles_of_a_large_part_are_larger_and_no_place_is_told_farther_than_it_is():
-    """A ball of three metres took half a minute at 0.05 mm: the kernel's time grows faster than the number of triangles."""
-    ball, way = Part.makeSphere(1500.0), np.random.default_rng(5).normal(size=(400, 3))
-    away = np.linspace(-2.0, 4.0, 400)
-    points = (1500.0 + away)[:, None] * way / np.linalg.norm(way, axis=1)[:, None]
-    found = off_part.off_solids(ball, points, 1.0)
-    assert (found <= np.maximum(away, 0.0) + 1e-6).all()
-    assert found[away > 1.5] == pytest.approx(away[away > 1.5], abs=1e-6)  # by the kernel
-    assert found[away > 0.0] == pytest.approx(away[away > 0.0], abs=1.1)
+    """A ball of three metres once took half a minute at 0.05 mm, because the kernel's time grows
+    faster than the number of triangles."""
+    ball, directions = Part.makeSphere(1500.0), np.random.default_rng(5).normal(size=(400, 3))
+    true_distances = np.linspace(-2.0, 4.0, 400)
+    points = (
+        (1500.0 + true_distances)[:, None]
+        * directions
+        / np.linalg.norm(directions, axis=1)[:, None]
+    )
+    distances = off_part.off_solids(ball, points, 1.0)
+    assert (distances <= np.maximum(true_distances, 0.0) + 1e-6).all()
+    assert distances[true_distances > 1.5] == pytest.approx(
+        true_distances[true_distances > 1.5], abs=1e-6
+    )  # computed by the kernel
+    assert distances[true_distances > 0.0] == pytest.approx(
+        true_distances[true_distances > 0.0], abs=1.1
+    )
 
 
 def test_points_off_edges(rng):
-    """About the ends of a cylinder, of which one is named."""
+    """Distances from the ends of a cylinder, one of them given by name."""
     shape = Part.makeCylinder(20.0, 40.0)
     top = next(f"Edge{k}" for k, edge in enumerate(shape.Edges, 1) if edge.BoundBox.ZMin > 39.0)
     angle, radius, height = (
@@ -248,13 +266,13 @@ def test_points_off_edges(rng):
         np.hypot(radius - 20.0, height - 40.0), abs=1e-6
     )
     assert (off_edges(shape, (), points) <= off_edges(shape, (top,), points) + 1e-9).all()
-    many = off_edges(shape, (top,), np.tile(points, (50, 1)))
-    assert np.isfinite(many).sum() == 500 and np.isfinite(many[[0, -1]]).all()
+    distances = off_edges(shape, (top,), np.tile(points, (50, 1)))
+    assert np.isfinite(distances).sum() == 500 and np.isfinite(distances[[0, -1]]).all()
 
 
 @pytest.mark.parametrize("inverted", [(), (0,), (1,), (0, 1)])
 def test_distances_outside_of_boxes_that_cross_whichever_way_they_are_turned(rng, inverted):
-    """What is inside of one of them is inside: by the equations of both."""
+    """Points inside either box are inside, according to the equations of both."""
     sizes, corners = (
         np.array([[40.0, 30, 20], [40.0, 30, 20]]),
         np.array([[0.0, 0, 0], [7.0, 11, 5]]),
@@ -265,31 +283,35 @@ def test_distances_outside_of_boxes_that_cross_whichever_way_they_are_turned(rng
         faces = np.array(faces)[:, ::-1] if k in inverted else np.array(faces)
         triangles += (faces + len(vertices)).tolist()
         vertices += [tuple(point) for point in points]
-    places = rng.uniform([-8.0, -8, -8], [55.0, 49, 33], (600, 3))
+    points_ = rng.uniform([-8.0, -8, -8], [55.0, 49, 33], (600, 3))
     off = [
-        np.linalg.norm(np.maximum(np.abs(places - corner - 0.5 * size) - 0.5 * size, 0.0), axis=1)
+        np.linalg.norm(np.maximum(np.abs(points_ - corner - 0.5 * size) - 0.5 * size, 0.0), axis=1)
         for size, corner in zip(sizes, corners)
     ]
-    found = off_mesh(np.array(vertices), np.array(triangles), places)
+    distances = off_mesh(np.array(vertices), np.array(triangles), points_)
     true = np.minimum(*off)
-    assert found[true > 0.0] == pytest.approx(true[true > 0.0], abs=1e-9)
-    assert found[true == 0.0].max() <= off_part.DEFLECTION and (np.maximum(*off) == 0.0).sum() > 20
+    assert distances[true > 0.0] == pytest.approx(true[true > 0.0], abs=1e-9)
+    assert (
+        distances[true == 0.0].max() <= off_part.DEFLECTION and (np.maximum(*off) == 0.0).sum() > 20
+    )
 
 
 def test_distances_in_a_hollow_of_a_mesh(rng):
-    """A box in another, turned inward: what is in there is outside, as far as from its sides or farther."""
+    """The inner box faces inwards: points in it are outside, at least as far as from its sides."""
     vertices, triangles = [], []
-    for size, at, way in ((40.0, 0.0, 1), (20.0, 10.0, -1)):
-        points, faces = Part.makeBox(size, size, size, Vector(at, at, at)).tessellate(1.0)
-        triangles += (np.array(faces)[:, ::way] + len(vertices)).tolist()
+    for size, corner, orientation in ((40.0, 0.0, 1), (20.0, 10.0, -1)):
+        points, faces = Part.makeBox(size, size, size, Vector(corner, corner, corner)).tessellate(
+            1.0
+        )
+        triangles += (np.array(faces)[:, ::orientation] + len(vertices)).tolist()
         vertices += [tuple(point) for point in points]
-    places = rng.uniform(11.0, 29.0, (200, 3))
-    found = off_mesh(np.array(vertices), np.array(triangles), places)
-    assert (found > (10.0 - np.abs(places - 20.0)).min(axis=1) - 1e-9).all()
+    points_ = rng.uniform(11.0, 29.0, (200, 3))
+    distances = off_mesh(np.array(vertices), np.array(triangles), points_)
+    assert (distances > (10.0 - np.abs(points_ - 20.0)).min(axis=1) - 1e-9).all()
 
 
 def touching_boxes(inside_out=()):
-    """27 boxes of 40 mm that touch; those by number in `inside_out` have faces that look inwards."""
+    """Return 27 touching boxes of 40 mm; those numbered in `inside_out` have inward faces."""
     boxes = [
         Part.makeBox(40, 40, 40, Vector(40 * i, 40 * j, 40 * k))
         for i in range(3)
@@ -306,14 +328,15 @@ def test_touching_solids_that_are_inside_out(rng, inside_out):
     """An assembly is a cube of 120 mm, whichever of its solids are inside out."""
     points = rng.uniform(-30.0, 150.0, (300, 3))
     outside = np.linalg.norm(np.maximum(np.maximum(-points, points - 120.0), 0.0), axis=1)
-    found = off_solids(touching_boxes(inside_out), points, 7.6)
+    distances = off_solids(touching_boxes(inside_out), points, 7.6)
     over = outside > 7.7
-    assert found[over] == pytest.approx(outside[over], abs=0.11)
-    assert (found[outside == 0.0] == 0.0).all()
+    assert distances[over] == pytest.approx(outside[over], abs=0.11)
+    assert (distances[outside == 0.0] == 0.0).all()
 
 
 def test_a_kernel_that_is_wrong_about_the_inside(rng, monkeypatch):
-    """The triangles that wind around a place are a second opinion; what is outside stays outside."""
+    """The winding of the triangles around a point is a second opinion; points outside stay
+    outside."""
     points = np.vstack([rng.uniform(45.0, 75.0, (8, 3)), [[60.0, 60.0, 140.0]]])
     monkeypatch.setattr(off_part, "_by_kernel", lambda *_: 20.0)
     assert off_solids(touching_boxes(), points, 7.6).tolist() == [0.0] * 8 + [20.0]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""From the shipped STEP files to layers: the paper's three parts (Chalvin 2020, eqs. 20 to 22, 1 mm layers)."""
+"""The paper's three parts from shipped STEP files to layers (Chalvin 2020, eqs. 20 to 22, 1 mm
+layers)."""
 
 import numpy as np
 import pytest
@@ -58,7 +59,8 @@ def test_the_papers_parts_have_the_papers_layers(root, name, equation, layers, t
     assert not [issue for issue in toolpath.issues if issue.level == "error"]
     for _, _, bead in toolpath:
         radius = np.hypot(bead.points[:, 0], bead.points[:, 1])
-        # across the wall: where it is nearly level, height tells little of radius
+        # measured across the wall, because a nearly level wall makes the radius at a height
+        # uncertain
         slope = np.abs(
             np.gradient(
                 equation(np.clip(bead.points[0, 2] + np.array([-1e-4, 0.0, 1e-4]), 0.0, top)), 1e-4

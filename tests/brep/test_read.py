@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Files in: the good ones whole, the bad ones with a reason, and nothing printed."""
+"""Valid files are read completely, invalid ones give a reason, and nothing is printed."""
 
 import re
 
@@ -34,7 +34,7 @@ def test_shapes_come_back_whole(tmp_path, cone, name):
 
 
 def in_unit(path, cone, factor, name):
-    """Writes a cone whose coordinates are those of mm, in a file that says its unit is another one."""
+    """Write a cone with coordinates in mm to a file that states another unit."""
     cone.exportStep(str(path))
     text = path.read_text()
     (number,) = re.findall(
@@ -65,20 +65,21 @@ def in_unit(path, cone, factor, name):
     ],
 )
 def test_step_files_are_as_large_as_their_unit_says(tmp_path, cone, name, factor):
-    """And the next one, in mm, is as large as it was: the kernel keeps no unit. Headless and from the window alike."""
+    """The next file, in mm, keeps its size too: the kernel remembers no unit, with and without a
+    window."""
     cone.exportStep(str(tmp_path / "mm.step"))
     in_unit(tmp_path / "other.step", cone, factor, name)
     document = FreeCAD.newDocument("Units")
     try:
-        for file, wanted in (("other.step", factor), ("mm.step", 1.0), ("other.step", factor)):
+        for file, scale in (("other.step", factor), ("mm.step", 1.0), ("other.step", factor)):
             for shape in (
                 read_shape(tmp_path / file),
                 api.open_part(document, str(tmp_path / file)).Shape,
             ):
                 box = shape.BoundBox
                 sides = [box.XLength, box.YLength, box.ZLength]
-                assert sides == pytest.approx([40 * wanted, 40 * wanted, 30 * wanted], rel=1e-6)
-                assert shape.Volume == pytest.approx(wanted**3 * cone.Volume, rel=1e-9)
+                assert sides == pytest.approx([40 * scale, 40 * scale, 30 * scale], rel=1e-6)
+                assert shape.Volume == pytest.approx(scale**3 * cone.Volume, rel=1e-9)
     finally:
         FreeCAD.closeDocument(document.Name)
 
@@ -173,8 +174,8 @@ def test_a_folder_is_no_file(tmp_path):
     ("relative", "between"), [(False, " "), (True, " "), (False, " \\\n"), (True, " \\\r\n  ")]
 )
 def test_faces_of_obj_files_with_many_corners_are_read(tmp_path, relative, between):
-    """A prism over a star of 16 corners, of two faces of 16 corners, some sides of four and some of two triangles. FreeCAD
-    leaves out the two, whose lines may go on in the next ones."""
+    """A prism over a star of 16 corners, with two faces of 16 corners and sides of four corners or
+    two triangles. FreeCAD drops the two faces, whose lines may continue on the next ones."""
     count, height = 16, 10.0
     angle, radius = (
         2.0 * np.pi * np.arange(count) / count,

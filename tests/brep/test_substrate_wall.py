@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Walls on substrates: the first layer on both surfaces, by the equations of both, wherever they lie."""
+"""Walls on substrates: the first layer is on both surfaces by their equations, at any location."""
 
 import numpy as np
 import Part
@@ -31,14 +31,14 @@ def pipe(bore=0.0):
     )
 
 
-def placed(shape, place):
+def place_shape(shape, placement_):
     shape = shape.copy()
-    shape.Placement = place.multiply(shape.Placement)
+    shape.Placement = placement_.multiply(shape.Placement)
     return shape
 
 
-def back(points, place):
-    return np.array([tuple(place.inverse().multVec(Vector(*point))) for point in points])
+def back(points, placement_):
+    return np.array([tuple(placement_.inverse().multVec(Vector(*point))) for point in points])
 
 
 @pytest.mark.parametrize("place", PLACES, ids=["as modelled", "anywhere"])
@@ -48,7 +48,7 @@ def test_bend_on_pipe(place, axis, cut):
     face = bend(axis)
     if cut:
         face = face.cut(pipe()).Faces[0]
-    wall = find_wall(placed(face, place), (), placed(pipe(), place))
+    wall = find_wall(place_shape(face, place), (), place_shape(pipe(), place))
     x, y, z = back(wall.first, place).T
     assert np.hypot(x, z) == pytest.approx(PIPE, abs=1e-9)
     assert np.hypot(np.hypot(x + BEND, z) - BEND, y) == pytest.approx(TUBE, abs=1e-9)
@@ -60,8 +60,10 @@ def test_bend_on_pipe(place, axis, cut):
     v = np.unwrap(surface.inverse(wall.first)[1])
     assert abs(v[-1] - v[0]) == pytest.approx(2.0 * np.pi, abs=0.1)
     u, w = np.full(9, 0.3), np.linspace(-3, 3, 9)
-    one, other = surface.inverse(surface.point(u, w))
-    assert one == pytest.approx(u, abs=1e-9) and other == pytest.approx(w, abs=1e-9)
+    first_parameter, second_parameter = surface.inverse(surface.point(u, w))
+    assert first_parameter == pytest.approx(u, abs=1e-9) and second_parameter == pytest.approx(
+        w, abs=1e-9
+    )
 
 
 def test_upper_loop_of_a_hollow_pipe():

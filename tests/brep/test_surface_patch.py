@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A face's surface as a patch: the same points as FreeCAD's own evaluation."""
+"""A patch of a face's surface gives the same points as FreeCAD's own evaluation."""
 
 import FreeCAD
 import numpy as np
@@ -10,7 +10,8 @@ from freecad_am.brep.walls.surface_patch import patch_of
 
 
 def loft():
-    """Periodic in one span, as OpenCASCADE makes a loft of circle and ellipse."""
+    """Return a surface that is periodic in one span, like OpenCASCADE's loft of circle and
+    ellipse."""
     low = Part.Wire([Part.makeCircle(16.0)])
     high = Part.Ellipse(FreeCAD.Vector(0, 0, 40), 28.0, 18.0).toShape()
     return Part.makeLoft([low, Part.Wire([high])], False, False).Faces[0]

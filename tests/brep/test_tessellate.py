@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Solids and meshes as bodies: within the deflection of the true surface, in the coordinates of the document."""
+"""Solids and meshes as bodies: within the deflection of the true surface, in document
+coordinates."""
 
 from types import SimpleNamespace
 
@@ -23,9 +24,9 @@ def solid():
 
 
 def test_triangles_of_a_solid_enclose_it():
-    found = body(solid(), "pipe")
+    solid_body = body(solid(), "pipe")
     corners = np.array(
-        [[tuple(PLACE.inverse().multVec(Vector(*p))) for p in t] for t in found.corners()]
+        [[tuple(PLACE.inverse().multVec(Vector(*p))) for p in t] for t in solid_body.corners()]
     )
     radius = np.hypot(*corners.mean(axis=1)[:, :2].T)
     side = np.ptp(corners[:, :, 2], axis=1) > 1.0
@@ -34,16 +35,16 @@ def test_triangles_of_a_solid_enclose_it():
         np.einsum("ij,ij->i", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])).sum() / 6.0
     )
     assert volume == pytest.approx(solid().Volume, rel=2.0 * DEFLECTION / 32.0)
-    assert found.name == "pipe"
+    assert solid_body.name == "pipe"
 
 
 def test_a_mesh_is_taken_as_it_is():
     points, facets = solid().tessellate(0.5)
-    found = body(Mesh.Mesh((points, facets)), "scan")
+    mesh_body = body(Mesh.Mesh((points, facets)), "scan")
     # a mesh keeps its points in single precision
-    wanted = np.sort(np.array([tuple(point) for point in points]), axis=0)
-    assert np.sort(found.vertices, axis=0) == pytest.approx(wanted, abs=1e-4)
-    assert len(found.triangles) == len(facets)
+    expected = np.sort(np.array([tuple(point) for point in points]), axis=0)
+    assert np.sort(mesh_body.vertices, axis=0) == pytest.approx(expected, abs=1e-4)
+    assert len(mesh_body.triangles) == len(facets)
 
 
 def test_an_edge_is_no_body():
@@ -53,9 +54,10 @@ def test_an_edge_is_no_body():
 
 
 def crossed():
-    """A face that the kernel makes no triangles of, as its edges cross: between two others, and a box."""
+    """Return a face whose edges cross, so that the kernel makes no triangles of it, between two
+    other faces and a box."""
     bow = Part.makePolygon(
-        [Vector(*place) for place in ((0, 0, 0), (9, 9, 0), (9, 0, 0), (0, 9, 0), (0, 0, 0))]
+        [Vector(*corner) for corner in ((0, 0, 0), (9, 9, 0), (9, 0, 0), (0, 9, 0), (0, 0, 0))]
     )
     return Part.makeCompound(
         [
@@ -68,21 +70,21 @@ def crossed():
 
 
 def test_a_face_that_the_kernel_fails_on_has_no_triangles_and_the_others_theirs():
-    found = tessellated(crossed(), 0.05)
+    mesh = tessellated(crossed(), 0.05)
     assert (
-        set(found.owner) == {0, *range(2, 9)}
-        and [len(nodes) > 0 for nodes in found.nodes].count(False) == 1
+        set(mesh.owner) == {0, *range(2, 9)}
+        and [len(nodes) > 0 for nodes in mesh.nodes].count(False) == 1
     )
-    assert np.linalg.norm(
-        found.vertices[found.triangles[found.owner == 0]], axis=2
-    ) == pytest.approx(2.0, abs=1e-6)
-    assert found.vertices[found.triangles[found.owner > 2], 0].min() >= 20.0
+    assert np.linalg.norm(mesh.vertices[mesh.triangles[mesh.owner == 0]], axis=2) == pytest.approx(
+        2.0, abs=1e-6
+    )
+    assert mesh.vertices[mesh.triangles[mesh.owner > 2], 0].min() >= 20.0
     distance, _ = skin(crossed(), "faces").exact(np.array([[22.0, 2.0, 7.5]]))
     assert distance == pytest.approx([1.5])
 
 
 def test_a_face_that_the_kernel_has_failed_on_is_not_asked_for_again(monkeypatch):
-    """Beside a countersink out of a STEP file it took minutes for that, or did not come back."""
+    """The face next to a countersink from a STEP file took minutes each time, or never returned."""
 
     def failed():
         raise RuntimeError("Face has no triangulation")

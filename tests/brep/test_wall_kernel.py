@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes on which the geometry kernel gives up, substrates of solids that touch, layers higher than a tube is round."""
+"""Shapes on which the geometry kernel gives up, substrates of touching solids, layers higher than a
+tube's radius of curvature."""
 
 import numpy as np
 import Part
@@ -44,7 +45,7 @@ def crossing_pipe():
 
 @pytest.mark.parametrize(("make", "is_tube"), [(figure_eight, False), (crossing_pipe, True)])
 def test_walls_that_cross_themselves_are_refused(make, is_tube):
-    """Of skins that are no tubes nothing is said of bends of one."""
+    """The message about bends of a tube does not appear for walls that are no tubes."""
     with pytest.raises(InputError) as caught:
         wall_on(make(), (), slab(), 4.0, "Wall")
     assert caught.value.code == "SELF_INTERSECTION" and caught.value.where.startswith("Wall")
@@ -69,7 +70,7 @@ def fails(*_):
 
 
 def test_faults_of_the_kernel_name_the_part(monkeypatch):
-    monkeypatch.setattr(module, "find_wall", fails)  # then the wall is taken as a sheet
+    monkeypatch.setattr(module, "find_wall", fails)  # then the wall counts as a sheet
     assert isinstance(wall_on(tube(), (), slab(), 4.0, "Wall", "Slab"), PatchWall)
     monkeypatch.setattr(module, "find_patch_wall", fails)
     with pytest.raises(InputError) as caught:
@@ -94,10 +95,10 @@ def test_solids_that_touch_are_grown_on_as_one(split, overlap):
             + Part.makeCylinder(12, 25, Vector(0, 0, 15)).Faces[:1]
         )
     halves = Part.Compound([slab(-50.0, 50.0), slab(-overlap, 50.0 + overlap)])
-    found = wall_on(wall, (), halves, 4.0)
-    assert isinstance(found, PatchWall if split else SurfaceWall)
-    assert not split or len(found.first) == 1
-    points = found.first[0].points if split else found.first
+    wall_found = wall_on(wall, (), halves, 4.0)
+    assert isinstance(wall_found, PatchWall if split else SurfaceWall)
+    assert not split or len(wall_found.first) == 1
+    points = wall_found.first[0].points if split else wall_found.first
     assert np.hypot(points[:, 0], points[:, 1]) == pytest.approx(12.0, abs=1e-9)
     assert points[:, 2] == pytest.approx(0.0, abs=1e-9)
     gaps = np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1)
@@ -106,11 +107,17 @@ def test_solids_that_touch_are_grown_on_as_one(split, overlap):
 
 
 def test_one_of_two_solids_inside_out_is_refused():
-    other = slab(100.0)
-    other.reverse()
-    assert slab().Volume + other.Volume <= 0.0 < Part.Compound([slab(), slab(), other]).Volume
+    second_solid = slab(100.0)
+    second_solid.reverse()
+    assert (
+        slab().Volume + second_solid.Volume
+        <= 0.0
+        < Part.Compound([slab(), slab(), second_solid]).Volume
+    )
     with pytest.raises(InputError) as caught:
-        wall_on(tube(), (), Part.Compound([slab(), slab(60.0, 30.0), other]), 4.0, "Wall", "Slab")
+        wall_on(
+            tube(), (), Part.Compound([slab(), slab(60.0, 30.0), second_solid]), 4.0, "Wall", "Slab"
+        )
     assert (caught.value.code, caught.value.where) == (
         "INSIDE_OUT",
         "Slab",
@@ -155,14 +162,16 @@ SLOPE = np.cos(np.arctan2(10.0, 30.0))
     ids=["cylinder", "torus", "torus inside", "cone", "cone from its wide part"],
 )
 def test_layers_higher_than_a_tube_is_round_are_refused(make, radius):
-    """By the principal radii that geometry books give; on the cone that of its narrower end out of the substrate."""
+    """The limit is the principal radius from geometry books, for the cone that of its narrower end
+    outside the substrate."""
     assert isinstance(wall_on(make(), (), slab(), 0.999 * radius), SurfaceWall)
     with pytest.raises(InputError) as caught:
         wall_on(make(), (), slab(), 1.03 * radius, "Wall")
     assert (caught.value.code, caught.value.where) == ("LAYER_HEIGHT", "Wall Face1")
-    told = float(caught.value.message.split("curvature of the wall, ")[1].split(" mm")[0])
+    stated_radius = float(caught.value.message.split("curvature of the wall, ")[1].split(" mm")[0])
     assert (
-        told == pytest.approx(radius, rel=0.02) and f"{1.03 * radius:g} mm" in caught.value.message
+        stated_radius == pytest.approx(radius, rel=0.02)
+        and f"{1.03 * radius:g} mm" in caught.value.message
     )
 
 
@@ -176,7 +185,7 @@ def test_a_waist_of_a_loft_is_told_with_its_place():
 
 
 def rod_of_two():
-    """A solid rod: a cylinder that flares, both of it one wall."""
+    """Return a solid rod, a cylinder with a flared end, which is one wall."""
     outline = [Vector(0, 0, -5), Vector(12, 0, -5), Vector(12, 0, 20)]
     arc = Part.Arc(
         Vector(12, 0, 20),
@@ -198,8 +207,8 @@ def test_of_a_solid_the_faces_that_are_not_flat_are_the_wall_where_that_is_clear
     ]
     assert rod.isValid() and rod.Solids and len(curved) == 2
     assert [name for name, _ in module.named_faces(rod, (), "Rod")] == curved
-    found = wall_on(rod, (), slab(), 3.0)
-    assert isinstance(found, PatchWall) and sorted(found.faces) == curved
+    wall_found = wall_on(rod, (), slab(), 3.0)
+    assert isinstance(wall_found, PatchWall) and sorted(wall_found.faces) == curved
 
 
 def rounded_box():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is not a wall of revolution, and how that is said."""
+"""Shapes that are not walls of revolution are rejected with a reason."""
 
 import math
 import re
@@ -16,11 +16,11 @@ ORIGIN, Z = Vector(), Vector(0, 0, 1)
 TUBE = Part.makeCylinder(10, 30).cut(Part.makeCylinder(8, 30))
 
 
-def refused(shape, *args, **more):
-    with pytest.raises(InputError) as found:
-        find_wall(shape, *args, **more)
-    assert found.value.exit_status == 2
-    return found.value
+def refused(shape, *args, **options):
+    with pytest.raises(InputError) as error_info:
+        find_wall(shape, *args, **options)
+    assert error_info.value.exit_status == 2
+    return error_info.value
 
 
 def elliptic(stretch):
@@ -35,9 +35,9 @@ def test_an_elliptic_cylinder_is_refused_by_face_and_deviation(stretch):
     error = refused(elliptic(stretch), label="Pipe")
     assert error.code == "NOT_REVOLUTION"
     assert error.where == "Pipe Face1"
-    told = float(re.search(r"([\d.]+) mm off", error.message).group(1))
-    # radii reach from 10 to 10 * stretch; what is told is measured from one meridian
-    assert 0.4 * 10.0 * (stretch - 1.0) < told < 1.01 * 10.0 * (stretch - 1.0)
+    stated_deviation = float(re.search(r"([\d.]+) mm off", error.message).group(1))
+    # radii range from 10 to 10 * stretch; the stated deviation is relative to one meridian
+    assert 0.4 * 10.0 * (stretch - 1.0) < stated_deviation < 1.01 * 10.0 * (stretch - 1.0)
 
 
 def test_a_stretch_within_the_tolerance_is_no_matter():
@@ -70,8 +70,8 @@ def test_a_slanted_end_is_refused():
     cutter.rotate(Vector(0, 0, 20), Vector(0, 1, 0), 10)
     error = refused(Part.makeCylinder(10, 40).cut(cutter).Faces[0])
     assert error.code == "NOT_REVOLUTION"
-    told = float(re.search(r"([\d.]+) mm off", error.message).group(1))
-    assert told == pytest.approx(20.0 * math.tan(math.radians(10.0)), rel=0.05)
+    stated_deviation = float(re.search(r"([\d.]+) mm off", error.message).group(1))
+    assert stated_deviation == pytest.approx(20.0 * math.tan(math.radians(10.0)), rel=0.05)
 
 
 @pytest.mark.parametrize(
@@ -107,8 +107,8 @@ def test_unknown_faces_are_named():
 
 def test_faces_that_do_not_join_are_named():
     edges = [Part.makeLine(Vector(r, 0, h), Vector(r, 0, h + 5)) for r, h in ((10, 0), (3, 9))]
-    apart = Part.makeCompound([edge.revolve(ORIGIN, Z, 360) for edge in edges])
-    error = refused(apart)
+    separate_faces = Part.makeCompound([edge.revolve(ORIGIN, Z, 360) for edge in edges])
+    error = refused(separate_faces)
     assert error.code == "NO_WALL"
     assert "Face1 and Face2" in error.message
 
@@ -133,9 +133,11 @@ def test_faces_that_turn_differently_are_named():
 
 def test_a_ring_with_two_openings_is_refused():
     line = Part.makeLine(Vector(10, 0, 0), Vector(10, 0, 5))
-    other = line.revolve(ORIGIN, Z, 90)
-    other.rotate(ORIGIN, Z, 180)
-    assert "opening" in refused(Part.makeCompound([line.revolve(ORIGIN, Z, 90), other])).message
+    second_face = line.revolve(ORIGIN, Z, 90)
+    second_face.rotate(ORIGIN, Z, 180)
+    assert (
+        "opening" in refused(Part.makeCompound([line.revolve(ORIGIN, Z, 90), second_face])).message
+    )
 
 
 def test_wires_that_cross_or_leave_the_plane_of_the_axis_are_refused():

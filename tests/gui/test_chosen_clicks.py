@@ -9,7 +9,7 @@ import pytest
 
 from freecad_am import api
 from tests.objects.test_chosen import numbered
-from tests.objects.test_chosen_edges import in_another_order, of_axis
+from tests.objects.test_chosen_edges import axis_case, in_another_order
 
 pytestmark = pytest.mark.usefixtures("person")
 
@@ -35,7 +35,7 @@ def curves(doc):
 
 
 def turned(doc):
-    block, feature, _, name, _ = of_axis(doc, None)
+    block, feature, _, name, _ = axis_case(doc, None)
     block.Shape = in_another_order(block.Shape, name, random.Random(2))[0]
     return feature, "LayerHeight", "8 mm"
 

@@ -12,12 +12,12 @@ LABEL = "Hémisphère n° 1"
 
 
 def sphere(doc, radius=45.0):
-    """A parametric hemisphere whose label has blanks and accents."""
-    part = doc.addObject("Part::Sphere", "Sphere")
-    part.Label = LABEL
-    part.Radius, part.Angle1, part.Angle2 = radius, 0, 90
+    """Return a parametric hemisphere whose label has blanks and accents."""
+    sphere_object = doc.addObject("Part::Sphere", "Sphere")
+    sphere_object.Label = LABEL
+    sphere_object.Radius, sphere_object.Angle1, sphere_object.Angle2 = radius, 0, 90
     doc.recompute()
-    return part
+    return sphere_object
 
 
 @pytest.fixture
@@ -27,7 +27,7 @@ def part(doc):
 
 @pytest.fixture
 def job(doc, part):
-    """All stages, few layers; planned for the first test that asks for it."""
+    """Return all stages with few layers, planned for the first test that needs them."""
     with plans.share_plans():
         cell = api.make_cell(doc, limits="paper")
         feature = api.make_feature(doc, part, layer_height=10)

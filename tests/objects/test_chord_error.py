@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The chord error of features that name none: by size and bead, kept where it is given or saved."""
+"""Features without a chord error get one from size and bead; given and saved values stay."""
 
 import FreeCAD as App
 import Part
@@ -13,11 +13,11 @@ from freecad_am.core.parameters.strategy import scaled
 @pytest.fixture
 def block():
     document = App.newDocument()
-    part = document.addObject("Part::Feature", "Block")
+    block_object = document.addObject("Part::Feature", "Block")
 
     def sized(length):
-        part.Shape = Part.makeBox(length, 20, 4)
-        return part
+        block_object.Shape = Part.makeBox(length, 20, 4)
+        return block_object
 
     yield sized
     App.closeDocument(document.Name)
@@ -44,51 +44,55 @@ def test_it_grows_with_part_and_bead(extent, bead, chord_error):
 
 
 def test_small_parts_keep_it_and_large_ones_say_so(block):
-    part = block(250)
-    small = api.make_solid_feature(part.Document, part, layer_height=2)
+    large_block = block(250)
+    small = api.make_solid_feature(large_block.Document, large_block, layer_height=2)
     assert float(small.ChordError) == 0.01 and "CHORD_ERROR" not in codes(small)
-    large = api.make_solid_feature(part.Document, block(500), layer_height=2)
+    large = api.make_solid_feature(large_block.Document, block(500), layer_height=2)
     assert float(large.ChordError) == pytest.approx(0.05) and "CHORD_ERROR" in codes(large)
-    assert api.result(api.make_toolpath(part.Document, large)).chord_error == pytest.approx(0.05)
-    wall = api.make_surface_feature(part.Document, part, ["Face1"], layer_height=1)
+    assert api.result(api.make_toolpath(large_block.Document, large)).chord_error == pytest.approx(
+        0.05
+    )
+    wall = api.make_surface_feature(large_block.Document, large_block, ["Face1"], layer_height=1)
     assert float(wall.ChordError) == 0.01, "the chosen face is 20 mm long"
 
 
 def test_a_datum_plane_in_the_container_does_not_count(block):
-    """FreeCAD has the unbounded face of a datum plane in the shape of a container."""
-    part = block(100)
-    part.Shape = Part.Compound([part.Shape, Part.Plane().toShape()])
-    feature = api.make_solid_feature(part.Document, part, layer_height=2)
+    """FreeCAD includes the unbounded face of a datum plane in the shape of a container."""
+    block_object = block(100)
+    block_object.Shape = Part.Compound([block_object.Shape, Part.Plane().toShape()])
+    feature = api.make_solid_feature(block_object.Document, block_object, layer_height=2)
     assert float(feature.ChordError) == 0.01 and "CHORD_ERROR" not in codes(feature)
 
 
 @pytest.mark.parametrize("given", ["keyword", "dataclass"])
 def test_a_given_value_stays(block, given):
-    part = block(500)
-    more = (
+    block_object = block(500)
+    options = (
         {"chord_error": 0.01}
         if given == "keyword"
         else {"strategy": SolidParameters(chord_error=0.01)}
     )
-    feature = api.make_solid_feature(part.Document, part, **more)
+    feature = api.make_solid_feature(block_object.Document, block_object, **options)
     assert float(feature.ChordError) == 0.01 and "CHORD_ERROR" not in codes(feature)
-    part.Shape = Part.makeBox(900, 20, 4)
+    block_object.Shape = Part.makeBox(900, 20, 4)
     api.recompute(feature)
     assert float(feature.ChordError) == 0.01
 
 
 def test_a_default_dataclass_leaves_it_out(block):
-    part = block(500)
-    feature = api.make_solid_feature(part.Document, part, strategy=SolidParameters(layer_height=2))
+    block_object = block(500)
+    feature = api.make_solid_feature(
+        block_object.Document, block_object, strategy=SolidParameters(layer_height=2)
+    )
     assert float(feature.ChordError) == pytest.approx(0.05)
 
 
 def test_turning_triangles_into_view_changes_nothing(block):
-    part = block(10)
-    part.Shape = Part.makeCylinder(130, 4)
-    before = api.make_solid_feature(part.Document, part, layer_height=2)
-    shape = part.Shape.copy()
+    block_object = block(10)
+    block_object.Shape = Part.makeCylinder(130, 4)
+    feature = api.make_solid_feature(block_object.Document, block_object, layer_height=2)
+    shape = block_object.Shape.copy()
     shape.tessellate(20.0)
-    part.Shape = shape
-    after = api.make_solid_feature(part.Document, part, layer_height=2)
-    assert float(before.ChordError) == float(after.ChordError) == 0.01
+    block_object.Shape = shape
+    second_feature = api.make_solid_feature(block_object.Document, block_object, layer_height=2)
+    assert float(feature.ChordError) == float(second_feature.ChordError) == 0.01

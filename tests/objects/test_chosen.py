@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faces that are numbered anew when a part changes, and faces that only move with it."""
+"""Faces that get new numbers when a part changes are reported; faces that only move are not."""
 
 import contextlib
 import json
@@ -30,14 +30,14 @@ def block(doc, shape):
 
 
 def put(obj, shape):
-    place = obj.Placement
+    placement = obj.Placement
     obj.Shape = shape
-    obj.Placement = place
+    obj.Placement = placement
     api.recompute(obj.Document)
 
 
 def numbered(shape, order):
-    """The same solid with its faces in another order."""
+    """Return the same solid with its faces in another order."""
     return Part.Solid(Part.Shell([shape.Faces[k] for k in order]))
 
 
@@ -47,28 +47,28 @@ def test_another_number_of_the_chosen_face_is_told(doc, seed):
     shape = Part.makeBox(40, 30, 20).cut(Part.makeCylinder(5, 20, App.Vector(20, 15, 0)))
     obj, count = block(doc, shape), len(shape.Faces)
     flat = [k for k, face in enumerate(shape.Faces) if face.Surface.TypeId == "Part::GeomPlane"]
-    chosen = draw.choice(flat)
-    feature = api.make_cladding_feature(doc, obj, [f"Face{chosen + 1}"], **COARSE)
+    face_index = draw.choice(flat)
+    feature = api.make_cladding_feature(doc, obj, [f"Face{face_index + 1}"], **COARSE)
     assert feature.Status == "up to date" and warnings(feature) == []
     while True:
         order = draw.sample(range(count), count)
-        if order.index(chosen) != chosen and order[chosen] in flat:
+        if order.index(face_index) != face_index and order[face_index] in flat:
             break
     put(obj, numbered(shape, order))
-    (said,) = warnings(feature)
-    wanted = f"Face{chosen + 1} of Block is not the selected face: that face is Face{order.index(chosen) + 1} now"
-    assert wanted in said
+    (warning,) = warnings(feature)
+    expected = f"Face{face_index + 1} of Block is not the selected face: that face is Face{order.index(face_index) + 1} now"
+    assert expected in warning
     obj.Placement = App.Placement()
     api.recompute(doc)
-    assert len(warnings(feature)) == 1  # until they are chosen again
-    feature.Source = (obj, [f"Face{order.index(chosen) + 1}"])
+    assert len(warnings(feature)) == 1  # until the user selects them again
+    feature.Source = (obj, [f"Face{order.index(face_index) + 1}"])
     api.recompute(doc)
     assert warnings(feature) == []
     middle = obj.Shape.getElement(feature.Source[1][0]).CenterOfMass
     put(obj, shape)
     (name,) = feature.Source[1]
     followed = (
-        name == f"Face{chosen + 1}"
+        name == f"Face{face_index + 1}"
         and (obj.Shape.getElement(name).CenterOfMass - middle).Length < 1e-6
     )
     assert len(warnings(feature)) == (
@@ -77,7 +77,7 @@ def test_another_number_of_the_chosen_face_is_told(doc, seed):
 
 
 def test_a_feature_that_fails_for_another_face_tells_both(doc):
-    """Its own error, and that the face is not the one that was chosen, which is why."""
+    """The message has the feature's own error and its cause: the face is not the selected one."""
     shape = Part.makeBox(60, 60, 5).fuse(Part.makeCylinder(20, 40, App.Vector(30, 30, 5)))
     side = next(
         k for k, face in enumerate(shape.Faces) if face.Surface.TypeId == "Part::GeomCylinder"
@@ -89,15 +89,17 @@ def test_a_feature_that_fails_for_another_face_tells_both(doc):
     order[side], order[walls[0]] = walls[0], side
     with pytest.raises(InputError) as caught:
         put(obj, numbered(shape, order))
-    error, there = caught.value, walls[0] + 1
+    error, new_number = caught.value, walls[0] + 1
     assert error.code not in ("FACES_CHANGED", "BAD_FACES") and feature.Status == "failed"
-    wanted = f"Face{side + 1} of Block is not the selected face: that face is Face{there} now"
-    assert (
-        wanted in error.message
-        and not error.message.startswith(wanted)
-        and wanted in feature.Message
+    expected = (
+        f"Face{side + 1} of Block is not the selected face: that face is Face{new_number} now"
     )
-    feature.Source = (obj, [f"Face{there}"])
+    assert (
+        expected in error.message
+        and not error.message.startswith(expected)
+        and expected in feature.Message
+    )
+    feature.Source = (obj, [f"Face{new_number}"])
     api.recompute(doc)
     assert (feature.Status, feature.Message) == ("up to date", "")
 
@@ -110,17 +112,17 @@ def test_another_kind_of_surface_is_told_until_the_face_is_confirmed(doc, tmp_pa
     round_ = Part.makeCone(30, 18, 40).Faces[0]
     faces = [face for k, face in enumerate(Part.makeBox(90, 80, 70).Faces) if k != top]
     put(obj, Part.makeCompound([*faces[:top], round_, *faces[top:]]))
-    (said,) = warnings(feature)
-    assert f"Face{top + 1} of Block was a plane when selected and is a cone now" in said
+    (warning,) = warnings(feature)
+    assert f"Face{top + 1} of Block was a plane when selected and is a cone now" in warning
     doc.saveAs(str(tmp_path / "block.FCStd"))
     App.closeDocument(doc.Name)
     again = App.openDocument(str(tmp_path / "block.FCStd"))
     try:
         feature = again.Feature
-        assert warnings(feature) == [said]
+        assert warnings(feature) == [warning]
         api.change(feature, layers=2)
         api.recompute(again)
-        assert warnings(feature) == [said]
+        assert warnings(feature) == [warning]
         api.change(feature, source=again.Block, faces=[f"Face{top + 1}"])
         assert warnings(feature) == []
         api.change(feature, layers=1)
@@ -145,47 +147,47 @@ def test_a_part_that_grows_or_moves_has_the_same_faces(doc):
 
 @pytest.mark.parametrize("face", range(1, 7))
 def test_a_fillet_that_numbers_faces_anew(doc, face):
-    """As designers do it: an edge of a block is rounded later on, which trims some faces, and numbers some anew."""
+    """A designer rounds an edge of a block later, which trims some faces and renumbers others."""
     box = doc.addObject("Part::Box", "Box")
     box.Length, box.Width, box.Height = 40, 30, 20
     doc.recompute()
-    part = block(doc, box.Shape)
-    chosen = box.Shape.getElement(f"Face{face}").normalAt(0, 0)
-    feature = api.make_cladding_feature(doc, part, [f"Face{face}"], **COARSE)
-    others = 0
+    block_object = block(doc, box.Shape)
+    normal = box.Shape.getElement(f"Face{face}").normalAt(0, 0)
+    feature = api.make_cladding_feature(doc, block_object, [f"Face{face}"], **COARSE)
+    change_count = 0
     for edge in box.Shape.Edges[face % 2 :: 2]:
-        put_quietly(part, box.Shape.makeFillet(3.0, [edge]))
+        put_quietly(block_object, box.Shape.makeFillet(3.0, [edge]))
         if feature.Source[1][0].startswith(
             "?"
-        ):  # FreeCAD 1.0 and later say themselves that it is lost
-            others += 1
+        ):  # FreeCAD 1.0 and later report the lost face themselves
+            change_count += 1
             assert feature.Status == "failed" and f"Face{face} no longer exists" in feature.Message
-            put_quietly(part, box.Shape)
-            api.change(feature, source=part, faces=[f"Face{face}"])
+            put_quietly(block_object, box.Shape)
+            api.change(feature, source=block_object, faces=[f"Face{face}"])
             continue
-        now = part.Shape.getElement(feature.Source[1][0])
-        lies = part.Placement.inverse().Rotation.multVec(now.normalAt(0, 0))
-        right = now.Surface.TypeId == "Part::GeomPlane" and (lies - chosen).Length < 1e-6
-        others += not right
+        now = block_object.Shape.getElement(feature.Source[1][0])
+        lies = block_object.Placement.inverse().Rotation.multVec(now.normalAt(0, 0))
+        right = now.Surface.TypeId == "Part::GeomPlane" and (lies - normal).Length < 1e-6
+        change_count += not right
         assert len(warnings(feature)) == (0 if right else 1)
         assert feature.Source[1] == [f"Face{face}"] or right
-        put(part, box.Shape)
-        assert warnings(feature) == []  # what was chosen is not forgotten meanwhile
-    assert others > 0 or App.Version()[0] != "0"
+        put(block_object, box.Shape)
+        assert warnings(feature) == []  # the selection is remembered in the meantime
+    assert change_count > 0 or App.Version()[0] != "0"
 
 
 def test_faces_that_only_change_places_or_stand_farther_apart_are_those_that_were_chosen(doc):
     tube = Part.makeCylinder(20, 30)
-    part = block(doc, tube)
+    block_object = block(doc, tube)
     kinds = {face.Surface.TypeId: k for k, face in enumerate(tube.Faces, 1)}
-    both = [f"Face{kinds['Part::GeomCylinder']}", f"Face{kinds['Part::GeomPlane']}"]
-    feature = api.make_cladding_feature(doc, part, both[:1], **COARSE)
-    feature.Source = (part, both)
+    names_ = [f"Face{kinds['Part::GeomCylinder']}", f"Face{kinds['Part::GeomPlane']}"]
+    feature = api.make_cladding_feature(doc, block_object, names_[:1], **COARSE)
+    feature.Source = (block_object, names_)
     order = list(range(3))
-    k, n = (int(name[4:]) - 1 for name in both)
+    k, n = (int(name[4:]) - 1 for name in names_)
     order[k], order[n] = order[n], order[k]
     api.recompute(doc)
-    put_quietly(part, numbered(tube, order))
+    put_quietly(block_object, numbered(tube, order))
     assert warnings(feature) == []
     pattern = block(
         doc, Part.makeCompound([Part.makeBox(8, 8, 8, App.Vector(10 * x, 0, 0)) for x in range(4)])
@@ -206,7 +208,7 @@ def test_a_face_that_a_fillet_beside_it_makes_smaller_and_gives_another_number_i
         .removeSplitter()
     )
     obj = doc.addObject("Part::Feature", "Steps")
-    told = 0
+    report_count = 0
     for k, n in ((9, 12), (9, 2), (10, 18), (9, 14)):
         obj.Shape = steps
         doc.recompute()
@@ -214,14 +216,12 @@ def test_a_face_that_a_fillet_beside_it_makes_smaller_and_gives_another_number_i
         obj.Shape = rounded = steps.makeFillet(2, [steps.Edges[n - 1]])
         with contextlib.suppress(AmError):
             api.recompute(doc)
-        name, chosen = feature.Source[1][0], steps.Faces[k - 1]
-        right = (
-            name.startswith("?") or rounded.getElement(name).common(chosen).Area > 0.5 * chosen.Area
-        )
+        name, face = feature.Source[1][0], steps.Faces[k - 1]
+        right = name.startswith("?") or rounded.getElement(name).common(face).Area > 0.5 * face.Area
         assert len(warnings(feature)) == (not right), (k, n)
-        told += not right
+        report_count += not right
         doc.removeObject(feature.Name)
-    assert told > 2 or App.Version()[0] != "0"
+    assert report_count > 2 or App.Version()[0] != "0"
 
 
 def put_quietly(obj, shape):
@@ -231,11 +231,11 @@ def put_quietly(obj, shape):
 
 def test_what_was_chosen_is_remembered_while_it_is_gone(doc):
     shape = Part.makeBox(40, 30, 20)
-    part = block(doc, shape)
-    feature = api.make_cladding_feature(doc, part, ["Face6"], **COARSE)
-    put_quietly(part, Part.makeCompound(shape.Faces[:5]))
-    feature.Source = (part, ["Face6"])
-    put_quietly(part, numbered(shape, [5, 0, 1, 2, 3, 4]))
+    block_object = block(doc, shape)
+    feature = api.make_cladding_feature(doc, block_object, ["Face6"], **COARSE)
+    put_quietly(block_object, Part.makeCompound(shape.Faces[:5]))
+    feature.Source = (block_object, ["Face6"])
+    put_quietly(block_object, numbered(shape, [5, 0, 1, 2, 3, 4]))
     assert len(warnings(feature)) == 1 or feature.Source[1] != ["Face6"]
 
 

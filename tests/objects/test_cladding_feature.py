@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cladding in documents: made by the macro interface, saved, opened, changed; a few layers measured by formulas."""
+"""Cladding in documents, made by the macro interface, saved, opened and changed; formulas give the
+positions of a few layers."""
 
 import FreeCAD as App
 import numpy as np
@@ -26,14 +27,15 @@ def cone(doc):
 
 
 def heights(toolpath):
-    """How far (n,) mm the points of a toolpath are off the cone, and how many layer heights (n,) they should be."""
+    """Return the distance (n,) in mm of the points of a toolpath from the cone, and their expected
+    distance in layer heights (n,)."""
     points = np.vstack([bead.points for _, _, bead in toolpath])
     layer = np.concatenate([np.full(len(bead), i) for i, _, bead in toolpath])
     slope = np.arctan(12.0 / 40.0)
-    away = (np.hypot(points[:, 0], points[:, 1]) - 30.0) * np.cos(slope) + points[:, 2] * np.sin(
-        slope
-    )
-    return away, 2.0 * layer
+    distances = (np.hypot(points[:, 0], points[:, 1]) - 30.0) * np.cos(slope) + points[
+        :, 2
+    ] * np.sin(slope)
+    return distances, 2.0 * layer
 
 
 def test_a_feature_is_saved_and_changed(doc, cone, tmp_path):
@@ -42,8 +44,8 @@ def test_a_feature_is_saved_and_changed(doc, cone, tmp_path):
     assert (feature.Status, feature.CladFaces) == ("up to date", [side])
     assert feature.CladArea.Value == pytest.approx(obj.Shape.getElement(side).Area, rel=1e-3)
     toolpath = api.make_toolpath(doc, feature)
-    away, wanted = heights(api.result(toolpath))
-    np.testing.assert_allclose(away, wanted, atol=1e-6)
+    distances, layer_heights = heights(api.result(toolpath))
+    np.testing.assert_allclose(distances, layer_heights, atol=1e-6)
     assert (
         api.result(toolpath).family == "cladding" and api.result(toolpath).checks.unsupported == 0.0
     )
@@ -56,9 +58,9 @@ def test_a_feature_is_saved_and_changed(doc, cone, tmp_path):
         assert len(api.result(again.getObject("Toolpath")).layers) == 2
         api.change(same, layers=3)
         api.recompute(again)
-        away, wanted = heights(api.result(again.getObject("Toolpath")))
-        np.testing.assert_allclose(away, wanted, atol=1e-6)
-        assert wanted.max() == 4.0
+        distances, layer_heights = heights(api.result(again.getObject("Toolpath")))
+        np.testing.assert_allclose(distances, layer_heights, atol=1e-6)
+        assert layer_heights.max() == 4.0
     finally:
         App.closeDocument(again.Name)
 
@@ -69,6 +71,6 @@ def test_a_closed_mesh_and_an_edge_are_refused(doc, cone):
     scan = doc.addObject("Mesh::Feature", "Scan")
     scan.Mesh = Mesh.Mesh(cone[0].Shape.tessellate(0.5))
     for source, names, code in ((scan, [], "NO_FACES"), (cone[0], ["Edge1"], "BAD_FACES")):
-        with pytest.raises(InputError) as told:
+        with pytest.raises(InputError) as error_info:
             api.make_cladding_feature(doc, source, names, **COARSE)
-        assert told.value.code == code
+        assert error_info.value.code == code

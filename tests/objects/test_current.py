@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Nothing is written of a result that does not fit the document as it is now, by none of the functions that write."""
+"""No function that writes files writes a result that does not fit the current document."""
 
 import FreeCAD as App
 import pytest
@@ -27,31 +27,31 @@ WRITERS = {
 
 
 def write(name, job, folder):
-    """Let one function write; whether it wrote or made anything."""
+    """Let one function write, and return whether it wrote or created anything."""
     folder.mkdir(exist_ok=True)
-    before = len(job.doc.Objects)
+    object_count = len(job.doc.Objects)
     try:
         WRITERS[name](job, folder)
     except InputError as error:
         if error.code == "NO_MODULE":
             pytest.skip("this FreeCAD lacks the other workbench")
         assert error.code in ("NO_RESULT", "NO_PROGRAM") and "recompute" in str(error)
-        assert not list(folder.rglob("*")) and len(job.doc.Objects) == before
+        assert not list(folder.rglob("*")) and len(job.doc.Objects) == object_count
         return False
     return True
 
 
 @pytest.fixture
 def nested(doc):
-    """A job of a box in a part in a part."""
+    """Return a job of a box in a part in a part."""
     inner, outer = doc.addObject("App::Part", "Inner"), doc.addObject("App::Part", "Outer")
-    part = doc.addObject("Part::Box", "Box")
-    part.Length, part.Width, part.Height = 40, 20, 8
-    inner.addObject(part)
+    box = doc.addObject("Part::Box", "Box")
+    box.Length, box.Width, box.Height = 40, 20, 8
+    inner.addObject(box)
     outer.addObject(inner)
     doc.recompute()
-    feature = api.make_solid_feature(doc, part, layer_height=4)
-    return doc, inner, outer, part, feature, api.make_toolpath(doc, feature)
+    feature = api.make_solid_feature(doc, box, layer_height=4)
+    return doc, inner, outer, box, feature, api.make_toolpath(doc, feature)
 
 
 @pytest.mark.parametrize("name", WRITERS)
@@ -65,7 +65,8 @@ def test_a_part_that_was_changed_and_not_recomputed(job, tmp_path, name):
 
 @pytest.mark.parametrize("name", WRITERS)
 def test_changes_that_freecad_tells_nobody_of(job, tmp_path, name):
-    # as of objects that are frozen: FreeCAD 1.0 changes their shape, and tells neither observers nor what follows
+    # like frozen objects: FreeCAD 1.0 changes their shape and notifies neither observers nor
+    # dependants
     lowest = api.result(job.toolpath).layers[0].beads[0].points[:, 2].min()
     App.removeDocumentObserver(staleness.document_observer())
     try:
@@ -100,19 +101,19 @@ def test_a_container_that_was_moved(nested, tmp_path, which):
 
 def test_a_neighbour_in_the_container_makes_nothing_stale(nested):
     doc, inner, _, _, feature, toolpath = nested
-    other = doc.addObject("Part::Cylinder", "Other")
-    inner.addObject(other)
+    neighbour = doc.addObject("Part::Cylinder", "Other")
+    inner.addObject(neighbour)
     doc.recompute()
-    other.Radius = 3
-    other.Placement.Base = App.Vector(50, 0, 0)
+    neighbour.Radius = 3
+    neighbour.Placement.Base = App.Vector(50, 0, 0)
     assert [feature.Status, toolpath.Status] == [OK, OK]
 
 
 def test_a_part_that_leaves_its_container(nested, tmp_path):
-    doc, inner, _, part, _, toolpath = nested
+    doc, inner, _, box, _, toolpath = nested
     inner.Placement.Base = App.Vector(0, 0, 25)
     doc.recompute()
-    inner.removeObject(part)
+    inner.removeObject(box)
     with pytest.raises(InputError, match="recompute"):
         api.export_wires(toolpath, str(tmp_path / "w.dxf"))
     doc.recompute()
@@ -153,12 +154,12 @@ def test_an_opened_document_is_up_to_date(nested, tmp_path):
 
 
 def test_a_linked_document_that_was_changed(tmp_path):
-    other, doc = App.newDocument("Linked"), App.newDocument("Linking")
+    linked_document, doc = App.newDocument("Linked"), App.newDocument("Linking")
     try:
-        box = other.addObject("Part::Box", "Box")
+        box = linked_document.addObject("Part::Box", "Box")
         box.Length, box.Width, box.Height = 40, 20, 8
-        other.recompute()
-        other.saveAs(str(tmp_path / "linked.FCStd"))
+        linked_document.recompute()
+        linked_document.saveAs(str(tmp_path / "linked.FCStd"))
         doc.saveAs(str(tmp_path / "linking.FCStd"))
         link = doc.addObject("App::Link", "Link")
         link.setLink(box)
@@ -168,18 +169,18 @@ def test_a_linked_document_that_was_changed(tmp_path):
         assert toolpath.Status == STALE
         with pytest.raises(InputError, match="recompute"):
             api.export_wires(toolpath, str(tmp_path / "w.dxf"))
-        other.recompute()
+        linked_document.recompute()
         doc.recompute()
         assert toolpath.Status == OK
         points = api.result(toolpath).layers[0].beads[0].points
         assert points[:, 0].max() - points[:, 0].min() > 44.0
     finally:
         App.closeDocument(doc.Name)
-        App.closeDocument(other.Name)
+        App.closeDocument(linked_document.Name)
 
 
 def test_a_stage_that_freecad_leaves_out(job, tmp_path):
-    """As it does with frozen objects: the export names the first one, and what to do."""
+    """FreeCAD skips frozen objects; the export names the first one and the remedy."""
     doc = job.doc
     job.feature.LayerHeight = 4.0
     doc.recompute([job.feature])

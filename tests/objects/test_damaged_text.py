@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A text that says something else than the plan is not a program: none is made, stored, exported or kept under its name."""
+"""If a text differs from the plan, no program is made, stored, exported or kept under its name."""
 
 import re
 
@@ -12,41 +12,41 @@ from freecad_am.posts.fanuc import post as fanuc
 DAMAGES = {
     "an angle": (
         rb"(J1=\s*)(-?\d+)\.",
-        lambda found: found[1] + str(int(found[2]) + 1).encode() + b".",
+        lambda match: match[1] + str(int(match[2]) + 1).encode() + b".",
     ),
-    "a stop": (rb"FINE", lambda found: b"CNT50"),
-    "an output": (rb"DO\[1\]=ON", lambda found: b"DO[1]=OFF"),
+    "a stop": (rb"FINE", lambda match: b"CNT50"),
+    "an output": (rb"DO\[1\]=ON", lambda match: b"DO[1]=OFF"),
 }
 
 
 @pytest.fixture(params=DAMAGES)
 def damaged(request, monkeypatch):
-    """The post writes one thing else than it is given, once, in the first file that has it."""
-    write, (pattern, other) = fanuc.write, DAMAGES[request.param]
+    """Make the post write one statement wrong, once, in the first file that has it."""
+    write, (pattern, replacement) = fanuc.write, DAMAGES[request.param]
 
     def wrong(program):
         files = write(program)
         name = next(name for name in sorted(files) if re.search(pattern, files[name]))
-        return {**files, name: re.sub(pattern, other, files[name], count=1)}
+        return {**files, name: re.sub(pattern, replacement, files[name], count=1)}
 
     monkeypatch.setattr(fanuc, "write", wrong)
     return request.param
 
 
 def test_no_program_is_made_of_it(job, damaged):
-    before = {obj.Name for obj in job.doc.Objects}
-    with pytest.raises(InfeasibleError) as told:
+    object_names = {obj.Name for obj in job.doc.Objects}
+    with pytest.raises(InfeasibleError) as error_info:
         api.make_program(job.doc, job.joint_path, name="again")
-    assert told.value.code == "NOT_VERIFIED"
-    errors = [issue.code for issue in told.value.issues if issue.level == "error"]
+    assert error_info.value.code == "NOT_VERIFIED"
+    errors = [issue.code for issue in error_info.value.issues if issue.level == "error"]
     assert errors and all(code.startswith("VERIFY_") for code in errors)
-    assert {obj.Name for obj in job.doc.Objects} == before
+    assert {obj.Name for obj in job.doc.Objects} == object_names
 
 
 def test_an_existing_program_is_not_given_out_any_more(job, damaged, tmp_path):
     with pytest.raises(InfeasibleError):
         api.recompute(job.program, force=True)
     assert job.program.Status == "infeasible"
-    with pytest.raises(InputError) as told:
+    with pytest.raises(InputError) as error_info:
         api.export(job.program, str(tmp_path))
-    assert told.value.code == "NO_PROGRAM" and list(tmp_path.iterdir()) == []
+    assert error_info.value.code == "NO_PROGRAM" and list(tmp_path.iterdir()) == []

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What documents do to stages: saving, opening, undo, copies, old files."""
+"""Stages survive saving, opening, undo, copies, and opening of old files."""
 
 import dataclasses
 import hashlib
@@ -14,7 +14,8 @@ import pytest
 from freecad_am import api
 from freecad_am.objects.results import fingerprints, store
 
-# results stored as they were before: row by row, each number a float; and fingerprints of what was read of them then
+# results in an earlier storage format, row by row with each number a float, and fingerprints of
+# their values when read then
 ROWS = Path(__file__).parent / "data" / "rows.FCStd"
 IN_ROWS = {
     "Cell": "81db9bf2322c92a4d332aa3bfe226a39475f84164835c40f40eaf82b52b94d14",
@@ -23,8 +24,8 @@ IN_ROWS = {
     "JointPath": "89d1a7bc3fce44748769bced321dbb314ee43ee37c1a03fb3a6cbe6822ce9d67",
     "Program": "c68b97f6de258e88953013104234abaa0707618c9e190fefb6473854ddf2f15d",
 }
-# what there was not then: derived, or None where nobody knows
-ADDED = (
+# fields that did not exist then: derived, or None if unknown
+LATER_FIELDS = (
     "role",
     "bead_width",
     "unsupported",
@@ -68,15 +69,15 @@ ADDED = (
 
 
 def fingerprint(value):
-    """The values under each name, in order: groups of fields may come and go."""
+    """Return a hash of the values under each name, in order; groups of fields may come and go."""
     by_name = {}
-    for name, part in parts(value, ""):
-        by_name.setdefault(name, []).append(part)
+    for name, item in parts(value, ""):
+        by_name.setdefault(name, []).append(item)
     return hashlib.sha256(repr(sorted(by_name.items())).encode()).hexdigest()
 
 
 def parts(value, name):
-    """All that is in a value, each with the name of its field."""
+    """Yield all values in a result, each with the name of its field."""
     if isinstance(value, np.ndarray):
         yield name, (str(value.dtype), value.shape, value.tobytes())
     elif isinstance(value, dict):
@@ -85,7 +86,7 @@ def parts(value, name):
     elif dataclasses.is_dataclass(value):
         for field in dataclasses.fields(value):
             entry = getattr(value, field.name)
-            if field.name not in ADDED or dataclasses.is_dataclass(entry):
+            if field.name not in LATER_FIELDS or dataclasses.is_dataclass(entry):
                 yield from parts(entry, field.name)
     elif isinstance(value, (tuple, list)):
         for entry in value:
@@ -94,27 +95,27 @@ def parts(value, name):
         yield name, value
 
 
-def equal(one, other):
-    """Bit for bit, dataclasses and tuples gone through."""
-    if isinstance(one, np.ndarray):
+def equal(value, expected):
+    """Return whether values are equal bit for bit, within dataclasses and tuples too."""
+    if isinstance(value, np.ndarray):
         return (
-            one.dtype == other.dtype
-            and one.shape == other.shape
-            and one.tobytes() == other.tobytes()
+            value.dtype == expected.dtype
+            and value.shape == expected.shape
+            and value.tobytes() == expected.tobytes()
         )
-    if isinstance(one, (tuple, list)):
-        return len(one) == len(other) and all(map(equal, one, other))
-    if dataclasses.is_dataclass(one):
-        names = [field.name for field in dataclasses.fields(one)]
-        return type(one) is type(other) and all(
-            equal(getattr(one, name), getattr(other, name)) for name in names
+    if isinstance(value, (tuple, list)):
+        return len(value) == len(expected) and all(map(equal, value, expected))
+    if dataclasses.is_dataclass(value):
+        names = [field.name for field in dataclasses.fields(value)]
+        return type(value) is type(expected) and all(
+            equal(getattr(value, name), getattr(expected, name)) for name in names
         )
-    return one == other or (one != one and other != other)
+    return value == expected or (value != value and expected != expected)
 
 
 @pytest.fixture
 def reopened(job, tmp_path):
-    """The job saved and opened again, with what it was before."""
+    """Return the job saved and opened again, with its earlier values."""
     values = [api.result(obj) for obj in job.stages]
     path = str(tmp_path / "Pièce à déposer.FCStd")
     job.doc.saveAs(path)
@@ -127,18 +128,18 @@ def test_results_are_there_after_reopening_and_nothing_is_computed(job, reopened
     again, values, _ = reopened
     for kind in {type(obj.Proxy) for obj in job.stages}:
         monkeypatch.setattr(kind, "prepare", lambda self, obj: pytest.fail("computed"))
-    found = api.stages_of(again)
-    assert [obj.Label for obj in found] == [obj.Label for obj in api.stages_of(job.doc)]
-    for before in job.stages:
-        obj = again.getObject(before.Name)
+    stages = api.stages_of(again)
+    assert [obj.Label for obj in stages] == [obj.Label for obj in api.stages_of(job.doc)]
+    for original in job.stages:
+        obj = again.getObject(original.Name)
         assert obj.Status == "up to date" and obj.State == ["Up-to-date"]
-        assert obj.Key == before.Key == obj.Proxy.key(obj)
-        assert equal(api.result(obj), values[job.stages.index(before)])
+        assert obj.Key == original.Key == obj.Proxy.key(obj)
+        assert equal(api.result(obj), values[job.stages.index(original)])
     again.recompute()
-    for obj in found:
+    for obj in stages:
         obj.touch()
     again.recompute()
-    assert [obj.Status for obj in found] == ["up to date"] * 5
+    assert [obj.Status for obj in stages] == ["up to date"] * 5
 
 
 def test_results_are_compressed_outside_the_document_text(reopened):
@@ -150,24 +151,24 @@ def test_results_are_compressed_outside_the_document_text(reopened):
 
 
 def test_a_forced_recompute_gives_the_same(job):
-    before = [api.result(obj) for obj in job.stages]
+    results = [api.result(obj) for obj in job.stages]
     api.recompute(job.doc, force=True)
-    for obj, value in zip(job.stages, before, strict=True):
+    for obj, value in zip(job.stages, results, strict=True):
         assert api.result(obj) is not value and equal(api.result(obj), value)
 
 
 def test_undo_and_redo_take_parameters_results_and_status_along(job):
     job.doc.UndoMode = 1
-    first, first_key = api.result(job.toolpath), job.toolpath.Key
+    first_result, first_key = api.result(job.toolpath), job.toolpath.Key
     api.change(job.feature, layer_height=20)
     second = api.result(job.toolpath)
     assert job.doc.UndoCount == 1 and job.doc.UndoNames == ["Edit Feature"]
-    assert len(second.layers) < len(first.layers)
+    assert len(second.layers) < len(first_result.layers)
     for _ in range(2):
         job.doc.undo()
         assert (job.feature.LayerHeight.Value, job.toolpath.Key) == (10.0, first_key)
         assert [obj.Status for obj in job.stages] == ["up to date"] * 5
-        assert equal(api.result(job.toolpath), first)
+        assert equal(api.result(job.toolpath), first_result)
         job.doc.redo()
         assert job.feature.LayerHeight.Value == 20.0 and equal(api.result(job.toolpath), second)
     job.doc.undo()
@@ -199,10 +200,12 @@ def test_every_function_is_one_step_of_undo(doc, part):
 def test_copies_keep_their_own_result(job):
     copy = job.doc.copyObject(job.toolpath, False)
     assert copy.Name != job.toolpath.Name and equal(api.result(copy), api.result(job.toolpath))
-    kept = api.result(copy)
+    copied_result = api.result(copy)
     api.change(job.toolpath, seam_angle=30)
     assert (
-        copy.SeamAngle.Value == 0 and equal(api.result(copy), kept) and copy.Status == "up to date"
+        copy.SeamAngle.Value == 0
+        and equal(api.result(copy), copied_result)
+        and copy.Status == "up to date"
     )
     api.change(copy, seam_angle=60)
     assert job.toolpath.SeamAngle.Value == 30
@@ -211,17 +214,17 @@ def test_copies_keep_their_own_result(job):
 
 
 def test_a_copy_of_the_whole_job_stands_alone_in_another_document(job):
-    other = App.newDocument("Other")
+    target = App.newDocument("Other")
     try:
-        other.copyObject(job.program, True)
-        found = api.stages_of(other)
-        assert len(other.Objects) == 6 and [obj.Status for obj in found] == ["up to date"] * 5
-        program = api.stages_of(other, "program")[0]
+        target.copyObject(job.program, True)
+        stages = api.stages_of(target)
+        assert len(target.Objects) == 6 and [obj.Status for obj in stages] == ["up to date"] * 5
+        program = api.stages_of(target, "program")[0]
         assert api.result(program).files == api.result(job.program).files
-        api.change(api.stages_of(other, "feature")[0], layer_height=20)
+        api.change(api.stages_of(target, "feature")[0], layer_height=20)
         assert job.feature.LayerHeight.Value == 10 and job.program.Status == "up to date"
     finally:
-        App.closeDocument(other.Name)
+        App.closeDocument(target.Name)
 
 
 def test_an_old_document_gets_what_it_lacks(job, tmp_path):
@@ -242,10 +245,12 @@ def test_an_old_document_gets_what_it_lacks(job, tmp_path):
 
 
 def _size_of_results(path):
-    """Bytes that the results take in a document, beside all that it says of its objects."""
+    """Return the bytes of the results in a document, without the data of its objects."""
     with zipfile.ZipFile(path) as files:
         return sum(
-            one.compress_size for one in files.infolist() if one.filename.startswith("ResultData")
+            member.compress_size
+            for member in files.infolist()
+            if member.filename.startswith("ResultData")
         )
 
 
@@ -266,9 +271,9 @@ def test_results_of_an_old_document_are_read_to_the_last_bit_and_stored_anew(tmp
                     and ((motion.role == 0) == motion.deposit).all()
                 )
             obj.ResultData, obj.ResultLayout = store.pack(api.result(obj), obj.Key)
-        before = _size_of_results(path)
+        original_size = _size_of_results(path)
         document.save()
-        assert _size_of_results(path) < 2.5 * before  # npz without a codec of our own
+        assert _size_of_results(path) < 2.5 * original_size  # npz without a codec of its own
         App.closeDocument(document.Name)
         document = App.openDocument(path)
         for name, expected in IN_ROWS.items():
@@ -298,7 +303,7 @@ def test_a_program_of_an_earlier_version_is_not_given_out_until_it_is_recomputed
     monkeypatch.undo()
     assert (
         job.program.Status == "up to date" and api.result(job.program).files == old
-    )  # to be looked at
+    )  # for inspection
     with pytest.raises(api.InputError, match="earlier version"):
         files_of(job.program)
     for stage in job.stages:

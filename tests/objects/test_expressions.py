@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Parameters that follow a spreadsheet, through the macro interface."""
+"""Parameters follow a spreadsheet through the macro interface."""
 
 import FreeCAD as App
 import pytest
@@ -10,11 +10,13 @@ from freecad_am.core.issues import InputError
 
 @pytest.fixture
 def sheet(doc, part):
-    found = doc.addObject("App::FeaturePython", "Sheet")  # a spreadsheet for these purposes
-    found.addProperty("App::PropertyLength", "height")
-    found.addProperty("App::PropertyInteger", "count")
-    found.height = 10
-    return found
+    sheet_object = doc.addObject(
+        "App::FeaturePython", "Sheet"
+    )  # this object replaces a spreadsheet
+    sheet_object.addProperty("App::PropertyLength", "height")
+    sheet_object.addProperty("App::PropertyInteger", "count")
+    sheet_object.height = 10
+    return sheet_object
 
 
 def test_a_parameter_follows_an_expression_until_it_is_given_a_value(doc, part, sheet):

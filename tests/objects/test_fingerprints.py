@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Fingerprints that are kept are those that would be made anew, and are made anew for all that counts."""
+"""Cached fingerprints equal new ones, and every change that counts makes a new one."""
 
 import FreeCAD as App
 import Mesh
@@ -13,16 +13,18 @@ from freecad_am.objects.results.fingerprints import fingerprint
 
 @pytest.fixture
 def made(monkeypatch):
-    """The shapes and meshes that were looked through, nothing being kept from before."""
+    """Record the shapes and meshes that are hashed, starting with an empty cache."""
     monkeypatch.setattr(fingerprints, "_shapes", [])
     monkeypatch.setattr(fingerprints, "_meshes", {})
-    found = []
+    hashed = []
     for name in ("_shape_text", "body_of"):
-        own = getattr(fingerprints, name)
+        original = getattr(fingerprints, name)
         monkeypatch.setattr(
-            fingerprints, name, lambda source, own=own: (found.append(source), own(source))[1]
+            fingerprints,
+            name,
+            lambda source, original=original: (hashed.append(source), original(source))[1],
         )
-    return found
+    return hashed
 
 
 @pytest.fixture
@@ -33,7 +35,7 @@ def doc():
 
 
 def anew(obj):
-    """Its fingerprint without what is kept."""
+    """Return its fingerprint without the cache."""
     fingerprints._shapes.clear()
     fingerprints._meshes.clear()
     return fingerprint(obj)
@@ -52,89 +54,95 @@ def nested(doc):
 
 def test_what_did_not_change_is_looked_through_once(doc, made):
     box, mesh, _ = nested(doc)
-    before = [fingerprint(box), fingerprint(mesh)]
+    fingerprints_ = [fingerprint(box), fingerprint(mesh)]
     assert len(made) == 2
-    assert [fingerprint(box), fingerprint(mesh)] == before and len(made) == 2
-    doc.recompute(None, True)  # the box is built again, its numbers are the same
-    assert [fingerprint(box), fingerprint(mesh)] == before and [anew(box), anew(mesh)] == before
+    assert [fingerprint(box), fingerprint(mesh)] == fingerprints_ and len(made) == 2
+    doc.recompute(None, True)  # the box is rebuilt with the same numbers
+    assert [fingerprint(box), fingerprint(mesh)] == fingerprints_ and [
+        anew(box),
+        anew(mesh),
+    ] == fingerprints_
 
 
-def moved(obj):
+def move(obj):
     obj.Placement.Base.z += 1
 
 
 def edited(mesh):
-    own = mesh.Mesh.copy()
-    own.setPoint(0, own.Points[0].Vector + App.Vector(0.5, 0, 0))
-    mesh.Mesh = own
+    mesh_copy = mesh.Mesh.copy()
+    mesh_copy.setPoint(0, mesh_copy.Points[0].Vector + App.Vector(0.5, 0, 0))
+    mesh.Mesh = mesh_copy
 
 
 @pytest.mark.parametrize(
     ("change", "of_box", "of_mesh"),
     [
         (lambda box, mesh, group: setattr(box, "Length", 11), True, False),
-        (lambda box, mesh, group: moved(box), True, False),
-        (lambda box, mesh, group: moved(mesh), False, True),
+        (lambda box, mesh, group: move(box), True, False),
+        (lambda box, mesh, group: move(mesh), False, True),
         (lambda box, mesh, group: edited(mesh), False, True),
-        (lambda box, mesh, group: moved(group), True, True),
+        (lambda box, mesh, group: move(group), True, True),
         (
             lambda box, mesh, group: group.removeObject(box),
             False,
             False,
-        ),  # the group is where the document is
+        ),  # the group is at the document's origin
     ],
 )
 def test_every_change_counts(doc, made, change, of_box, of_mesh):
     box, mesh, group = nested(doc)
-    before = fingerprint(box), fingerprint(mesh)
+    old_fingerprints = fingerprint(box), fingerprint(mesh)
     change(box, mesh, group)
     doc.recompute()
-    after = fingerprint(box), fingerprint(mesh)
-    assert [one != other for one, other in zip(before, after, strict=True)] == [of_box, of_mesh]
-    assert after == (anew(box), anew(mesh))
+    new_fingerprints = fingerprint(box), fingerprint(mesh)
+    assert [old != new for old, new in zip(old_fingerprints, new_fingerprints, strict=True)] == [
+        of_box,
+        of_mesh,
+    ]
+    assert new_fingerprints == (anew(box), anew(mesh))
 
 
 def test_a_shape_turned_inside_out_is_another_one(doc, made):
-    part = doc.addObject("Part::Feature", "Part")
-    part.Shape = Part.makeBox(1, 2, 3)
-    before = fingerprint(part)
-    part.Shape = part.Shape.reversed()  # the same faces behind it
-    assert fingerprint(part) != before and fingerprint(part) == anew(part)
+    feature = doc.addObject("Part::Feature", "Part")
+    feature.Shape = Part.makeBox(1, 2, 3)
+    original = fingerprint(feature)
+    feature.Shape = feature.Shape.reversed()  # the same faces behind it
+    assert fingerprint(feature) != original and fingerprint(feature) == anew(feature)
 
 
 def test_a_compound_that_a_macro_adds_to_is_another_one(doc):
-    """The kernel's object behind it stays the same one."""
+    """The kernel's object behind the shape stays the same."""
     compound = Part.makeCompound([Part.makeBox(1, 1, 1)])
-    made = doc.addObject("Part::Feature", "Compound")
-    made.Shape = compound
-    before = fingerprint(made)
+    compound_object = doc.addObject("Part::Feature", "Compound")
+    compound_object.Shape = compound
+    original = fingerprint(compound_object)
     compound.add(Part.makeBox(1, 1, 1, App.Vector(5, 0, 0)))
-    made.Shape = compound
-    assert len(made.Shape.Faces) == 12 and fingerprint(made) != before
+    compound_object.Shape = compound
+    assert len(compound_object.Shape.Faces) == 12 and fingerprint(compound_object) != original
 
 
 def test_undo_brings_the_first_one_back(doc, made):
     doc.UndoMode = 1
     box, _, _ = nested(doc)
-    before = fingerprint(box)
+    original = fingerprint(box)
     doc.openTransaction("Longer")
     box.Length = 20
     doc.recompute()
     doc.commitTransaction()
-    assert fingerprint(box) != before
+    assert fingerprint(box) != original
     doc.undo()
     doc.recompute()
-    assert fingerprint(box) == before == anew(box)
+    assert fingerprint(box) == original == anew(box)
 
 
 def test_more_than_are_kept(doc, made):
-    parts = []
+    features = []
     for k in range(fingerprints.MOST_KEPT + 5):
-        parts.append(doc.addObject("Part::Feature", "Part"))
-        parts[-1].Shape = Part.makeBox(1 + k, 1, 1)
-    texts = [fingerprint(part) for part in parts]
-    assert len(fingerprints._shapes) == fingerprints.MOST_KEPT and len(set(texts)) == len(parts)
-    assert [fingerprint(part) for part in parts] == texts
+        features.append(doc.addObject("Part::Feature", "Part"))
+        features[-1].Shape = Part.makeBox(1 + k, 1, 1)
+    texts = [fingerprint(feature) for feature in features]
+    assert len(fingerprints._shapes) == fingerprints.MOST_KEPT and len(set(texts)) == len(features)
+    assert [fingerprint(feature) for feature in features] == texts
 
 
 def test_a_stage_that_is_touched_looks_at_no_shape_again(doc, made):

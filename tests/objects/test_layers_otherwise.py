@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A new job whose curved layers cannot be carried out has planes where that is asked for, as jobs with `kind: auto` do."""
+"""A new job with infeasible curved layers gets plane layers if the user allows it, like jobs with
+`kind: auto`."""
 
 import pytest
 
@@ -12,26 +13,26 @@ pytestmark = pytest.mark.any_version
 ROBOT, TOOL = (
     "kuka-kr16-2",
     "tool-on-robot",
-)  # which turns through its singularity along curved layers of the T
+)  # this robot passes its singularity along curved layers of the T
 
 
 @pytest.fixture
 def coarse_tee(doc, monkeypatch):
-    """A T as an object, and features of it in coarse layers."""
+    """Return a T as an object, and make its features in coarse layers."""
     make = api.make_feature_of
     coarse = {"layer_height": 8.0, "chord_error": 0.4, "bead_spacing": 6.0}
     monkeypatch.setattr(
         api,
         "make_feature_of",
-        lambda *given, values, **named: make(*given, values={**coarse, **values}, **named),
+        lambda *arguments, values, **named: make(*arguments, values={**coarse, **values}, **named),
     )
-    part = doc.addObject("Part::Feature", "Tee")
-    part.Shape = tee()
-    return part
+    tee_object = doc.addObject("Part::Feature", "Tee")
+    tee_object.Shape = tee()
+    return tee_object
 
 
 def test_planes_are_laid_where_curved_layers_cannot_be(doc, coarse_tee, no_remedies):
-    asked = {
+    options = {
         "kind": "solid",
         "layers": "geodesic",
         "machine": ROBOT,
@@ -39,21 +40,21 @@ def test_planes_are_laid_where_curved_layers_cannot_be(doc, coarse_tee, no_remed
         "process": {"bead_width": 6.0},
     }
     doc.UndoMode = 1
-    _, feature, _, path = api.make_all(doc, coarse_tee, **asked)
+    _, feature, _, path = api.make_all(doc, coarse_tee, **options)
     assert (feature.Layers, path.Status) == ("geodesic", "infeasible")
     doc.undo()
     _, feature, toolpath, path, program = api.make_all(
-        doc, coarse_tee, **asked, layers_otherwise="planes"
+        doc, coarse_tee, **options, layers_otherwise="planes"
     )
     assert feature.Layers == "planes" and {
-        one.Status for one in (feature, toolpath, path, program)
+        stage.Status for stage in (feature, toolpath, path, program)
     } == {"up to date"}
-    doc.undo()  # all of it is one step
+    doc.undo()  # all of it is one undo step
     assert doc.Objects == [coarse_tee]
 
 
 def test_curved_layers_that_can_be_carried_out_stay(doc, coarse_tee):
-    made = api.make_all(
+    stages = api.make_all(
         doc,
         coarse_tee,
         kind="solid",
@@ -61,24 +62,26 @@ def test_curved_layers_that_can_be_carried_out_stay(doc, coarse_tee):
         process={"bead_width": 6.0},
         layers_otherwise="planes",
     )
-    assert made[1].Layers == "geodesic" and made[3].Status == "up to date"
+    assert stages[1].Layers == "geodesic" and stages[3].Status == "up to date"
 
 
-@pytest.mark.long  # 14 s; test_suited_cell.py looks for cells of other jobs
+@pytest.mark.long  # 14 s; test_suited_cell.py searches cells of other jobs
 def test_planes_have_the_cell_that_suits_them(doc, coarse_tee):
-    """Curved layers of the T lean more than 30 deg, so that a positioner is put under them; upright ones need none."""
-    asked = {
+    """Curved layers of the T lean more than 30 deg and get a positioner; upright ones need none."""
+    options = {
         "kind": "solid",
         "machine": ROBOT,
         "setup": TOOL,
         "max_from_vertical": "30 deg",
         "process": {"bead_width": 6.0, "travel_speed": 150.0},
     }
-    curved = api.make_all(doc, coarse_tee, **asked, layers="geodesic")
+    curved = api.make_all(doc, coarse_tee, **options, layers="geodesic")
     assert curved[-1].Status == "infeasible" and curved[0].External != "none"
-    planes = api.make_all(doc, coarse_tee, **asked, layers="planes")
-    instead = api.make_all(doc, coarse_tee, **asked, layers="geodesic", layers_otherwise="planes")
-    assert [one.Status for one in instead] == ["up to date"] * 5 and instead[1].Layers == "planes"
+    planes = api.make_all(doc, coarse_tee, **options, layers="planes")
+    instead = api.make_all(doc, coarse_tee, **options, layers="geodesic", layers_otherwise="planes")
+    assert [stage.Status for stage in instead] == ["up to date"] * 5 and instead[
+        1
+    ].Layers == "planes"
     assert api.result(instead[0]) == api.result(planes[0]) and instead[0].External == "none"
     assert len(api.stages_of(doc)) == len(curved) + len(planes) + len(instead)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Doubts that machine files name become issues of the programs they may change."""
+"""Doubts noted in machine files become issues of the programs that they affect."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from freecad_am.objects.checks import controllers
 
 
 def test_the_size_of_a_program_is_told_before_there_is_one():
-    """By the first post of the machine; robots of a URDF have none."""
+    """The size follows the first post of the machine; robots of a URDF have none."""
     line = np.column_stack([np.linspace(0.0, 600.0, 60_050), np.zeros((60_050, 2))])
     toolpath = curves.plan(
         Curves("line", (BeadCurve(line),)),
@@ -32,11 +32,12 @@ def test_the_size_of_a_program_is_told_before_there_is_one():
 
 
 def test_doubts_in_machine_files_become_issues_of_programs():
-    """Every file whose remarks doubt base, joints, limits or speeds has a warning; of other set-ups there is none."""
+    """Every file whose remarks doubt base, joints, limits or speeds gives a warning; remarks about
+    other set-ups give none."""
     placed = {"deposition_point": (1000.0, 0.0, 0.0, 0.0, 0.0, 0.0)}
 
-    def codes(name, motion, **more):
-        cell = cells.resolve(CellParameters(machine=name, **placed, **more), np.eye(4))
+    def codes(name, motion, **options):
+        cell = cells.resolve(CellParameters(machine=name, **placed, **options), np.eye(4))
         post = cell.machine.posts[0]
         settings = ProgramParameters(post=post, motion=motion)
         issues = [
@@ -49,10 +50,10 @@ def test_doubts_in_machine_files_become_issues_of_programs():
 
     doubted = [("note", "MACHINE_NOT_VERIFIED")]
     unknown = [("warning", "BASE_NOT_KNOWN")]
-    found, words = codes("fanuc-arcmate120ic", "joint")
-    assert found == doubted and "q3 - q2" in words and "dress-out" not in words
-    found, words = codes("fanuc-arcmate120ic", "joint", limits="brochure_2018")
-    assert found == doubted and "q3 - q2" in words and "dress-out" in words
+    issue_codes, words = codes("fanuc-arcmate120ic", "joint")
+    assert issue_codes == doubted and "q3 - q2" in words and "dress-out" not in words
+    issue_codes, words = codes("fanuc-arcmate120ic", "joint", limits="brochure_2018")
+    assert issue_codes == doubted and "q3 - q2" in words and "dress-out" in words
     assert codes("fanuc-arcmate120ic", "cartesian")[0] == []
     assert codes("abb-irb1600-8-145", "cartesian")[0] == doubted
     assert codes("staubli-rx60b", "cartesian")[0] == unknown

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Faces and edges by paths through what holds their object: the edge that was clicked is laid, or it is refused."""
+"""Faces and edges by paths through their containers: the selected edge is printed, or the path is
+rejected."""
 
 import FreeCAD as App
 import numpy as np
@@ -15,22 +16,23 @@ from freecad_am.objects.shapes.places import ArrayElement
 
 @pytest.fixture
 def nested(doc):
-    """Two boxes in a part that is moved and turned, one of them in a group of it; a link to that part; a sketch of it."""
-    part, group = (
+    """Return two boxes in a moved and rotated part, one of them in a group; a link to that part; a
+    sketch in it."""
+    container, group = (
         doc.addObject("App::Part", "Part"),
         doc.addObject("App::DocumentObjectGroup", "Group"),
     )
-    part.addObject(group)
+    container.addObject(group)
     a, b = doc.addObject("Part::Box", "A"), doc.addObject("Part::Box", "B")
     a.Length, b.Length, b.Label = 20, 30, "Bee"
     b.Placement = App.Placement(App.Vector(100, 0, 0), App.Rotation(App.Vector(1, 0, 0), 20))
-    part.addObject(a)
-    part.addObject(b)
-    part.Placement = App.Placement(App.Vector(0, 7, 50), App.Rotation(App.Vector(0, 0, 1), 30))
+    container.addObject(a)
+    container.addObject(b)
+    container.Placement = App.Placement(App.Vector(0, 7, 50), App.Rotation(App.Vector(0, 0, 1), 30))
     sketch = doc.addObject("Sketcher::SketchObject", "Sketch")
-    part.addObject(sketch)
+    container.addObject(sketch)
     link = doc.addObject("App::Link", "Link")
-    link.LinkedObject, link.Placement.Base = part, App.Vector(0, 500, 0)
+    link.LinkedObject, link.Placement.Base = container, App.Vector(0, 500, 0)
     outer = doc.addObject("App::Part", "Outer")
     outer.Placement.Base = App.Vector(0, 0, 1000)
     doc.recompute()
@@ -41,8 +43,8 @@ def ends(edge):
     return sorted(tuple(np.round(vertex.Point, 6)) for vertex in edge.Vertexes)
 
 
-def laid(feature):
-    """The ends of the only curve of a feature."""
+def curve_ends(feature):
+    """Return the ends of the only curve of a feature."""
     (curve,) = api.result(feature).curves
     return sorted(tuple(point) for point in np.round(curve.points[[0, -1]], 6).tolist())
 
@@ -55,7 +57,7 @@ def laid(feature):
 def test_the_edge_that_a_path_names_is_laid(nested, top, path, edge):
     holder = nested.getObject(top)
     feature = api.make_curves_feature(nested, holder, [path + edge])
-    assert laid(feature) == ends(holder.getSubObject(path + edge))
+    assert curve_ends(feature) == ends(holder.getSubObject(path + edge))
     assert feature.Source[0].Name == ("Link" if top == "Link" else path.strip("$.")[0])
     assert "." not in feature.Source[1][0]
 
@@ -65,10 +67,10 @@ def test_a_part_within_a_part_is_where_it_is_seen(nested):
     nested.recompute()
     for top, path in (("Outer", "Part.B.Edge5"), ("Part", "B.Edge5")):
         feature = api.make_curves_feature(nested, nested.getObject(top), [path])
-        assert laid(feature) == ends(nested.Outer.getSubObject("Part.B.Edge5"))
+        assert curve_ends(feature) == ends(nested.Outer.getSubObject("Part.B.Edge5"))
     api.change(feature, source=nested.Outer, faces=["Part.A.Edge7"])
     assert (
-        laid(feature) == ends(nested.Outer.getSubObject("Part.A.Edge7"))
+        curve_ends(feature) == ends(nested.Outer.getSubObject("Part.A.Edge7"))
         and feature.Source[0] == nested.A
     )
 
@@ -79,7 +81,7 @@ def test_faces_and_axes_by_paths(nested):
         nested.B.Shape.Face6.Area
     )
     for axis in ("B.Edge5", "Sketch.V_Axis", "Origin.Z_Axis.", "Origin.Z_Axis"):
-        with pytest.raises(InputError) as caught:  # a box does not turn about anything
+        with pytest.raises(InputError) as caught:  # a box has no axis of revolution
             api.make_feature(nested, nested.A, axis=(nested.Part, axis))
         assert caught.value.code != "BAD_AXIS" and "Axis" not in caught.value.where, (
             caught.value.line()
@@ -90,14 +92,14 @@ def test_faces_and_axes_by_paths(nested):
     "path", ["B.Edge99", "C.Edge5", "A.Group.Edge1", "Edge5.", ".", "B.Foo", ".Edge5", "B..Edge5"]
 )
 def test_what_a_path_does_not_lead_to_is_refused(nested, path):
-    before = [obj.Name for obj in nested.Objects]
+    object_names = [obj.Name for obj in nested.Objects]
     with pytest.raises(InputError) as caught:
         api.make_curves_feature(nested, nested.Part, [path])
     assert (
         caught.value.code in ("BAD_EDGES", "BAD_FACES", "BAD_AXIS")
         and caught.value.where == "source"
     )
-    assert path in caught.value.message and [obj.Name for obj in nested.Objects] == before
+    assert path in caught.value.message and [obj.Name for obj in nested.Objects] == object_names
 
 
 def test_edges_of_two_objects_are_refused(nested):
@@ -107,7 +109,8 @@ def test_edges_of_two_objects_are_refused(nested):
 
 
 def test_a_path_that_was_not_given_by_a_macro_is_refused(nested):
-    """As the property editor writes it; before, the edge of this number of the whole part was taken."""
+    """The property editor writes such a path; the edge of this number in the whole part was once
+    used instead."""
     feature = api.make_curves_feature(nested, nested.B, ["Edge5"])
     feature.Source = (nested.Part, ["B.Edge5"])
     with pytest.raises(InputError, match=r"B\.Edge5 of Part is Edge5 of Bee") as caught:
@@ -119,18 +122,19 @@ def test_a_path_that_was_not_given_by_a_macro_is_refused(nested):
 
 
 def test_what_is_in_a_group_of_a_part_is_there_once(nested):
-    """FreeCAD has it a second time, with what is in the part itself: its edges were laid twice."""
+    """FreeCAD includes such an object twice, in the group and in the part; its edges were once
+    printed twice."""
     assert len(global_shape(nested.Part).Solids) == 2
     nested.Group.addObject(nested.B)
     nested.recompute()
     assert len(nested.Part.Shape.Solids) == 3
-    whole = global_shape(nested.Part)
+    shape = global_shape(nested.Part)
     assert (
-        whole.Volume == pytest.approx(nested.A.Shape.Volume + nested.B.Shape.Volume)
-        and len(whole.Edges) == 24
+        shape.Volume == pytest.approx(nested.A.Shape.Volume + nested.B.Shape.Volume)
+        and len(shape.Edges) == 24
     )
-    assert ends(whole.Edges[0]) in [
-        ends(global_shape(one).Edges[0]) for one in (nested.A, nested.B)
+    assert ends(shape.Edges[0]) in [
+        ends(global_shape(box).Edges[0]) for box in (nested.A, nested.B)
     ]
     assert api.make_solid_feature(nested, nested.Part, layer_height=5).Solids == 2
 
@@ -139,29 +143,30 @@ def test_what_is_in_a_group_of_a_part_is_there_once(nested):
 def test_names_of_a_part_that_has_something_twice_are_those_of_freecad_or_refused(
     doc, order, tmp_path
 ):
-    """Left out what is there a second time, faces and edges that follow have other numbers than FreeCAD shows."""
-    held = {name: doc.addObject("Part::Box", name) for name in "ABC"}
-    for k, box in enumerate(held.values()):
+    """Without the second copy, the faces and edges after it have other numbers than FreeCAD
+    shows."""
+    boxes = {name: doc.addObject("Part::Box", name) for name in "ABC"}
+    for k, box in enumerate(boxes.values()):
         box.Placement.Base.x, box.Length = 20 * k, 5 + k
-    part, group = (
+    container, group = (
         doc.addObject("App::Part", "Part"),
         doc.addObject("App::DocumentObjectGroup", "Group"),
     )
-    group.addObject(held["B"])
+    group.addObject(boxes["B"])
     for name in order:
-        part.addObject({**held, "G": group}[name])
+        container.addObject({**boxes, "G": group}[name])
     doc.recompute()
-    freecads, found = part.Shape, []
-    assert len(freecads.Edges) == 48 and len(global_shape(part).Edges) == 36
+    freecads, accepted = container.Shape, []
+    assert len(freecads.Edges) == 48 and len(global_shape(container).Edges) == 36
     for number in range(1, 49):
         try:
-            feature = api.make_curves_feature(doc, part, [f"Edge{number}"])
+            feature = api.make_curves_feature(doc, container, [f"Edge{number}"])
         except InputError as error:
             assert error.code in ("BAD_EDGES", "UNKNOWN_EDGE"), error.line()
             continue
-        found.append(number)
-        assert laid(feature) == ends(freecads.Edges[number - 1])
-    assert found == (list(range(1, 37)) if order == "ACG" else [])
+        accepted.append(number)
+        assert curve_ends(feature) == ends(freecads.Edges[number - 1])
+    assert accepted == (list(range(1, 37)) if order == "ACG" else [])
     doc.saveAs(str(tmp_path / "part.FCStd"))
     if order == "ACG":
         assert part_shape(doc.FileName, "Part")[0].Edges[35].Length == pytest.approx(
@@ -183,7 +188,7 @@ def test_a_path_to_a_body_by_its_tip_is_the_body(doc):
         feature = api.make_curves_feature(doc, body, [path])
         assert feature.Source[0] == owner
         assert (
-            laid(feature)
+            curve_ends(feature)
             == ends(global_shape(owner).getElement(feature.Source[1][0]))
             == ends(body.getSubObject(path))
         )
@@ -194,7 +199,8 @@ def test_a_path_to_a_body_by_its_tip_is_the_body(doc):
 
 @pytest.fixture
 def linked(doc):
-    """An assembly, turned, with a link to a box and a link array of three, whose elements are objects or not."""
+    """Return a rotated assembly with a link to a box and a link array of three, whose elements are
+    objects or not."""
     box = doc.addObject("Part::Box", "Box")
     box.Length, box.Width, box.Height = 20, 30, 10
     asm = doc.addObject("App::Part", "Asm")
@@ -217,8 +223,8 @@ def linked(doc):
     return doc
 
 
-def seen(doc, path):
-    """The ends of the edge at a path of the assembly, as FreeCAD shows it."""
+def shown_ends(doc, path):
+    """Return the ends of the edge at a path of the assembly, as FreeCAD shows it."""
     return ends(Part.getShape(doc.Asm, path, needSubElement=True))
 
 
@@ -226,18 +232,18 @@ def seen(doc, path):
 @pytest.mark.parametrize("path", ["L1.", "Shown.Shown_i1.", "Shown.2.", "Hidden.1.", "Hidden.2."])
 def test_edges_of_links_and_link_arrays_by_paths(linked, path, edge):
     feature = api.make_curves_feature(linked, linked.Asm, [path + edge])
-    assert laid(feature) == seen(linked, path + edge)
+    assert curve_ends(feature) == shown_ends(linked, path + edge)
     owner = {"L1.": "L1", "Shown.Shown_i1.": "Shown_i1", "Shown.2.": "Shown_i2"}.get(path, "Hidden")
     assert feature.Source[0].Name == owner
-    step, _, rest = path.partition(".")
-    if rest:  # from the array itself, as a selection outside of the assembly has it
-        feature = api.make_curves_feature(linked, linked.getObject(step), [rest + edge])
-        assert laid(feature) == seen(linked, path + edge)
+    step, _, remaining_path = path.partition(".")
+    if remaining_path:  # from the array itself, like a selection outside of the assembly
+        feature = api.make_curves_feature(linked, linked.getObject(step), [remaining_path + edge])
+        assert curve_ends(feature) == shown_ends(linked, path + edge)
 
 
 @pytest.mark.parametrize("name", ["Shown", "Hidden"])
 def test_an_element_of_a_link_array_in_every_role(linked, name):
-    """One of three boxes is deposited, stood on or kept clear of; the whole array was."""
+    """Only one of three boxes is printed, built on or kept clear of; once the whole array was."""
     array = linked.getObject(name)
     element = api.array_element(array, 1)
     assert element == api.array_element(array, 1), "it is made once"
@@ -272,5 +278,5 @@ def test_what_is_no_element_is_rejected(linked):
 def test_all_of_an_element_by_its_path(linked):
     for path, centre in (("Hidden.1.", "Hidden.1."), ("Shown.Shown_i2.", "Shown.2.")):
         feature = api.make_curves_feature(linked, linked.Asm, [path])
-        place = Part.getShape(linked.Asm, centre).CenterOfMass
-        assert global_shape(feature.Source[0]).CenterOfMass.distanceToPoint(place) < 1e-6
+        centre_of_mass = Part.getShape(linked.Asm, centre).CenterOfMass
+        assert global_shape(feature.Source[0]).CenterOfMass.distanceToPoint(centre_of_mass) < 1e-6

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Same job, same bytes, however many threads the linear algebra may have, and in whatever order sets are gone through.
-
-A vase that a KUKA carries is at limits, so its joints are optimised: with the number of threads left as it was its
-waypoints.csv differed. Each run is a process of its own, because the number is read when numpy is loaded.
-"""
+"""The same job gives the same bytes for any number of linear algebra threads and any order of sets.
+A vase that a KUKA carries is at limits, so its joints are optimised; with an unrestricted number of
+threads its waypoints.csv varied. Each run is a separate process, because numpy reads the number
+when it is loaded."""
 
 import ctypes
 import json
@@ -30,7 +29,7 @@ def vase(scale):
                        for x, z in ((40, 0), (62, 40), (66, 80), (38, 130), (34, 155), (55, 180))])
     return curve.toShape().revolve(Vector(0, 0, 0), Vector(0, 0, 1), 360)
 """
-# as a user's macro: numpy is there first, with all its threads, and is used again afterwards
+# like a user's macro: numpy is loaded first with all its threads, and used again afterwards
 MACRO = (
     """
 import sys, hashlib, json, os
@@ -76,7 +75,7 @@ def in_process(code, threads, seed):
         key: value for key, value in os.environ.items() if key not in one_thread.ENVIRONMENT
     }
     environment.update(OPENBLAS_NUM_THREADS=threads, PYTHONHASHSEED=seed)
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", code],
         capture_output=True,
         text=True,
@@ -84,23 +83,23 @@ def in_process(code, threads, seed):
         env=environment,
         timeout=300,
     )
-    assert done.returncode == 0, done.stderr
-    return json.loads(done.stdout.splitlines()[-1])
+    assert process.returncode == 0, process.stderr
+    return json.loads(process.stdout.splitlines()[-1])
 
 
 @pytest.fixture(scope="module")
 def runs():
-    """What a macro makes with so many threads; the hash seed of each is another one."""
+    """Return the results of a macro for several numbers of threads, each with another hash seed."""
     return {
         threads: in_process(MACRO.format(root=str(ROOT)), threads, threads) for threads in THREADS
     }
 
 
 def test_a_macro_makes_the_same_bytes_with_any_number_of_threads(runs):
-    one = runs["1"]["texts"]
-    assert len(one) > 2 and one["waypoints"].count("\n") > 300
+    single_thread = runs["1"]["texts"]
+    assert len(single_thread) > 2 and single_thread["waypoints"].count("\n") > 300
     for threads in THREADS[1:]:
-        assert runs[threads]["texts"] == one
+        assert runs[threads]["texts"] == single_thread
 
 
 def test_other_users_of_numpy_get_their_threads_back(runs):
@@ -147,7 +146,7 @@ def test_a_job_makes_the_same_bytes_with_any_number_of_threads(tmp_path):
 
 
 def test_the_library_below_numpy_is_found():
-    """Where it is an OpenBLAS; others may have one thread alone."""
+    """If the library is an OpenBLAS it is found; others may have a single thread."""
     maps = Path("/proc/self/maps")
     if not maps.exists() or "openblas" not in maps.read_text(encoding="utf-8"):
         pytest.skip("no OpenBLAS here")

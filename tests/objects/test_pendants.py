@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Poses as pendants show them, against scipy's rotations and values worked out by hand."""
+"""Poses as pendants show them, compared with scipy's rotations and values computed by hand."""
 
 import math
 
@@ -18,7 +18,7 @@ from freecad_am.posts.kuka import text as krl
 
 
 def of(turn, controller):
-    """What a pendant shows of a rotation, by scipy."""
+    """Return the pendant values of a rotation, by scipy."""
     return {
         "kuka": lambda: turn.as_euler("ZYX", degrees=True),
         "fanuc": lambda: turn.as_euler("xyz", degrees=True),
@@ -34,13 +34,13 @@ def test_what_scipy_says_is_read_and_shown(controller):
     turns = Rotation.random(200, random_state=3)
     for turn in [*turns, *Rotation.from_euler("x", [0.0, 180.0, 90.0], degrees=True)]:
         numbers = of(turn, controller)
-        found = pendants.six(
+        values = pendants.six(
             [controller, "10.5", "-20", "300", *(f"{number:.17g}" for number in numbers)], "here"
         )
-        assert found[:3] == (10.5, -20.0, 300.0)
-        assert np.abs(frames.bryant(found)[:3, :3] - turn.as_matrix()).max() < 1e-12
-        again = pendants.pendant_values(controller, found)
-        assert again[:3] == found[:3]
+        assert values[:3] == (10.5, -20.0, 300.0)
+        assert np.abs(frames.bryant(values)[:3, :3] - turn.as_matrix()).max() < 1e-12
+        again = pendants.pendant_values(controller, values)
+        assert again[:3] == values[:3]
         back = pendants.six([controller, *(f"{number:.17g}" for number in again)], "here")
         assert np.abs(frames.bryant(back)[:3, :3] - turn.as_matrix()).max() < 1e-9
         if controller == "abb":
@@ -51,14 +51,15 @@ def test_what_scipy_says_is_read_and_shown(controller):
 @pytest.mark.parametrize(
     ("text", "z"),
     [
-        # where the tool's Z points, by hand: a quarter of a turn about Y
+        # the direction of the tool's Z, by hand: a quarter turn about Y
         ("kuka 0 0 0 0 90 0", [1, 0, 0]),
         ("fanuc 0 0 0 0 90 0", [1, 0, 0]),
         ("yaskawa 0 0 0 0 90 0", [1, 0, 0]),
         ("staubli 0 0 0 0 90 0", [1, 0, 0]),
         ("abb 0 0 0 0.70711 0 0.70711 0", [1, 0, 0]),
         (f"ur 0 0 0 0 {math.pi / 2} 0", [1, 0, 0]),
-        # then a quarter about the fixed Z, which is A of KUKA, R of FANUC, Rz of Yaskawa, and Rx of Staubli about its own X
+        # then a quarter turn about the fixed Z, which is A of KUKA, R of FANUC, Rz of Yaskawa, and
+        # Rx of Staubli about its own X
         ("kuka 0 0 0 90 90 0", [0, 1, 0]),
         ("fanuc 0 0 0 0 90 90", [0, 1, 0]),
         ("yaskawa 0 0 0 0 90 90", [0, 1, 0]),
@@ -91,12 +92,12 @@ def test_a_positioner_where_its_pendant_says():
     mechanisms = row.inner(typed, "here")
     text = row.outer(mechanisms)
     assert mechanisms == row.inner(text, "here") and "kuka" not in text
-    other = EXTERNAL.read(
+    expected_axes = EXTERNAL.read(
         "motoman-motopos-d500 at 1100 60 -100 0 0 30 carries part; track at 0 0 5 0 0 0 carries robot"
     )
-    for one, wanted in zip(EXTERNAL.read(text), other, strict=True):
-        assert (one.machine, one.carries) == (wanted.machine, wanted.carries)
-        assert np.allclose(one.pose, wanted.pose, atol=1e-12)
+    for axis, expected in zip(EXTERNAL.read(text), expected_axes, strict=True):
+        assert (axis.machine, axis.carries) == (expected.machine, expected.carries)
+        assert np.allclose(axis.pose, expected.pose, atol=1e-12)
     with pytest.raises(InputError, match="A B C") as raised:
         row.inner("motoman-motopos-d500 at kuka 1 2 3 4 5 carries part", "cell.external")
     assert raised.value.where == "cell.external"
@@ -105,18 +106,19 @@ def test_a_positioner_where_its_pendant_says():
 
 
 def test_numbers_that_posts_write_and_pendants_show_are_the_same_ones():
-    """Of frames where only the sum of two angles counts too: what the pendant shows can be compared with the text."""
+    """Even if only the sum of two angles matters, the pendant's values can be compared with the
+    text."""
     for angles in ((30, 90, 10), (-20, -90, 70), (10, 20, 30)):
         turn = Rotation.from_euler("ZYX", angles, degrees=True)
         six = (1.0, 2.0, 3.0, *frames.to_bryant(turn.as_matrix()))
-        place = np.array([[1.0, 2.0, 3.0]])
+        position = np.array([[1.0, 2.0, 3.0]])
         np.testing.assert_allclose(
             pendants.pendant_values("kuka", six),
-            krl.frames(place, turn.as_matrix()[None])[0],
+            krl.frames(position, turn.as_matrix()[None])[0],
             atol=1e-4,
         )
         np.testing.assert_allclose(
             pendants.pendant_values("fanuc", six),
-            tp.poses(place, turn.as_matrix()[None])[0],
+            tp.poses(position, turn.as_matrix()[None])[0],
             atol=1e-3,
         )

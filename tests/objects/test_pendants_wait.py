@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Frames are read without the posts of controllers that they do not name: all of them take as long to import as numpy."""
+"""Reading a frame imports only the post of the controller that it names: all posts take as long to
+import as numpy."""
 
 import subprocess
 import sys
@@ -24,11 +25,11 @@ def test_a_pose_imports_the_post_that_it_names_alone(words, posts):
         "loaded = [name.split('.') for name in sys.modules if name.startswith('freecad_am.posts.')]",
         "print(sorted(name[2] for name in loaded if name[3:] == ['post']))",
     ]
-    done = subprocess.run(
+    process = subprocess.run(
         [sys.executable, "-c", "\n".join(lines)],
         cwd=ROOT,
         capture_output=True,
         text=True,
         check=True,
     )
-    assert done.stdout.strip() == str(posts)
+    assert process.stdout.strip() == str(posts)

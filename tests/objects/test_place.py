@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`am.place`: what it returns makes a joint path feasible that is not; what it cannot place is refused."""
+"""`am.place` returns a pose that makes an infeasible joint path feasible, and rejects objects that
+it cannot place."""
 
 import Part
 import pytest
@@ -13,15 +14,15 @@ BOX = {"x": 0, "y": 0, "z": "1500 mm", "step": "500 mm", "points": 60}
 
 @pytest.mark.any_version
 def test_the_best_pose_of_a_macro_makes_the_job_feasible(doc, no_remedies):
-    part = doc.addObject("Part::Feature", "Cup")
-    part.Shape = Part.makeCylinder(30.0, 20.0)
-    feature = api.make_feature(doc, part, layer_height=10, chord_error="0.5 mm")
+    cup = doc.addObject("Part::Feature", "Cup")
+    cup.Shape = Part.makeCylinder(30.0, 20.0)
+    feature = api.make_feature(doc, cup, layer_height=10, chord_error="0.5 mm")
     cell = api.make_cell(doc, limits="paper", deposition_point=HIGH)
     path = api.make_joint_path(doc, api.make_toolpath(doc, feature, cell), cell)
     assert path.Status == "infeasible"
-    found = api.place(path, **BOX)
-    assert path.Status == "infeasible" and len(found.poses) == 7  # nothing was changed
-    api.change(cell, **found.entries(found.best))
+    placement = api.place(path, **BOX)
+    assert path.Status == "infeasible" and len(placement.poses) == 7  # the search changed nothing
+    api.change(cell, **placement.entries(placement.best))
     assert path.Status == "up to date"
     assert api.place(path.Toolpath, cell, **BOX).judged[3].feasible
     with pytest.raises(InputError, match="width is not known"):

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes stand where FreeCAD shows them: in containers, behind links, in link arrays and link groups.
-
-The right places are computed here by matrices, from the numbers that the document was made with.
-"""
+"""Shapes are where FreeCAD shows them: in containers, behind links, in link arrays and link groups.
+Matrices give the expected positions from the numbers of the document."""
 
 import FreeCAD as App
 import numpy as np
@@ -18,13 +16,14 @@ CORNERS = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) 
 
 
 def placement(*numbers):
-    """Of x y z, and an angle in degrees about the axis (1, 2, 3)."""
+    """Return a placement of x y z and an angle in degrees about the axis (1, 2, 3)."""
     *base, angle = numbers
     return App.Placement(App.Vector(*base), App.Rotation(App.Vector(1, 2, 3), angle))
 
 
-def moved(points, *placements, scale=(1.0, 1.0, 1.0)):
-    """Points scaled and then moved by placements, the innermost first. Rodrigues, not FreeCAD."""
+def transformed(points, *placements, scale=(1.0, 1.0, 1.0)):
+    """Return points scaled and then moved by placements, the innermost first, by Rodrigues' formula
+    instead of FreeCAD."""
     points = points * np.array(scale)
     axis = np.array([1.0, 2.0, 3.0]) / np.sqrt(14.0)
     cross = np.cross(np.eye(3), axis)
@@ -41,23 +40,23 @@ def corners(shape):
 
 
 def is_at(shape, *point_sets):
-    """Whether the corners of a shape are those of boxes."""
+    """Return whether the corners of a shape equal those of boxes."""
     points = {tuple(point) for points in point_sets for point in np.round(points, 6) + 0.0}
     expected = np.array(sorted(points))
-    found = corners(shape)
-    return found.shape == expected.shape and np.abs(found - expected).max() < 1e-5
+    shape_corners = corners(shape)
+    return shape_corners.shape == expected.shape and np.abs(shape_corners - expected).max() < 1e-5
 
 
-IN = (3, -2, 1, 20)  # of the box itself
+BOX_POSE = (3, -2, 1, 20)  # the box itself
 LINK = (0, 30, 2, -40)
-INNER, OUTER = (0, 0, 50, 30), (7, 8, 100, 75)
+INNER_POSE, OUTER_POSE = (0, 0, 50, 30), (7, 8, 100, 75)
 
 
 @pytest.fixture
 def box(doc):
     box = doc.addObject("Part::Box", "Box")
     box.Length, box.Width, box.Height = SIZE
-    box.Placement = placement(*IN)
+    box.Placement = placement(*BOX_POSE)
     return box
 
 
@@ -68,31 +67,32 @@ def link_to(doc, target, name="Link", transform=False):
     return link
 
 
-def inside(doc, *held):
-    """Objects in a part in a part, both turned."""
+def inside(doc, *objects):
+    """Put objects into a part in a part, both rotated."""
     inner, outer = doc.addObject("App::Part", "Inner"), doc.addObject("App::Part", "Outer")
-    inner.Placement, outer.Placement = placement(*INNER), placement(*OUTER)
-    for one in held:
-        inner.addObject(one)
+    inner.Placement, outer.Placement = placement(*INNER_POSE), placement(*OUTER_POSE)
+    for obj in objects:
+        inner.addObject(obj)
     outer.addObject(inner)
     doc.recompute()
     return inner, outer
 
 
 def test_a_link_in_a_turned_part(doc, box):
-    """FreeCAD has no `getGlobalPlacement` for links: they were planned at z 0, not turned."""
-    part = doc.addObject("App::Part", "Part")
-    part.Placement = App.Placement(App.Vector(0, 0, 50), App.Rotation(App.Vector(0, 0, 1), 30))
+    """FreeCAD has no `getGlobalPlacement` for links, which once were planned unrotated at z 0."""
+    container = doc.addObject("App::Part", "Part")
+    container.Placement = App.Placement(App.Vector(0, 0, 50), App.Rotation(App.Vector(0, 0, 1), 30))
     link = doc.addObject("App::Link", "Link")
     link.LinkedObject = box
     box.Placement = App.Placement()
-    part.addObject(link)
+    container.addObject(link)
     doc.recompute()
     shape = global_shape(link)
     assert (shape.BoundBox.ZMin, shape.BoundBox.ZMax) == pytest.approx((50, 55))
     turned = 10 * np.sin(np.radians(30)) + 6 * np.cos(np.radians(30))
     assert shape.BoundBox.YLength == pytest.approx(turned)
-    assert not hasattr(link, "getGlobalPlacement")  # why we walk up the containers
+    # the reason why the package walks up the containers
+    assert not hasattr(link, "getGlobalPlacement")
 
 
 @pytest.mark.parametrize("transform", [False, True])
@@ -100,45 +100,50 @@ def test_links_in_nested_parts(doc, box, transform):
     link = link_to(doc, box, transform=transform)
     second = link_to(doc, link, "Second", transform=True)
     inside(doc, link, second)
-    own = [IN] if transform else []
-    assert is_at(global_shape(link), moved(CORNERS, *own, LINK, INNER, OUTER))
-    assert is_at(global_shape(second), moved(CORNERS, *own, LINK, LINK, INNER, OUTER))
-    assert [one.Name for one in containers_of(link)] == ["Inner", "Outer"]
+    link_poses = [BOX_POSE] if transform else []
+    assert is_at(
+        global_shape(link), transformed(CORNERS, *link_poses, LINK, INNER_POSE, OUTER_POSE)
+    )
+    assert is_at(
+        global_shape(second), transformed(CORNERS, *link_poses, LINK, LINK, INNER_POSE, OUTER_POSE)
+    )
+    assert [container.Name for container in containers_of(link)] == ["Inner", "Outer"]
 
 
 def test_links_to_parts_and_bodies(doc, box):
-    """A link to a part shows what is in the part, once each, without the containers of the part."""
-    part, group = (
+    """A link to a part shows the part's content once, without the containers of the part."""
+    container, group = (
         doc.addObject("App::Part", "Part"),
         doc.addObject("App::DocumentObjectGroup", "Group"),
     )
-    part.Placement = placement(*INNER)
-    part.addObject(group)
+    container.Placement = placement(*INNER_POSE)
+    container.addObject(group)
     group.addObject(box)
     body = doc.addObject("PartDesign::Body", "Body")
-    body.Placement = placement(*IN)
+    body.Placement = placement(*BOX_POSE)
     pad = doc.addObject("PartDesign::AdditiveBox", "Pad")
     body.addObject(pad)
     pad.Length, pad.Width, pad.Height = SIZE
-    part.addObject(body)
+    container.addObject(body)
     doc.recompute()
-    link, of_body = link_to(doc, part, "OfPart", True), link_to(doc, body, "OfBody")
+    link, of_body = link_to(doc, container, "OfPart", True), link_to(doc, body, "OfBody")
     outer = doc.addObject("App::Part", "Outer")
-    outer.Placement = placement(*OUTER)
+    outer.Placement = placement(*OUTER_POSE)
     outer.addObject(link)
     outer.addObject(of_body)
     doc.recompute()
-    assert is_at(global_shape(of_body), moved(CORNERS, LINK, OUTER))
-    assert is_at(global_shape(pad), moved(CORNERS, IN, INNER))
-    assert is_at(global_shape(link), moved(CORNERS, IN, INNER, LINK, OUTER))
-    assert len(part.Shape.Solids) == 3  # FreeCAD has the box of the group twice
+    assert is_at(global_shape(of_body), transformed(CORNERS, LINK, OUTER_POSE))
+    assert is_at(global_shape(pad), transformed(CORNERS, BOX_POSE, INNER_POSE))
+    assert is_at(global_shape(link), transformed(CORNERS, BOX_POSE, INNER_POSE, LINK, OUTER_POSE))
+    assert len(container.Shape.Solids) == 3  # FreeCAD has the box of the group twice
     assert global_shape(link).Volume == pytest.approx(2 * SIZE.prod())
 
 
 @pytest.mark.parametrize("shown", [True, False])
 @pytest.mark.parametrize("scale", [(1, 1, 1), (-1, 1, 1), (2, 1, 1)])
 def test_link_arrays_and_their_elements(doc, box, shown, scale):
-    """Three boxes, each with a placement of its own, whether FreeCAD shows the elements as objects or not."""
+    """Three boxes have their own placements, whether FreeCAD shows the elements as objects or
+    not."""
     array = doc.addObject("App::Link", "Array")
     array.LinkedObject, array.ElementCount = box, 3
     array.Placement = placement(*LINK)
@@ -150,7 +155,9 @@ def test_link_arrays_and_their_elements(doc, box, shown, scale):
     array.ShowElement = shown
     inside(doc, array)
     boxes = [
-        moved(CORNERS, step, LINK, INNER, OUTER, scale=scale if k == 2 else (1, 1, 1))
+        transformed(
+            CORNERS, step, LINK, INNER_POSE, OUTER_POSE, scale=scale if k == 2 else (1, 1, 1)
+        )
         for k, step in enumerate(steps)
     ]
     assert is_at(global_shape(array), *boxes)
@@ -170,7 +177,9 @@ def test_a_scaled_array_scales_its_elements(doc, box):
     array.ElementList[1].Placement.Base = App.Vector(20, 0, 0)
     array.ScaleVector = App.Vector(2, 1, 1)
     inside(doc, array)
-    expected = moved(CORNERS + np.array([20.0, 0, 0]), INNER, OUTER, scale=(2, 1, 1))
+    expected = transformed(
+        CORNERS + np.array([20.0, 0, 0]), INNER_POSE, OUTER_POSE, scale=(2, 1, 1)
+    )
     assert is_at(global_shape(array.ElementList[1]), expected)
     assert is_at(global_shape(array, "1."), expected)
 
@@ -180,7 +189,7 @@ def test_link_groups_place_what_they_hold(doc, box):
     group.ElementList = [box]
     group.Placement = placement(*LINK)
     inside(doc, group)
-    expected = moved(CORNERS, IN, LINK, INNER, OUTER)
+    expected = transformed(CORNERS, BOX_POSE, LINK, INNER_POSE, OUTER_POSE)
     assert is_at(global_shape(group), expected)
     assert is_at(global_shape(box), expected)
     second = doc.addObject("App::LinkGroup", "Second")
@@ -193,31 +202,35 @@ def test_link_groups_place_what_they_hold(doc, box):
 
 
 def test_links_across_documents(doc, box, tmp_path):
-    """A link in a turned part to a box of another document, which stands in a part there."""
+    """A link in a rotated part points to a box in a part of another document."""
     doc.saveAs(str(tmp_path / "linking.FCStd"))
-    other = App.newDocument("Other")
+    other_document = App.newDocument("Other")
     try:
-        far = other.addObject("Part::Box", "Far")
-        far.Length, far.Width, far.Height = SIZE
-        far.Placement = placement(*IN)
-        holder = other.addObject("App::Part", "Holder")
-        holder.Placement = placement(*OUTER)
-        holder.addObject(far)
-        other.recompute()
-        other.saveAs(str(tmp_path / "linked.FCStd"))
+        linked_box = other_document.addObject("Part::Box", "Far")
+        linked_box.Length, linked_box.Width, linked_box.Height = SIZE
+        linked_box.Placement = placement(*BOX_POSE)
+        holder = other_document.addObject("App::Part", "Holder")
+        holder.Placement = placement(*OUTER_POSE)
+        holder.addObject(linked_box)
+        other_document.recompute()
+        other_document.saveAs(str(tmp_path / "linked.FCStd"))
         link = link_to(doc, holder, transform=True)
         inner, _ = inside(doc, link)
-        assert is_at(global_shape(link), moved(CORNERS, IN, OUTER, LINK, INNER, OUTER))
+        assert is_at(
+            global_shape(link),
+            transformed(CORNERS, BOX_POSE, OUTER_POSE, LINK, INNER_POSE, OUTER_POSE),
+        )
         needs = dependencies_of(link)
-        assert needs.documents == (doc, other)
-        assert {far, holder, link} <= set(needs.objects) and needs.containers[0] == inner
+        assert needs.documents == (doc, other_document)
+        assert {linked_box, holder, link} <= set(needs.objects) and needs.containers[0] == inner
     finally:
         doc.removeObject("Link")
-        App.closeDocument(other.Name)
+        App.closeDocument(other_document.Name)
 
 
 def test_what_determines_shape_and_place(doc, box):
-    """All that decides: links, what they show, containers, and what expressions of containers name; nothing beside."""
+    """The result depends on links, their targets, containers, and the names in expressions of
+    containers, and on nothing else."""
     sheet, beside = doc.addObject("Spreadsheet::Sheet", "Sheet"), doc.addObject("Part::Box", "Not")
     sheet.set("A1", "3")
     link = link_to(doc, box)
@@ -227,22 +240,22 @@ def test_what_determines_shape_and_place(doc, box):
     needs = dependencies_of(link)
     assert set(needs.objects) == {link, box, sheet}
     assert needs.containers == (inner, outer) and needs.documents == (doc,)
-    before = outer_matrix(link)
+    original = outer_matrix(link)
     sheet.set("A1", "4")
     doc.recompute()
-    assert np.allclose(outer_matrix(link)[:3, 3] - before[:3, 3], (1, 0, 0))
+    assert np.allclose(outer_matrix(link)[:3, 3] - original[:3, 3], (1, 0, 0))
 
 
 def test_bodies_that_the_nozzle_is_kept_clear_of(doc, box):
     link = link_to(doc, box)
     inside(doc, link)
     vertices = np.unique(np.round(body_of(link).vertices, 5), axis=0)
-    expected = np.unique(np.round(moved(CORNERS, LINK, INNER, OUTER), 5), axis=0)
+    expected = np.unique(np.round(transformed(CORNERS, LINK, INNER_POSE, OUTER_POSE), 5), axis=0)
     assert np.abs(vertices - expected).max() < 1e-4
 
 
 def test_an_axis_in_a_link_in_a_part(doc):
-    """The edge of a linked line turns with the part that holds the link."""
+    """The edge of a linked line rotates with the part that holds the link."""
     from types import SimpleNamespace
 
     from freecad_am.objects.feature import axis_of
@@ -252,9 +265,9 @@ def test_an_axis_in_a_link_in_a_part(doc):
     link = link_to(doc, line)
     inside(doc, link)
     feature = SimpleNamespace(Axis=(link, ["Edge1"]), Source=None, Label="Feature")
-    point, way = (np.array(vector) for vector in axis_of(feature))
-    start, end = moved(np.array([[1.0, 0, 0], [1.0, 0, 9]]), LINK, INNER, OUTER)
-    assert point == pytest.approx(start) and way == pytest.approx((end - start) / 9)
+    point, direction = (np.array(vector) for vector in axis_of(feature))
+    start, end = transformed(np.array([[1.0, 0, 0], [1.0, 0, 9]]), LINK, INNER_POSE, OUTER_POSE)
+    assert point == pytest.approx(start) and direction == pytest.approx((end - start) / 9)
 
 
 def extents(body):
@@ -272,19 +285,19 @@ MESH_CORNERS = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-
 @pytest.mark.parametrize("transform", [False, True])
 @pytest.mark.parametrize("scale", [(1, 1, 1), (-1, 1, 1), (2, 1, 1)])
 def test_links_to_meshes_stand_where_the_link_does(doc, transform, scale):
-    """FreeCAD gives the mesh of the linked object, at its own place."""
+    """FreeCAD returns the mesh of the linked object at its own location."""
     import Mesh
 
     mesh = doc.addObject("Mesh::Feature", "Mesh")
     mesh.Mesh = Mesh.createBox(*SIZE)
-    mesh.Placement = placement(*IN)
+    mesh.Placement = placement(*BOX_POSE)
     link = link_to(doc, mesh, transform=transform)
     link.ScaleVector = App.Vector(*scale)
     inside(doc, link)
-    own = moved(MESH_CORNERS, IN) if transform else MESH_CORNERS
+    mesh_corners = transformed(MESH_CORNERS, BOX_POSE) if transform else MESH_CORNERS
     body = body_of(link)
     assert extents(body) == pytest.approx(
-        box_extents(moved(own, LINK, INNER, OUTER, scale=scale)), abs=1e-4
+        box_extents(transformed(mesh_corners, LINK, INNER_POSE, OUTER_POSE, scale=scale)), abs=1e-4
     )
     a, b, c = body.vertices[body.triangles].transpose(1, 0, 2)
     volume = np.einsum("ij,ij->", np.cross(a, b), c) / 6
@@ -297,7 +310,7 @@ def test_link_arrays_of_meshes(doc, shown):
 
     mesh = doc.addObject("Mesh::Feature", "Mesh")
     mesh.Mesh = Mesh.createBox(*SIZE)
-    mesh.Placement = placement(*IN)
+    mesh.Placement = placement(*BOX_POSE)
     array = doc.addObject("App::Link", "Array")
     array.LinkedObject, array.ElementCount, array.LinkTransform = mesh, 3, True
     array.Placement, array.ScaleVector = placement(*LINK), App.Vector(2, 1, 1)
@@ -308,7 +321,10 @@ def test_link_arrays_of_meshes(doc, shown):
     array.ShowElement = shown
     inside(doc, array)
     boxes = [
-        moved(moved(MESH_CORNERS, IN, step), LINK, INNER, OUTER, scale=(2, 1, 1)) for step in steps
+        transformed(
+            transformed(MESH_CORNERS, BOX_POSE, step), LINK, INNER_POSE, OUTER_POSE, scale=(2, 1, 1)
+        )
+        for step in steps
     ]
     assert extents(body_of(array)) == pytest.approx(box_extents(*boxes), abs=1e-4)
     array.setElementVisible("Array_i2" if shown else "2", False)
@@ -316,38 +332,38 @@ def test_link_arrays_of_meshes(doc, shown):
 
 
 def test_a_container_of_shapes_and_meshes_is_rejected(doc, box):
-    """Its mesh was left out without a message."""
+    """Its mesh was once dropped without a message."""
     import Mesh
 
     mesh = doc.addObject("Mesh::Feature", "Mesh")
     mesh.Mesh = Mesh.createBox(*SIZE)
-    part = doc.addObject("App::Part", "Part")
-    part.Placement = placement(*INNER)
-    part.addObject(mesh)
+    container = doc.addObject("App::Part", "Part")
+    container.Placement = placement(*INNER_POSE)
+    container.addObject(mesh)
     doc.recompute()
-    assert extents(body_of(part)) == pytest.approx(
-        box_extents(moved(MESH_CORNERS, INNER)), abs=1e-4
+    assert extents(body_of(container)) == pytest.approx(
+        box_extents(transformed(MESH_CORNERS, INNER_POSE)), abs=1e-4
     )
-    part.addObject(box)
+    container.addObject(box)
     doc.recompute()
     with pytest.raises(InputError) as caught:
-        body_of(part)
+        body_of(container)
     assert caught.value.code == "MIXED" and caught.value.where == "Part"
     mesh.Visibility = False
-    assert is_at(global_shape(part), moved(CORNERS, IN, INNER))
-    body_of(part)
+    assert is_at(global_shape(container), transformed(CORNERS, BOX_POSE, INNER_POSE))
+    body_of(container)
 
 
 def test_an_assembly_of_freecad_1(doc, box):
-    """Components of assemblies are links; sub-assemblies are turned too."""
+    """Components of assemblies are links, and sub-assemblies are rotated too."""
     if int(App.Version()[0]) < 1:
         pytest.skip("assemblies came with FreeCAD 1.0")
     assembly = doc.addObject("Assembly::AssemblyObject", "Assembly")
     link, inner = link_to(doc, box), doc.addObject("Assembly::AssemblyObject", "Inner")
-    inner.Placement, assembly.Placement = placement(*INNER), placement(*OUTER)
+    inner.Placement, assembly.Placement = placement(*INNER_POSE), placement(*OUTER_POSE)
     inner.addObject(link)
     assembly.addObject(inner)
     doc.recompute()
-    assert is_at(global_shape(link), moved(CORNERS, LINK, INNER, OUTER))
-    assert is_at(global_shape(assembly), moved(CORNERS, LINK, INNER, OUTER))
-    assert [one.Name for one in containers_of(link)] == ["Inner", "Assembly"]
+    assert is_at(global_shape(link), transformed(CORNERS, LINK, INNER_POSE, OUTER_POSE))
+    assert is_at(global_shape(assembly), transformed(CORNERS, LINK, INNER_POSE, OUTER_POSE))
+    assert [container.Name for container in containers_of(link)] == ["Inner", "Assembly"]

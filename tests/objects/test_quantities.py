@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""One table of texts, through the three entrances: the job file, the property and the macro."""
+"""One table of texts for all three inputs: the job file, the property and the macro."""
 
 import math
 from types import SimpleNamespace
@@ -79,7 +79,7 @@ GOOD = [
     (POSE_OR_WORD, "0 0 12 0 0 90", (0, 0, 12, 0, 0, RIGHT_ANGLE)),
     (POSE_OR_WORD, "auto", "auto"),
 ]
-BAD = [  # with the value as the message shows it, and the remedy
+BAD = [  # the value as the message shows it, and the remedy
     (LENGTH, "1,5 mm", "'1,5 mm'", "use a decimal point, as in 1.5 mm"),
     (LENGTH, "1,234.5 mm", "'1,234.5 mm'", "give a length such as 1 mm"),
     (LENGTH, "1\N{NARROW NO-BREAK SPACE}234 mm", "'1 234 mm'", "give a length such as 1 mm"),

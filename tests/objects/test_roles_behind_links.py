@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Guides, starts and scans behind links, arrays of Draft, and values of sheets: in place, and stale when they change."""
+"""Guides, starts and scans behind links, Draft arrays, and values of sheets are at their shown
+location, and stale when they change."""
 
 import FreeCAD as App
 import numpy as np
@@ -15,20 +16,20 @@ HIGH = App.Placement(App.Vector(300, 20, 50), App.Rotation(App.Vector(0, 0, 1), 
 
 
 def points(stage):
-    """All points of the beads of a toolpath."""
+    """Return all points of the beads of a toolpath."""
     beads = [bead for layer in api.result(stage).layers for bead in layer.beads]
     return np.vstack([bead.points for bead in beads])
 
 
 def link_in_part(doc, target, placement):
-    """A link to an object, in a part that is placed there."""
-    link, part = doc.addObject("App::Link", "Link"), doc.addObject("App::Part", "Part")
+    """Return a link to an object, in a part with that placement."""
+    link, container = doc.addObject("App::Link", "Link"), doc.addObject("App::Part", "Part")
     link.LinkedObject = target
     link.LinkTransform = True
-    part.addObject(link)
-    part.Placement = placement
+    container.addObject(link)
+    container.Placement = placement
     doc.recompute()
-    return link, part
+    return link, container
 
 
 def block(doc, name, *size):
@@ -38,7 +39,7 @@ def block(doc, name, *size):
 
 
 def check_change(doc, toolpath, change, tmp_path):
-    """Nothing is exported after a change until the document is recomputed once."""
+    """Assert that nothing is exported after a change until the document is recomputed once."""
     api.export_wires(toolpath, str(tmp_path / "before.dxf"))
     change()
     with pytest.raises(InputError, match="recompute"):
@@ -48,22 +49,22 @@ def check_change(doc, toolpath, change, tmp_path):
     api.export_wires(toolpath, str(tmp_path / "after.dxf"))
 
 
-def edge_at(shape, place):
-    """The name of the edge whose middle is there."""
-    far = [edge.CenterOfMass.distanceToPoint(place) for edge in shape.Edges]
-    return f"Edge{int(np.argmin(far)) + 1}"
+def edge_at(shape, position):
+    """Return the name of the edge whose middle is there."""
+    distances = [edge.CenterOfMass.distanceToPoint(position) for edge in shape.Edges]
+    return f"Edge{int(np.argmin(distances)) + 1}"
 
 
-def face_at(shape, place):
-    far = [face.CenterOfMass.distanceToPoint(place) for face in shape.Faces]
-    return f"Face{int(np.argmin(far)) + 1}"
+def face_at(shape, position):
+    distances = [face.CenterOfMass.distanceToPoint(position) for face in shape.Faces]
+    return f"Face{int(np.argmin(distances)) + 1}"
 
 
 def test_a_guide_behind_a_link(doc, tmp_path):
-    """Layers along an upright edge that the part of its link turns onto the X axis."""
+    """Layers follow an upright edge that the part of its link rotates onto the X axis."""
     bar, rail = block(doc, "Bar", 40, 10, 10), block(doc, "Rail", 5, 5, 40)
     lying = App.Placement(App.Vector(0, 0, 0), App.Rotation(App.Vector(0, 1, 0), 90))
-    link, part = link_in_part(doc, rail, lying)
+    link, container = link_in_part(doc, rail, lying)
     edge = edge_at(rail.Shape, App.Vector(0, 0, 20))
     feature = api.make_solid_feature(doc, bar, guide=(link, [edge]), layers="along", layer_height=4)
     toolpath = api.make_toolpath(doc, feature)
@@ -73,7 +74,7 @@ def test_a_guide_behind_a_link(doc, tmp_path):
     assert len(api.result(toolpath).layers) == 10
 
     def tilt():
-        part.Placement.Rotation = App.Rotation(App.Vector(0, 1, 0), 80)
+        container.Placement.Rotation = App.Rotation(App.Vector(0, 1, 0), 80)
 
     check_change(doc, toolpath, tilt, tmp_path)
     bead = api.result(toolpath).layers[3].beads[0]
@@ -81,12 +82,17 @@ def test_a_guide_behind_a_link(doc, tmp_path):
 
 
 def test_start_faces_behind_a_link(doc, tmp_path):
-    """Layers at a distance from a face of a block that a part places elsewhere."""
-    part, base = block(doc, "Top", 30, 20, 8), block(doc, "Base", 30, 20, 8)
+    """Layers keep their distance from a face of a block that a part moves."""
+    top_block, base = block(doc, "Top", 30, 20, 8), block(doc, "Base", 30, 20, 8)
     link, holder = link_in_part(doc, base, App.Placement(App.Vector(0, 0, -8), App.Rotation()))
     top = face_at(base.Shape, App.Vector(15, 10, 8))
     feature = api.make_solid_feature(
-        doc, part, start_faces=(link, [top]), layers="geodesic", layer_height=4, chord_error=0.5
+        doc,
+        top_block,
+        start_faces=(link, [top]),
+        layers="geodesic",
+        layer_height=4,
+        chord_error=0.5,
     )
     toolpath = api.make_toolpath(doc, feature)
     assert len(api.result(toolpath).layers) == 2
@@ -110,10 +116,10 @@ def test_start_edges_of_a_wall_behind_a_link(doc, tmp_path):
     low = edge_at(wall.Shape, App.Vector(0, 0, 0))
     feature = api.make_surface_feature(doc, link, [side], start_edges=[low], layer_height=5)
     toolpath = api.make_toolpath(doc, feature)
-    at = points(toolpath)
-    assert at[:, 2].min() == pytest.approx(50, abs=5.1)
-    assert at[:, 2].max() <= 80.0 + 1e-6
-    assert np.hypot(at[:, 0] - 300, at[:, 1] - 20) == pytest.approx(20, abs=0.2)
+    bead_points = points(toolpath)
+    assert bead_points[:, 2].min() == pytest.approx(50, abs=5.1)
+    assert bead_points[:, 2].max() <= 80.0 + 1e-6
+    assert np.hypot(bead_points[:, 0] - 300, bead_points[:, 1] - 20) == pytest.approx(20, abs=0.2)
 
     def move():
         holder.Placement.Base.x = 0
@@ -125,7 +131,7 @@ def test_start_edges_of_a_wall_behind_a_link(doc, tmp_path):
 
 
 def test_a_scan_of_a_plate_behind_a_link(doc, tmp_path):
-    """Points measured on the plate where its link stands."""
+    """The points are measured on the plate at the location of its link."""
     plate = block(doc, "Plate", 200, 120, 10)
     link, holder = link_in_part(doc, plate, HIGH)
     top = block(doc, "Block", 20, 60, 12)
@@ -138,8 +144,8 @@ def test_a_scan_of_a_plate_behind_a_link(doc, tmp_path):
     scan = api.make_scan(doc, link, str(path))
     feature = api.make_solid_feature(doc, top, substrate=link, layer_height=4, bead_spacing=10)
     toolpath = api.make_toolpath(doc, feature, scan=scan, scan_band=10)
-    first = np.vstack([bead.points for bead in api.result(toolpath).layers[0].beads])
-    assert first[:, 2] == pytest.approx(60.0 + 0.002 * (first[:, 1] - 120.0), abs=0.02)
+    first_layer = np.vstack([bead.points for bead in api.result(toolpath).layers[0].beads])
+    assert first_layer[:, 2] == pytest.approx(60.0 + 0.002 * (first_layer[:, 1] - 120.0), abs=0.02)
 
     api.export_wires(toolpath, str(tmp_path / "before.dxf"))
     holder.Placement.Base.z = 50.5
@@ -212,13 +218,13 @@ def test_values_of_a_variable_set(doc, tmp_path):
     feature.setExpression("LayerHeight", "Values.Layer")
     doc.recompute()
     toolpath = api.make_toolpath(doc, feature)
-    before = np.ptp(points(toolpath)[:, 0])
+    original_width = np.ptp(points(toolpath)[:, 0])
 
     def lengthen():
         values.Long = 60
 
     check_change(doc, toolpath, lengthen, tmp_path)
-    assert np.ptp(points(toolpath)[:, 0]) == pytest.approx(before + 20, abs=1e-6)
+    assert np.ptp(points(toolpath)[:, 0]) == pytest.approx(original_width + 20, abs=1e-6)
 
     def halve():
         values.Layer = 2
@@ -228,7 +234,7 @@ def test_values_of_a_variable_set(doc, tmp_path):
 
 
 def test_links_that_copy_on_change(doc, tmp_path):
-    """Such a link shows a copy of its own once a property of it is changed."""
+    """Such a link shows a copy of its own after a change of its property."""
     box = block(doc, "Box", 40, 20, 8)
     box.addProperty("App::PropertyLength", "Long", "Base", "", 0)
     box.setPropertyStatus("Long", "CopyOnChange")
@@ -242,7 +248,7 @@ def test_links_that_copy_on_change(doc, tmp_path):
     doc.recompute()
     feature = api.make_solid_feature(doc, link, layer_height=4)
     toolpath = api.make_toolpath(doc, feature)
-    before = np.ptp(points(toolpath)[:, 0])
+    original_width = np.ptp(points(toolpath)[:, 0])
     assert points(toolpath)[:, 2].min() == pytest.approx(30, abs=4.1)
 
     def lengthen():
@@ -250,9 +256,9 @@ def test_links_that_copy_on_change(doc, tmp_path):
 
     check_change(doc, toolpath, lengthen, tmp_path)
     assert link.LinkedObject != box and box.Shape.BoundBox.XLength == pytest.approx(40)
-    assert np.ptp(points(toolpath)[:, 0]) == pytest.approx(before + 20, abs=1e-6)
+    assert np.ptp(points(toolpath)[:, 0]) == pytest.approx(original_width + 20, abs=1e-6)
 
     box.Long = 50
     doc.recompute()
     assert toolpath.Status == OK
-    assert np.ptp(points(toolpath)[:, 0]) == pytest.approx(before + 20, abs=1e-6)
+    assert np.ptp(points(toolpath)[:, 0]) == pytest.approx(original_width + 20, abs=1e-6)

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The rotor of the examples on an ARC Mate 120iC, Cartesian: no travel of its listings leads through the hub.
-
-Its small sibling for every post, motion and set-up: tests/posts/test_contract.py.
-"""
+"""No travel in the listings of the example rotor on an ARC Mate 120iC, Cartesian, leads through the
+hub. Its small sibling for every post, motion and set-up is tests/posts/test_contract.py."""
 
 import re
 
@@ -19,12 +17,12 @@ from tests.posts.driven import Drive, depth_in_hub
 pytestmark = pytest.mark.any_version
 
 HUB, TOP = Developable(60.0, 270.0), 90.0
-# mm: what looks 5 deg apart may miss
-DEEP = 0.5
+# mm: checks 5 deg apart may miss this much
+TOLERANCE_MM = 0.5
 
 
 def travels_through_the_hub(cell, motion, files):
-    """How deep, mm, each travel of a text gets into the hub."""
+    """Return how deep, in mm, each travel of a text gets into the hub."""
     rows = np.flatnonzero(motion.moves)
     drive = Drive(cell, fanuc.read(files), motion.joints[rows[0]])
     travels = np.flatnonzero(motion.role[rows] == TRAVEL)
@@ -35,10 +33,12 @@ def travels_through_the_hub(cell, motion, files):
 
 @pytest.mark.long
 def test_no_travel_of_the_rotor_leads_through_its_hub(doc, root, monkeypatch):
-    taken = []
+    verified = []
     real = programs.verification.verify
     monkeypatch.setattr(
-        programs.verification, "verify", lambda *given: taken.append(given) or real(*given)
+        programs.verification,
+        "verify",
+        lambda *arguments: verified.append(arguments) or real(*arguments),
     )
     folder = root / "resources" / "examples" / "rotor"
     hub, blades = (api.open_part(doc, str(folder / name)) for name in ("hub.step", "blades.brep"))
@@ -56,15 +56,16 @@ def test_no_travel_of_the_rotor_leads_through_its_hub(doc, root, monkeypatch):
         doc, api.make_joint_path(doc, toolpath, cell), name="rotor", motion="cartesian"
     )
     assert program.Status == "up to date"
-    resolved, motion, _, files = taken[0][:4]
+    resolved, motion, _, files = verified[0][:4]
     depths = travels_through_the_hub(resolved, motion, files)
-    assert len(depths) > 100 and depths.max() <= DEEP
-    # as they were written before, straight in space and rounded, some of the same travels lead through it
-    before = {
+    assert len(depths) > 100 and depths.max() <= TOLERANCE_MM
+    # in their earlier form, straight in space and rounded, some of the same travels lead through
+    # the hub
+    old_texts = {
         name: re.sub(rb"(?m)^( *\d+:)J(?= P\[\d+\] \d+msec)", rb"\1L", content).replace(
             b"msec FINE", b"msec CNT100"
         )
         for name, content in files.items()
     }
-    through = travels_through_the_hub(resolved, motion, before)
-    assert (through > DEEP).sum() > 5
+    through = travels_through_the_hub(resolved, motion, old_texts)
+    assert (through > TOLERANCE_MM).sum() > 5

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The samples hold what the code of today computes: `resources/examples/make_samples.py` renews them."""
+"""The samples hold results of the current code; `resources/examples/make_samples.py` renews
+them."""
 
 import json
 import shutil
@@ -14,14 +15,14 @@ from freecad_am.objects.results.findings import issues_of, message_of
 pytestmark = pytest.mark.any_version
 
 SAMPLES = ("hemisphere", "tube-on-pipe")
-# on the tube last bits of the processor's libraries decide how many points a bead gets, 1,167 or 1,197
-# in all, and so the speeds of the axes by 0.3 and the condition by 2 %
+# on the tube, last bits of the processor's libraries decide the number of points of a bead, 1,167
+# or 1,197 in total, and change the axis speeds by 0.3 and the condition by 2 %
 FIGURES = {"hemisphere": 1e-8, "tube-on-pipe": 0.03}
 RENEW = "run resources/examples/make_samples.py"
 
 
 def figure(value, tolerance):
-    """A figure to be compared within a tolerance."""
+    """Return a figure for comparison within a tolerance."""
     number = getattr(value, "Value", value)
     if isinstance(number, (int, float)) and not isinstance(number, bool):
         return pytest.approx(number, rel=tolerance)
@@ -29,7 +30,7 @@ def figure(value, tolerance):
 
 
 def read(stages, tolerance):
-    """The findings, message and figures of stages, as a user reads them."""
+    """Return the issues, message and figures of stages, as a user reads them."""
     return {
         stage.Name: (
             [
@@ -48,7 +49,7 @@ def test_a_sample_is_what_is_computed_today(root, tmp_path, name):
     path = shutil.copy(root / "resources" / "examples" / "samples" / f"{name}.FCStd", tmp_path)
     document = App.openDocument(str(path))
     try:
-        stages = sorted(api.stages_of(document), key=lambda one: len(one.OutListRecursive))
+        stages = sorted(api.stages_of(document), key=lambda stage: len(stage.OutListRecursive))
         assert len(stages) == 5
         for stage in stages:
             assert stage.Status == "up to date", stage.Label

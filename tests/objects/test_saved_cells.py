@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cells saved as files: which are offered, and a job that is made in one."""
+"""Cells saved as files: the offered ones, and a job in one."""
 
 import FreeCAD as App
 import pytest
@@ -21,7 +21,7 @@ JOB = "version: 1\npart: {file: pot.step}\ncell:\n  machine: kuka-kr16-2\n"
 
 @pytest.fixture
 def own(tmp_path, monkeypatch):
-    """The user's folder of cells."""
+    """Return the user's folder of cells."""
     monkeypatch.setattr(App, "getUserAppDataDir", lambda: str(tmp_path / "user"))
     folder = tmp_path / "user" / "RoboticAM" / "cells"
     folder.mkdir(parents=True)
@@ -63,8 +63,8 @@ def test_a_job_is_made_in_a_saved_cell(own, tmp_path, root, monkeypatch, no_reme
     monkeypatch.setattr(
         api,
         "make_feature_of",
-        lambda *args, **more: make(
-            *args, **{**more, "values": {"layer_height": 25.0, "chord_error": 0.5}}
+        lambda *args, **options: make(
+            *args, **{**options, "values": {"layer_height": 25.0, "chord_error": 0.5}}
         ),
     )
     path = own / "hall.yaml"
@@ -79,16 +79,19 @@ def test_a_job_is_made_in_a_saved_cell(own, tmp_path, root, monkeypatch, no_reme
         "tool-on-robot",
         (0.0, 0.0, 150.0),
     )
-    (one,) = EXTERNAL.read(cell.external)
-    assert (one.machine, one.pose[:3]) == ("motoman-motopos-d500", (1100.0, 60.0, -100.0))
+    (positioner,) = EXTERNAL.read(cell.external)
+    assert (positioner.machine, positioner.pose[:3]) == (
+        "motoman-motopos-d500",
+        (1100.0, 60.0, -100.0),
+    )
     doc = App.newDocument()
-    part = api.open_part(doc, str(root / "resources/examples/hemisphere.step"))
-    made = api.make_all(doc, part, cell=str(path))
-    assert api.result(made[0]) == cell or (
-        made[0].Machine == "kuka-kr16-2" and EXTERNAL.read(made[0].External) == cell.external
+    imported_part = api.open_part(doc, str(root / "resources/examples/hemisphere.step"))
+    stages = api.make_all(doc, imported_part, cell=str(path))
+    assert api.result(stages[0]) == cell or (
+        stages[0].Machine == "kuka-kr16-2" and EXTERNAL.read(stages[0].External) == cell.external
     )
     again = tmp_path / "again.yaml"
-    api.export_cell(made[0], str(again))
+    api.export_cell(stages[0], str(again))
     assert api.read_cell(str(again)) == cell
     App.closeDocument(doc.Name)
 
@@ -128,14 +131,14 @@ external: [{machine: motoman-motopos-d500, pose: [1100, 60, -100, 0, 0, 30], car
 """,
         encoding="utf-8",
     )
-    shown, wanted = api.read_cell(str(path)), api.read_cell(str(plain))
-    for one, other in (
-        (shown.deposition_point, wanted.deposition_point),
-        (shown.nozzle.tool, wanted.nozzle.tool),
-        (shown.platform, wanted.platform),
-        (EXTERNAL.read(shown.external)[0].pose, EXTERNAL.read(wanted.external)[0].pose),
+    cell_values, expected = api.read_cell(str(path)), api.read_cell(str(plain))
+    for frame, expected_frame in (
+        (cell_values.deposition_point, expected.deposition_point),
+        (cell_values.nozzle.tool, expected.nozzle.tool),
+        (cell_values.platform, expected.platform),
+        (EXTERNAL.read(cell_values.external)[0].pose, EXTERNAL.read(expected.external)[0].pose),
     ):
-        assert one == pytest.approx(other, abs=1e-6)
+        assert frame == pytest.approx(expected_frame, abs=1e-6)
     doc = App.newDocument()
     cell = api.make_cell(
         doc,
@@ -144,7 +147,7 @@ external: [{machine: motoman-motopos-d500, pose: [1100, 60, -100, 0, 0, 30], car
         deposition_point="kuka 1050 0 200 30 0 0",
         platform="kuka 0 0 5 0 0 0",
     )
-    assert api.result(cell).deposition_point == pytest.approx(wanted.deposition_point, abs=1e-9)
+    assert api.result(cell).deposition_point == pytest.approx(expected.deposition_point, abs=1e-9)
     App.closeDocument(doc.Name)
     path.write_text("machine: kuka-kr16-2\nnozzle: {tool: kuka 20 0 300 0 35}\n", encoding="utf-8")
     with pytest.raises(InputError, match="X Y Z A B C") as raised:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A toolpath fitted to a scan in a document: by macro, kept when it is saved, renewed when the scan changes."""
+"""A toolpath fitted to a scan in a document, by macro: saved with it, and renewed when the scan
+changes."""
 
 import FreeCAD as App
 import numpy as np
@@ -46,9 +47,9 @@ def test_a_fitted_toolpath_is_kept_and_follows_its_scan(doc, tmp_path):
     copy = str(tmp_path / "copy.FCStd")
     doc.saveCopy(copy)
     again = App.openDocument(copy)
-    kept = again.getObject(toolpath.Name)
-    assert heights(kept) == pytest.approx(heights(toolpath), abs=0.0)
-    assert kept.Scan.Name == scan.Name and kept.Status == "up to date"
+    reopened = again.getObject(toolpath.Name)
+    assert heights(reopened) == pytest.approx(heights(toolpath), abs=0.0)
+    assert reopened.Scan.Name == scan.Name and reopened.Status == "up to date"
     App.closeDocument(again.Name)
     np.savetxt(path, points_on(lambda x, y: bent(x, y) + 0.5, count=6000))
     api.recompute(toolpath)
@@ -60,8 +61,9 @@ def test_a_fitted_toolpath_is_kept_and_follows_its_scan(doc, tmp_path):
 
 
 def test_a_fitted_wall_is_held_against_its_faces_once_it_is_fitted(doc, tmp_path, monkeypatch):
-    """By the distance to its faces, less what the scan moved the layer: one that was moved twice as far is found, and the
-    preflight tells what a part with too few layers is still off."""
+    """The check subtracts the scan's shift of the layer from the distance to the faces. It finds a
+    bead that was shifted twice, and the preflight states the remaining deviation of a part with too
+    few layers."""
     plate, tube = doc.addObject("Part::Box", "Plate"), doc.addObject("Part::Cylinder", "Tube")
     plate.Length, plate.Width, plate.Height, plate.Placement.Base = (
         120,
@@ -79,13 +81,13 @@ def test_a_fitted_wall_is_held_against_its_faces_once_it_is_fitted(doc, tmp_path
         feature = api.make_surface_feature(
             doc, tube, substrate=plate, faces=["Face1"], layer_height=4, chord_error=0.1
         )
-        made = api.make_toolpath(doc, feature, scan=scan)
+        toolpath_ = api.make_toolpath(doc, feature, scan=scan)
         (promise,) = [
-            one
-            for one in preflight.stage_preflight(made)
-            if one.promise == "The deposit lies on the part"
+            bead
+            for bead in preflight.stage_preflight(toolpath_)
+            if bead.promise == "The deposit lies on the part"
         ]
-        return api.result(made), promise
+        return api.result(toolpath_), promise
 
     sound, promise = toolpath(-1.0)
     lowest = min(bead.points[:, 2].min() for bead in sound.layers[0].beads)
@@ -93,11 +95,11 @@ def test_a_fitted_wall_is_held_against_its_faces_once_it_is_fitted(doc, tmp_path
         issue.code for issue in sound.issues
     }
     assert promise.ok and promise.worst < 0.12 and "without the layer shift" in promise.how
-    few, promise = toolpath(-4.6)  # 24 mm lead back 4.8 mm, a fifth of them
-    assert "SCAN_REMAINS" in {issue.code for issue in few.issues} and promise.ok is False
+    short_toolpath, promise = toolpath(-4.6)  # 24 mm reduce it by 4.8 mm, a fifth of them
+    assert "SCAN_REMAINS" in {issue.code for issue in short_toolpath.issues} and promise.ok is False
     moved = fit_layers.move_bead
     monkeypatch.setattr(
-        fit_layers, "move_bead", lambda one, share, *more: moved(one, 2.0 * share, *more)
+        fit_layers, "move_bead", lambda bead, share, *options: moved(bead, 2.0 * share, *options)
     )
     wrong, promise = toolpath(-1.0)
     (issue,) = [issue for issue in wrong.issues if issue.code == "OFF_PART"]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A toolpath depends on nozzle, platform and mount of its cell, and on nothing else of it: layers may take minutes."""
+"""A toolpath depends only on nozzle, platform and mount of its cell, because its layers may take
+minutes."""
 
 import dataclasses
 
@@ -14,17 +15,19 @@ from freecad_am.objects.results import fingerprints
 from freecad_am.objects.stage import Stage
 from freecad_am.objects.toolpath import Toolpath
 
-SEEN = {"nozzle_diameter": 3.0, "platform_diameter": 50.0, "mount": "feature"}
+RELEVANT_VALUES = {"nozzle_diameter": 3.0, "platform_diameter": 50.0, "mount": "feature"}
 
 
 @pytest.fixture
 def stages(doc, monkeypatch):
-    """Feature, cell and toolpath of a small box, and how often its layers were planned."""
+    """Return feature, cell and toolpath of a small box, and the list of its planned layers."""
     box = doc.addObject("Part::Box", "Box")
     box.Length, box.Width, box.Height = 16, 12, 4
     doc.recompute()
     planned, plan = [], solids_plan.plan
-    monkeypatch.setattr(solids_plan, "plan", lambda *given: planned.append(given) or plan(*given))
+    monkeypatch.setattr(
+        solids_plan, "plan", lambda *arguments: planned.append(arguments) or plan(*arguments)
+    )
     cell = api.make_cell(doc)
     toolpath = api.make_toolpath(doc, api.make_solid_feature(doc, box), cell)
     return cell, toolpath, planned
@@ -44,35 +47,35 @@ def test_all_but_nozzle_platform_and_mount_leave_it_as_it_is(stages):
     assert (toolpath.Key, list(toolpath.ResultData)) == (key, data) and len(planned) == 2
 
 
-@pytest.mark.parametrize("name", SEEN)
+@pytest.mark.parametrize("name", RELEVANT_VALUES)
 def test_each_of_these_renews_it(stages, name):
     cell, toolpath, planned = stages
     key = toolpath.Key
-    api.change(cell, **{name: SEEN[name]})
+    api.change(cell, **{name: RELEVANT_VALUES[name]})
     assert toolpath.Status == "up to date" and toolpath.Key != key and len(planned) == 2
 
 
 def test_what_is_planned_sees_nothing_else_of_the_cell(stages):
     cell = stages[0]
     api.change(cell, deposition_point=[900, 50, 600, 0, 5, 0], nozzle_length=44.0)
-    whole = api.result(cell)
-    seen, usual = seen_of(whole), CellParameters()
-    kept = {
+    cell_result = api.result(cell)
+    relevant, usual = seen_of(cell_result), CellParameters()
+    relevant_values = {
         field.name
         for field in dataclasses.fields(usual)
-        if getattr(seen, field.name) == getattr(whole, field.name)
-        and getattr(whole, field.name) != getattr(usual, field.name)
+        if getattr(relevant, field.name) == getattr(cell_result, field.name)
+        and getattr(cell_result, field.name) != getattr(usual, field.name)
     }
     assert (
-        kept == {"nozzle"}
-        and seen.deposition_point == usual.deposition_point != whole.deposition_point
+        relevant_values == {"nozzle"}
+        and relevant.deposition_point == usual.deposition_point != cell_result.deposition_point
     )
 
 
 def test_a_document_from_before_fits_until_its_cell_changes(stages, tmp_path, monkeypatch):
     _, toolpath, planned = stages
-    with monkeypatch.context() as before:
-        before.setattr(Toolpath, "key", Stage.key)
+    with monkeypatch.context() as patch:
+        patch.setattr(Toolpath, "key", Stage.key)
         api.recompute(toolpath.Document, force=True)
     assert toolpath.Key == fingerprints.key_of_inputs(
         toolpath.Proxy, toolpath, fingerprints.key_of_stage

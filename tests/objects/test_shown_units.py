@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Messages in the units of FreeCAD's scheme."""
+"""Messages use the units of FreeCAD's scheme."""
 
 import FreeCAD as App
 import pytest
@@ -18,7 +18,7 @@ def schema():
     App.Units.setSchema(METRIC)
 
 
-def shown(text):
+def text_in_units(text):
     return in_language(text, lambda template: template, in_user_units)
 
 
@@ -37,28 +37,26 @@ def shown(text):
 def test_quantities_follow_and_names_stay(schema, number, text):
     message = Text("{} is {:g} mm high, {:g} cm3 at {:g} mm/s", "Plate 5 mm", 8.0, 30.0, 6.0)
     schema(number)
-    assert shown(message) == text
-    assert (
-        message == "Plate 5 mm is 8 mm high, 30 cm3 at 6 mm/s"
-    )  # as documents and commands have it
+    assert text_in_units(message) == text
+    assert message == "Plate 5 mm is 8 mm high, 30 cm3 at 6 mm/s"  # as in documents and commands
 
 
 def test_texts_within_texts_places_and_units_as_values(schema):
     schema(IMPERIAL)
     inner = Text("; give {:g} mm", 25.4)
     message = Text("off at {}, by {} {}{}{}", place((25.4, 0, 50.8)), 5.08, "mm", inner, Word("."))
-    assert shown(message) == "off at (1, 0, 2) in, by 0.2 in; give 1 in."
+    assert text_in_units(message) == "off at (1, 0, 2) in, by 0.2 in; give 1 in."
 
 
 def test_examples_of_what_may_be_typed_stay(schema):
     schema(IMPERIAL)
     text = Text("{!r} is not understood; give {}", "5 mmm", Text("a length such as 1 mm"))
-    assert shown(text) == "'5 mmm' is not understood; give a length such as 1 mm"
+    assert text_in_units(text) == "'5 mmm' is not understood; give a length such as 1 mm"
 
 
 def test_what_a_remedy_says_may_be_typed(schema):
     schema(IMPERIAL)
-    assert shown(Text("give at most {:g} mm", 8.0)) == "give at most 0.314 in"
+    assert text_in_units(Text("give at most {:g} mm", 8.0)) == "give at most 0.314 in"
     assert 0.314 * 25.4 <= 8.0
 
 

@@ -38,21 +38,25 @@ def toolpath(seed=0):
     return Toolpath(layers, np.eye(4), 1.0, 0.01, (Issue("warning", "X", 'é\n"', 1, None, 3),))
 
 
-def equal(one, other):
-    if isinstance(one, np.ndarray):
+def equal(value, expected):
+    if isinstance(value, np.ndarray):
         return (
-            one.dtype == other.dtype
-            and one.shape == other.shape
-            and one.tobytes() == other.tobytes()
+            value.dtype == expected.dtype
+            and value.shape == expected.shape
+            and value.tobytes() == expected.tobytes()
         )
-    if isinstance(one, tuple):
-        return isinstance(other, tuple) and len(one) == len(other) and all(map(equal, one, other))
-    if hasattr(one, "__dataclass_fields__"):
-        names = one.__dataclass_fields__
-        return type(one) is type(other) and all(
-            equal(getattr(one, n), getattr(other, n)) for n in names
+    if isinstance(value, tuple):
+        return (
+            isinstance(expected, tuple)
+            and len(value) == len(expected)
+            and all(map(equal, value, expected))
         )
-    return type(one) is type(other) and one == other
+    if hasattr(value, "__dataclass_fields__"):
+        names = value.__dataclass_fields__
+        return type(value) is type(expected) and all(
+            equal(getattr(value, n), getattr(expected, n)) for n in names
+        )
+    return type(value) is type(expected) and value == expected
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -66,21 +70,21 @@ def test_toolpaths_come_back(seed):
 @pytest.mark.parametrize("seed", range(5))
 def test_parts_alone_are_those_of_the_whole(seed):
     path = toolpath(seed)
-    places = (
+    paths = (
         ("layers", -1, "beads", -1, "points"),
         ("layer_height",),
         (),
         ("layers", 0, "beads"),
         ("frame",),
     )
-    parts = store.unpack_parts(*store.pack(path, "k"), "k", "x", *places)
+    unpacked = store.unpack_parts(*store.pack(path, "k"), "k", "x", *paths)
     assert equal(
-        parts, (path.layers[-1].beads[-1].points, 1.0, path, path.layers[0].beads, path.frame)
+        unpacked, (path.layers[-1].beads[-1].points, 1.0, path, path.layers[0].beads, path.frame)
     )
     alone = store.unpack_parts(
-        *store.pack(path, "k"), "k", "x", *places[:2], *places[3:]
-    )  # where nothing asks for the whole
-    assert equal(alone, (*parts[:2], *parts[3:]))
+        *store.pack(path, "k"), "k", "x", *paths[:2], *paths[3:]
+    )  # where no caller needs the complete result
+    assert equal(alone, (*unpacked[:2], *unpacked[3:]))
     for wrong in (("height",), ("layers", 9), ("layer_height", 0)):
         with pytest.raises(InputError, match="cannot be read"):
             store.unpack_parts(*store.pack(path, "k"), "k", "x", wrong)
@@ -100,10 +104,10 @@ def test_arrays_of_alike_values_are_one_table_in_memory():
     )
     values = tuple(np.random.default_rng(k).normal(size=(k + 2, 3)) for k in range(9))
     tables = store.unpack(*store.pack(values, "k"), "k", "x")
-    assert len({id(part.base) for part in tables}) == 1 and all(map(equal, tables, values))
-    assert not any(part.flags.writeable or part.base.flags.writeable for part in tables)
+    assert len({id(table.base) for table in tables}) == 1 and all(map(equal, tables, values))
+    assert not any(table.flags.writeable or table.base.flags.writeable for table in tables)
     assert all(
-        equal(one, layer.beads) for (one,), layer in zip(back["all"], path.layers, strict=True)
+        equal(bead, layer.beads) for (bead,), layer in zip(back["all"], path.layers, strict=True)
     )
 
 
@@ -130,7 +134,7 @@ def test_special_numbers_and_types_come_back():
 
 
 def renamed(text, **changes):
-    """The text of a result whose header has other entries."""
+    """Return the text of a result with other entries in its header."""
     return f"k {json.dumps({**json.loads(text[2:]), **changes})}"
 
 
@@ -158,16 +162,18 @@ def test_every_schema_has_its_class():
 
 
 def test_a_class_that_is_renamed_and_changed_reads_what_was_stored_before(monkeypatch):
-    """The entry moves to the new class, and the fields of version 1 are turned into those of version 2."""
+    """The entry moves to the new class, and the fields of version 1 become those of version 2."""
     floats, text = store.pack(toolpath().layers, "k")
-    place = f"{__name__}:Stack"
-    monkeypatch.setitem(schemas.SCHEMAS, "layer", schemas.Schema(place, 2))
+    class_path = f"{__name__}:Stack"
+    monkeypatch.setitem(schemas.SCHEMAS, "layer", schemas.Schema(class_path, 2))
     upgrades = {
         ("layer", 1): lambda fields: {"strands": fields["beads"], "count": len(fields["beads"])}
     }
     monkeypatch.setattr(schemas, "UPGRADES", upgrades)
-    known = schemas.class_of
-    monkeypatch.setattr(schemas, "class_of", lambda name: Stack if name == "layer" else known(name))
+    class_of = schemas.class_of
+    monkeypatch.setattr(
+        schemas, "class_of", lambda name: Stack if name == "layer" else class_of(name)
+    )
     stacks = store.unpack(floats, text, "k", "x")
     assert [stack.count for stack in stacks] == [1, 3, 2]
     assert equal(stacks[0].strands, toolpath().layers[0].beads)
@@ -188,7 +194,7 @@ def test_a_result_of_a_later_version_is_rejected():
 
 
 def test_the_archive_is_plain_npz():
-    """numpy's own reader opens it."""
+    """numpy's own reader opens the archive."""
     path = toolpath()
     floats, text = store.pack(path, "k")
     words = np.array(floats[1:]).view(np.uint8).reshape(-1, 8)[:, :7]
@@ -200,7 +206,7 @@ def test_the_archive_is_plain_npz():
 
 
 def former_values():
-    """What the results in data/format-4.npz were made of."""
+    """Return the values from which the results in data/format-4.npz were made."""
     rng = np.random.default_rng(5)
     smooth = np.cumsum(np.cumsum(rng.normal(size=20000))) * 1e-6
     numbers = np.concatenate([smooth[:5000], np.full(3000, 0.25), smooth[1000:9000], smooth])
@@ -218,7 +224,8 @@ def former_values():
 
 
 def test_results_stored_before_format_5_are_read():
-    """Runs, repetitions and differences among them; tests/objects/test_documents.py has a document of before those."""
+    """The results have runs, repetitions and differences; tests/objects/test_documents.py has a
+    document of an earlier format."""
     stored = np.load(Path(__file__).parent / "data" / "format-4.npz")
     floats, text = stored["floats"], str(stored["text"])
     values, expected = store.unpack(floats, text, "k", "x"), former_values()
@@ -232,12 +239,13 @@ def test_results_stored_before_format_5_are_read():
 
 
 def sequenced_toolpath():
-    """What the result in data/toolpath-1.npz was made of, when a toolpath was one flat record."""
+    """Return the value from which the result in data/toolpath-1.npz was made, when a toolpath was
+    one flat record."""
     up = np.tile([0.0, 0.0, 1.0], (4, 1))
 
-    def bead(z, **more):
+    def bead(z, **fields):
         points = np.array([[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 0.0, z]])
-        return Bead(points, up, up, np.arange(4.0), np.full(4, 6.0), True, **more)
+        return Bead(points, up, up, np.arange(4.0), np.full(4, 6.0), True, **fields)
 
     filled = bead(
         0.0,
@@ -250,7 +258,7 @@ def sequenced_toolpath():
         phase=np.arange(4.0),
     )
     checks = Checks(0.5, (10.0, 0.1, 0.2), (1.0, 2.0, 3.0), np.array([[0.0, 1.5, 2.5]]), 0.25)
-    first = Toolpath(
+    first_feature = Toolpath(
         (),
         np.eye(4),
         2.0,
@@ -264,10 +272,10 @@ def sequenced_toolpath():
     )
     second = Toolpath((), np.eye(4), 2.0, 0.02)
     return dataclasses.replace(
-        first.add_checks(unsupported=0.75),
+        first_feature.add_checks(unsupported=0.75),
         layers=(Layer((filled,)), Layer((bead(2.0),), 3.0, True, 1)),
         issues=(Issue("warning", "X", "text", 1),),
-        features=(SequencedFeature("Pièce", first), SequencedFeature("Tube", second)),
+        features=(SequencedFeature("Pièce", first_feature), SequencedFeature("Tube", second)),
     )
 
 
@@ -296,21 +304,21 @@ def test_a_table_that_says_it_is_huge_is_damaged():
     rows = len(toolpath().layers[0].beads[0])
     huge = text.replace(f'"array":[0,0,{rows}]', '"array":[0,0,1000000000000]')
     assert huge != text
-    for places in ((), (("layers", 0, "beads", 0, "points"),)):
+    for paths in ((), (("layers", 0, "beads", 0, "points"),)):
         with pytest.raises(InputError, match="cut short"):
-            store.unpack_parts(floats, huge, "k", "x", *places, ())
+            store.unpack_parts(floats, huge, "k", "x", *paths, ())
 
 
 def test_parts_of_two_results_do_not_pass_for_one():
-    (one, one_text), (other, other_text) = (
+    (first_data, one_text), (second_data, other_text) = (
         store.pack((1.0,), "a" * 32),
         store.pack((2.0,), "b" * 32),
     )
-    assert store.unpack(one, one_text, "a" * 32, "x") == (1.0,)
+    assert store.unpack(first_data, one_text, "a" * 32, "x") == (1.0,)
     for mixed in (
-        (other, one_text, "a" * 32),
-        (one, other_text, "a" * 32),
-        (one, one_text, "b" * 32),
+        (second_data, one_text, "a" * 32),
+        (first_data, other_text, "a" * 32),
+        (first_data, one_text, "b" * 32),
     ):
         with pytest.raises(InputError, match="other inputs"):
             store.unpack(*mixed, "x")
@@ -325,5 +333,7 @@ def test_what_is_no_data_is_refused():
     ):
         with pytest.raises(TypeError, match="cannot be stored"):
             store.pack((array,), "k")
-    whole = np.array([2**53 + 1, -(2**60)])
-    assert equal(store.unpack(*store.pack((whole, whole[:0]), "k"), "k", "x"), (whole, whole[:0]))
+    integers = np.array([2**53 + 1, -(2**60)])
+    assert equal(
+        store.unpack(*store.pack((integers, integers[:0]), "k"), "k", "x"), (integers, integers[:0])
+    )

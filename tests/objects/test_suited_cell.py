@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A new job gets the cell in which it can be done: a positioner where the torch would lean too far, found before it is
-planned, and another place where the robot's usual one does not serve. Held against PyKDL chains of the machine files."""
+"""A new job gets a cell in which it is feasible: a positioner if the torch would lean too far,
+chosen before planning, and another location if the robot's usual one does not work. PyKDL chains of
+the machine files check the result."""
 
 import dataclasses
 import json
@@ -20,7 +21,7 @@ from freecad_am.macro import suit
 
 pytestmark = pytest.mark.any_version
 
-ROBOT, TOOL, MOST = "kuka-kr8-r2100-2-arc-hw", "tool-on-robot", 10.0
+ROBOT, TOOL, MAX_LEAN_DEG = "kuka-kr8-r2100-2-arc-hw", "tool-on-robot", 10.0
 COARSE = {"layer_height": 15.0, "chord_error": 0.3}
 
 
@@ -28,30 +29,33 @@ COARSE = {"layer_height": 15.0, "chord_error": 0.3}
 def dome(doc, monkeypatch):
     make = api.make_feature_of
 
-    def coarse(*given, values, **named):
-        return make(*given, values={**COARSE, **values}, **named)
+    def coarse(*arguments, values, **named):
+        return make(*arguments, values={**COARSE, **values}, **named)
 
     monkeypatch.setattr(api, "make_feature_of", coarse)
-    part = doc.addObject("Part::Sphere", "Dome")
-    part.Radius, part.Angle1 = 45, 0
+    sphere = doc.addObject("Part::Sphere", "Dome")
+    sphere.Radius, sphere.Angle1 = 45, 0
     doc.recompute()
-    return part
+    return sphere
 
 
 @pytest.fixture
 def looked(monkeypatch):
-    """How many layers were planned to find a cell."""
+    """Record how many layers were planned to find a cell."""
     counts, errors = [], remedies._errors
     monkeypatch.setattr(
         remedies,
         "_errors",
-        lambda job, some, told: counts.append(len(some.layers)) or errors(job, some, told),
+        lambda job, toolpath, report: (
+            counts.append(len(toolpath.layers)) or errors(job, toolpath, report)
+        ),
     )
     return counts
 
 
 def leaning(path, positioner):
-    """deg of the torch from the vertical at each point of a joint path object, by a PyKDL chain of the positioner's file."""
+    """Return the lean of the torch from the vertical in deg at each point of a joint path object,
+    by a PyKDL chain of the positioner's file."""
     chain = PyKDL.Chain()
     for joint in json.loads(
         (external.MECHANISMS / f"{positioner.machine}.json").read_text(encoding="utf-8")
@@ -59,7 +63,7 @@ def leaning(path, positioner):
         chain.addSegment(PyKDL.Segment(PyKDL.Joint(), PyKDL.Frame(PyKDL.Vector(*joint["origin"]))))
         axis = PyKDL.Joint("", PyKDL.Vector(), PyKDL.Vector(*joint["axis"]), PyKDL.Joint.RotAxis)
         chain.addSegment(PyKDL.Segment(axis, PyKDL.Frame()))
-    solver, found = PyKDL.ChainFkSolverPos_recursive(chain), []
+    solver, lean_angles = PyKDL.ChainFkSolverPos_recursive(chain), []
     for bead in api.result(path).joint_path.beads:
         for tool, values in zip(bead.bead.tool, bead.joints[:, 6:], strict=True):
             angles, face = PyKDL.JntArray(2), PyKDL.Frame()
@@ -67,20 +71,20 @@ def leaning(path, positioner):
                 angles[k] = float(values[k])
             solver.JntToCart(angles, face)
             up = face.M * PyKDL.Vector(*map(float, tool))
-            found.append(math.degrees(math.acos(max(-1.0, min(1.0, up[2])))))
-    return np.array(found)
+            lean_angles.append(math.degrees(math.acos(max(-1.0, min(1.0, up[2])))))
+    return np.array(lean_angles)
 
 
 def test_a_positioner_is_proposed_before_the_job_is_planned_without(doc, dome, looked):
     cell, feature, _, path, program = api.make_all(
-        doc, dome, machine=ROBOT, setup=TOOL, max_from_vertical=f"{MOST:g} deg"
+        doc, dome, machine=ROBOT, setup=TOOL, max_from_vertical=f"{MAX_LEAN_DEG:g} deg"
     )
-    assert math.isclose(feature.MaxFromVertical.Value, MOST)
+    assert math.isclose(feature.MaxFromVertical.Value, MAX_LEAN_DEG)
     assert path.Status == program.Status == "up to date", (api.issues(path), api.issues(program))
-    made = api.result(cell)
-    (positioner,) = EXTERNAL.read(made.external)
-    assert positioner.carries == "part" and made.setup == TOOL
-    assert leaning(path, positioner).max() <= MOST + 1e-6
+    cell_result = api.result(cell)
+    (positioner,) = EXTERNAL.read(cell_result.external)
+    assert positioner.carries == "part" and cell_result.setup == TOOL
+    assert leaning(path, positioner).max() <= MAX_LEAN_DEG + 1e-6
     assert len(looked) >= 2 and max(looked) <= 4
 
 
@@ -93,32 +97,32 @@ def test_without_a_limit_the_platform_that_suits_the_robot_stays(doc, dome, look
 @pytest.mark.parametrize("setup", ["", TOOL, "part-on-robot"])
 @pytest.mark.always(TOOL)
 def test_a_place_that_does_not_serve_is_changed(doc, dome, monkeypatch, looked, setup):
-    """Told to begin out of reach, a job of each set-up is done elsewhere."""
+    """A job of each set-up that starts out of reach is moved to a feasible location."""
     begin = cell_of(ROBOT)
-    far = (5000.0, 0.0, 900.0, 0.0, 0.0, 0.0)
+    out_of_reach = (5000.0, 0.0, 900.0, 0.0, 0.0, 0.0)
     monkeypatch.setattr(
         api,
         "cell_of",
-        lambda *given: type(begin)(
-            machine=ROBOT, setup=given[2], deposition_point=far, branch=begin.branch
+        lambda *arguments: type(begin)(
+            machine=ROBOT, setup=arguments[2], deposition_point=out_of_reach, branch=begin.branch
         ),
     )
     cell, _, _, path, *_ = api.make_all(doc, dome, setup=setup)
     assert path.Status == "up to date", api.issues(path)
-    assert api.result(cell).deposition_point != far and api.result(cell).setup == (
+    assert api.result(cell).deposition_point != out_of_reach and api.result(cell).setup == (
         setup or "part-on-robot"
     )
 
 
 @pytest.mark.long
 def test_what_no_cell_helps_is_left_as_it_is(doc, dome, looked):
-    """A part too heavy for every positioner."""
+    """The part is too heavy for every positioner."""
     cell, *_, path = api.make_all(
         doc,
         dome,
         machine=ROBOT,
         setup=TOOL,
-        max_from_vertical=f"{MOST:g} deg",
+        max_from_vertical=f"{MAX_LEAN_DEG:g} deg",
         process={"density": 1e6},
     )[:4]
     assert path.Status == "infeasible" and api.result(cell) == cell_of(ROBOT, setup=TOOL)
@@ -126,8 +130,8 @@ def test_what_no_cell_helps_is_left_as_it_is(doc, dome, looked):
 
 
 def test_what_is_proposed_is_named_as_the_panel_names_it(doc, monkeypatch):
-    told = []
-    console = types.SimpleNamespace(PrintWarning=told.append)
+    messages = []
+    console = types.SimpleNamespace(PrintWarning=messages.append)
     monkeypatch.setattr(suit, "App", types.SimpleNamespace(Console=console))
     monkeypatch.setattr(
         suit.suited_cell,
@@ -137,29 +141,30 @@ def test_what_is_proposed_is_named_as_the_panel_names_it(doc, monkeypatch):
     cell = api.make_cell(doc)
     monkeypatch.setattr(suit, "_write", lambda *_: None)
     suit.suit(cell, None)
-    assert told == [
+    assert messages == [
         "Cell: Platform, Arm clearance: proposed for this job; enter what yours really has\n"
     ]
 
 
 def test_layers_that_failed_are_planned_in_the_next_search(doc, dome, monkeypatch):
-    """A search plans some layers; where another one fails after it, a second search finds a cell for that one too."""
-    first = api.make_cell(doc, platform=3.0)
+    """A search plans some layers; if another layer fails after it, a second search finds a cell for
+    that one too."""
+    first_cell = api.make_cell(doc, platform=3.0)
     feature = api.make_feature_of(doc, "revolution", dome, (), links={}, values={})
-    toolpath = api.make_toolpath(doc, feature, first)
+    toolpath = api.make_toolpath(doc, feature, first_cell)
     count = len(api.result(toolpath).layers)
     assert count >= 4
     beside = next(k for k in range(count) if k not in {0, (count - 1) // 2, count // 2, count - 1})
     planned = []
 
-    def errors(job, some, _):
-        numbers = {api.result(toolpath).layers.index(layer) for layer in some.layers}
+    def errors(job, partial_toolpath, _):
+        numbers = {api.result(toolpath).layers.index(layer) for layer in partial_toolpath.layers}
         planned.append(numbers)
         return {"SINGULAR"} if beside in numbers and job.settings == usual else set()
 
     monkeypatch.setattr(remedies, "_errors", errors)
-    usual = api.result(first)
-    assert not suit.suit(first, toolpath)
+    usual = api.result(first_cell)
+    assert not suit.suit(first_cell, toolpath)
     assert all(beside not in numbers for numbers in planned)
-    assert suit.suit(first, toolpath, failed_layers={beside})
-    assert beside in planned[-1] and api.result(first) != usual
+    assert suit.suit(first_cell, toolpath, failed_layers={beside})
+    assert beside in planned[-1] and api.result(first_cell) != usual

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A wall on a substrate in a document: made, renewed when either shape changes, refused where it must be."""
+"""A wall on a substrate in a document: created, renewed when either shape changes, and rejected
+where necessary."""
 
 import FreeCAD as App
 import Mesh
@@ -15,7 +16,7 @@ from freecad_am.core.strategies.walls import fronts
 
 @pytest.fixture
 def tube(doc):
-    """A branch on a pipe: the branch's side is Face1."""
+    """Return a branch on a pipe; the branch's side is Face1."""
     pipe = doc.addObject("Part::Cylinder", "Pipe")
     pipe.Radius, pipe.Height = 32, 120
     pipe.Placement = App.Placement(App.Vector(0, -60, 0), App.Rotation(App.Vector(1, 0, 0), -90))
@@ -25,7 +26,7 @@ def tube(doc):
     return branch, pipe
 
 
-def made(doc, tube, **values):
+def make_wall(doc, tube, **values):
     branch, pipe = tube
     return api.make_surface_feature(
         doc, branch, ["Face1"], pipe, **{"layer_height": 5, "clearance": "none", **values}
@@ -34,7 +35,7 @@ def made(doc, tube, **values):
 
 @pytest.mark.any_version
 def test_feature_and_toolpath(doc, tube):
-    feature = made(doc, tube)
+    feature = make_wall(doc, tube)
     wall = api.result(feature)
     assert feature.WallKind == "cone" and list(feature.WallFaces) == ["Face1"]
     assert np.hypot(wall.first[:, 0], wall.first[:, 2]) == pytest.approx(32.0, abs=1e-9)
@@ -49,8 +50,9 @@ def test_feature_and_toolpath(doc, tube):
 
 @pytest.mark.any_version
 def test_a_tube_is_planned_by_fronts_where_that_is_chosen(doc, tube):
-    """Of a cylinder on a pipe of another size: points of a layer of fronts against the axes of both, by hand."""
-    feature = made(doc, tube, method="fronts", layer_height=6)
+    """A cylinder on a pipe of another size: the test compares the points of a layer of fronts with
+    the axes of both."""
+    feature = make_wall(doc, tube, method="fronts", layer_height=6)
     toolpath = api.make_toolpath(doc, feature)
     assert feature.WallKind == "patches" and feature.Method == "fronts"
     layers = api.result(toolpath).layers
@@ -59,52 +61,57 @@ def test_a_tube_is_planned_by_fronts_where_that_is_chosen(doc, tube):
     assert np.abs(np.hypot(points[:, 0], points[:, 1]) - 12.0).max() < 1e-6
     assert np.abs(np.hypot(rings[0][:, 0], rings[0][:, 2]) - 32.0).max() < 2e-5
     for below, above in zip(rings, rings[1:]):
-        start, way = below[:-1], np.diff(below, axis=0)
+        start, segments = below[:-1], np.diff(below, axis=0)
         share = np.clip(
-            ((above[:, None] - start) * way).sum(axis=2) / (way * way).sum(axis=1), 0.0, 1.0
+            ((above[:, None] - start) * segments).sum(axis=2) / (segments * segments).sum(axis=1),
+            0.0,
+            1.0,
         )
-        apart = np.linalg.norm(above[:, None] - start - share[..., None] * way, axis=2).min(axis=1)
-        assert np.abs(apart - 6.0).max() < 0.011  # chords of both are up to 0.01 mm off
+        distances = np.linalg.norm(
+            above[:, None] - start - share[..., None] * segments, axis=2
+        ).min(axis=1)
+        assert np.abs(distances - 6.0).max() < 0.011  # chords of both are up to 0.01 mm off
     api.change(feature, method="auto")
     assert feature.WallKind == "cone"
     with pytest.raises(InputError, match=r"remove strategy\.method"):
-        made(doc, tube, method="fronts", spacing="iso-parameter")
+        make_wall(doc, tube, method="fronts", spacing="iso-parameter")
 
 
 @pytest.mark.any_version
 def test_renewed_when_the_substrate_changes(doc, tube):
-    feature = made(doc, tube)
+    feature = make_wall(doc, tube)
     toolpath = api.make_toolpath(doc, feature)
     tube[1].Radius = 25
     assert feature.Status == toolpath.Status == "stale"
     api.recompute(doc)
-    first = api.result(feature).first
-    assert np.hypot(first[:, 0], first[:, 2]) == pytest.approx(25.0, abs=1e-9)
+    first_curves = api.result(feature).first
+    assert np.hypot(first_curves[:, 0], first_curves[:, 2]) == pytest.approx(25.0, abs=1e-9)
     start = api.result(toolpath).layers[0].beads[0].points
     assert np.hypot(start[:, 0], start[:, 2]) == pytest.approx(25.0, abs=1e-4)
 
 
 @pytest.mark.any_version
 def test_a_wall_that_reaches_below_the_platform_is_refused_with_its_depth(doc, tube):
-    """The wall begins on the pipe 16 mm above its middle or, beside it, where the pipe is 29.66 mm high."""
+    """The wall begins on the pipe 16 mm above its middle or, next to it, where the pipe is 29.66 mm
+    high."""
     for obj in tube:
         obj.Placement.Base = obj.Placement.Base - App.Vector(0, 0, 40)
-    feature = made(doc, tube)
-    with pytest.raises(InputError, match=r"extends 10\.34 mm below the platform") as found:
+    feature = make_wall(doc, tube)
+    with pytest.raises(InputError, match=r"extends 10\.34 mm below the platform") as error_info:
         api.make_toolpath(doc, feature, api.make_cell(doc))
-    assert found.value.code == "OFF_PLATFORM"
+    assert error_info.value.code == "OFF_PLATFORM"
     assert api.make_toolpath(doc, feature, api.make_cell(doc, platform_diameter=0))
 
 
 def test_a_wall_that_begins_below_the_platform_is_refused_before_its_layers_are_looked_for(
     doc, tube, monkeypatch
 ):
-    """Layers of walls of several faces, and of meshes, may take minutes."""
+    """Layers of walls with several faces, and of meshes, may take minutes."""
     for obj in tube:
         obj.Placement.Base = obj.Placement.Base - App.Vector(0, 0, 40)
-    feature = made(doc, tube, method="fronts")
+    feature = make_wall(doc, tube, method="fronts")
     monkeypatch.setattr(
-        fronts, "plan", lambda *args, **more: pytest.fail("its layers are looked for")
+        fronts, "plan", lambda *args, **options: pytest.fail("its layers are looked for")
     )
     with pytest.raises(InputError, match=r"extends 10\.34 mm below the platform"):
         api.make_toolpath(doc, feature, api.make_cell(doc, mount="part"))
@@ -114,31 +121,32 @@ def test_saved_and_read_back(doc, tube, tmp_path):
     spline = doc.addObject("Part::Feature", "Spline")
     spline.Shape = tube[0].Shape.Faces[0].toNurbs()
     feature = api.make_surface_feature(doc, spline, (), tube[1], clearance="none")
-    before = api.result(feature)
+    original = api.result(feature)
     doc.saveAs(str(tmp_path / "wall.FCStd"))
     again = App.openDocument(str(tmp_path / "wall.FCStd"))
     try:
-        found = api.result(again.getObject(feature.Name))
-        assert found.kind == before.kind == "table"
-        assert (found.table == before.table).all() and (found.first == before.first).all()
+        reopened = api.result(again.getObject(feature.Name))
+        assert reopened.kind == original.kind == "table"
+        assert (reopened.table == original.table).all() and (reopened.first == original.first).all()
     finally:
         App.closeDocument(again.Name)
 
 
 def post(doc, as_mesh):
-    """A post beside the branch, 18 mm from its axis, moved by its own placement and that of a group."""
+    """Return a post next to the branch, 18 mm from its axis, moved by its own placement and that of
+    a group."""
     shape = Part.makeBox(6, 6, 100, App.Vector(-3, -3, -50))
     if as_mesh:
-        found = doc.addObject("Mesh::Feature", "Post")
-        found.Mesh = Mesh.Mesh(shape.tessellate(0.1))
+        post_object = doc.addObject("Mesh::Feature", "Post")
+        post_object.Mesh = Mesh.Mesh(shape.tessellate(0.1))
     else:
-        found = doc.addObject("Part::Feature", "Post")
-        found.Shape = shape
-    found.Placement = App.Placement(App.Vector(18, 0, 0), App.Rotation())
+        post_object = doc.addObject("Part::Feature", "Post")
+        post_object.Shape = shape
+    post_object.Placement = App.Placement(App.Vector(18, 0, 0), App.Rotation())
     group = doc.addObject("App::Part", "Group")
-    group.addObject(found)
+    group.addObject(post_object)
     group.Placement = App.Placement(App.Vector(0, 0, 80), App.Rotation())
-    return found
+    return post_object
 
 
 @pytest.mark.any_version
@@ -147,7 +155,7 @@ def post(doc, as_mesh):
 )
 def test_fixtures_count_and_renew_the_toolpath(doc, tube, as_mesh):
     fixture = post(doc, as_mesh)
-    feature = made(doc, tube, clearance="nozzle", chord_error=0.1, fixtures=[fixture])
+    feature = make_wall(doc, tube, clearance="nozzle", chord_error=0.1, fixtures=[fixture])
     substrate, clamp = api.result(feature).surroundings
     assert (substrate.name, clamp.name) == ("Pipe", "Post")
     assert clamp.vertices.min(axis=0) == pytest.approx([15, -3, 30]) and clamp.vertices[
@@ -166,16 +174,16 @@ def test_fixtures_count_and_renew_the_toolpath(doc, tube, as_mesh):
 
 @pytest.mark.any_version
 def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, tube, monkeypatch):
-    feature = made(doc, tube, clearance="nozzle", chord_error=0.1, fixtures=[post(doc, False)])
+    feature = make_wall(doc, tube, clearance="nozzle", chord_error=0.1, fixtures=[post(doc, False)])
     monkeypatch.setattr(
         estimated_size, "SECONDS_A_TILT", estimated_size.LARGE_SECONDS
-    )  # one point takes as long as that
+    )  # one point takes that long
 
-    def told(issue):
+    def report(issue):
         assert issue.code == estimated_size.LARGE_CODE
         raise KeyboardInterrupt
 
-    with pytest.raises(KeyboardInterrupt), api.told_to(lambda *_: None, told):
+    with pytest.raises(KeyboardInterrupt), api.told_to(lambda *_: None, report):
         api.make_toolpath(doc, feature)
 
 
@@ -183,13 +191,13 @@ def test_tilts_that_take_long_are_told_before_they_are_searched_for(doc, tube, m
 def test_fixtures_of_a_part_of_revolution_are_looked_at(doc, tube):
     fixture = post(doc, False)
     feature = api.make_feature(doc, tube[0], ["Face1"], layer_height=5, fixtures=[fixture])
-    found = [
+    issues = [
         issue for issue in api.issues(api.make_toolpath(doc, feature)) if issue.level == "error"
     ]
     assert (
-        [issue.code for issue in found] == ["CLEARANCE"]
-        and "Post" in found[0].message
-        and found[0].layer is not None
+        [issue.code for issue in issues] == ["CLEARANCE"]
+        and "Post" in issues[0].message
+        and issues[0].layer is not None
     )
     api.change(feature, fixtures=[])
     assert not [issue for issue in api.issues(doc.Toolpath) if issue.level == "error"]
@@ -199,7 +207,7 @@ def test_fixtures_of_a_part_of_revolution_are_looked_at(doc, tube):
 def test_needs_a_solid_substrate(doc, tube):
     tube[0].Placement = App.Placement(
         App.Vector(), App.Rotation(App.Vector(1, 0, 0), 20)
-    )  # it stands on no edge
+    )  # no edge is below it
     with pytest.raises(InputError) as caught:
         api.make_surface_feature(doc, tube[0], ["Face1"])
     assert caught.value.code == "NO_SUBSTRATE" and "start edges" in caught.value.message
@@ -211,18 +219,19 @@ def test_needs_a_solid_substrate(doc, tube):
 
 
 def test_a_wall_that_is_its_own_substrate_is_refused_where_that_is_said(doc, tube):
-    """It was told to lie wholly in it, 0 mm deep and nowhere less; as a mesh it ended with an internal error."""
+    """Such a wall was once reported as inside its substrate, 0 mm deep everywhere; as a mesh it was
+    an internal error."""
     branch, _ = tube
     with pytest.raises(InputError, match="are the same object, Branch") as caught:
         api.make_surface_feature(doc, branch, ["Face1"], branch, layer_height=5)
     assert caught.value.code == "OWN_SUBSTRATE" and caught.value.where.endswith(".Substrate")
-    other = doc.addObject("Part::Feature", "Other")
-    other.Shape = branch.Shape
+    other_object = doc.addObject("Part::Feature", "Other")
+    other_object.Shape = branch.Shape
     scan = doc.addObject("Mesh::Feature", "Scan")
     scan.Mesh = Mesh.Mesh(branch.Shape.tessellate(0.05))
     further = doc.addObject("Mesh::Feature", "Further")
     further.Mesh = scan.Mesh
-    for wall, faces, ground in ((branch, ["Face1"], other), (scan, [], further)):
+    for wall, faces, ground in ((branch, ["Face1"], other_object), (scan, [], further)):
         with pytest.raises(
             InputError, match=f"coincides with the surface of {ground.Label}"
         ) as caught:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A job whose cell becomes a five-axis table: the document follows, and gives the same after reopening."""
+"""A job whose cell becomes a five-axis machine: the document follows, with the same results after
+reopening."""
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from freecad_am.objects import toolpath as toolpaths
 
 def test_a_cell_becomes_a_table_and_the_job_follows(job):
     job.cell.Machine, job.cell.Setup, job.cell.Limits = "table-xyzac", "rotary-table", "maker"
-    with pytest.raises(InputError) as caught:  # the program is one for FANUC
+    with pytest.raises(InputError) as caught:  # the program is for FANUC
         api.recompute(job.program)
     assert (
         caught.value.code == "WRONG_CONTROLLER"
@@ -63,25 +64,26 @@ def test_a_table_is_there_after_reopening(job, tmp_path):
     ],
 )
 def test_what_makes_a_program_impossible_is_told_before_anything_is_planned(job, cell, monkeypatch):
-    """As headless, where such a job is refused before it is begun."""
+    """The document rejects such a job before planning, like a command."""
     import FreeCAD
 
     job.cell.Machine, job.cell.Setup, job.cell.Limits = "table-xyzac", "rotary-table", "maker"
     job.program.Post, job.program.Motion = "linuxcnc", "cartesian"
     api.recompute(job.program)
     assert job.program.Status == "up to date"
-    told = []
+    messages = []
     planned = toolpaths.planned
 
     def watched(*inputs):
-        told.append((job.program.Status, job.program.Message))
+        messages.append((job.program.Status, job.program.Message))
         return planned(*inputs)
 
     monkeypatch.setattr(toolpaths, "planned", watched)
-    for name, value in {**cell, "NozzleDiameter": 1.5}.items():  # which layers are planned anew for
+    # these values change the layers too
+    for name, value in {**cell, "NozzleDiameter": 1.5}.items():
         setattr(job.cell, name, value)
     FreeCAD.ActiveDocument.recompute()
-    early = told[0]  # what would help an infeasible plan is tried by planning again
+    early = messages[0]  # remedies of an infeasible plan are tried by planning again
     reason = (
         "cell.platform: [11, -7, 60, 0, 0, 35]" if "Platform" in cell else "does not read linuxcnc"
     )

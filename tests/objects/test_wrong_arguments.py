@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Wrong arguments of macro functions, each in place of a right one: an error of ours, and a document as it was before."""
+"""Wrong arguments of macro functions, each instead of a right one, give an error of the package and
+leave the document unchanged."""
 
 import inspect
 import math
@@ -17,17 +18,24 @@ from freecad_am.core.parameters.filled import SolidParameters
 from tests import plans
 from tests.objects.conftest import sphere
 
-SEED, SOME = 20261128, 5  # wrong values of each argument with every change; all with --long
-NOT_COMPARED = {"Proxy", "ResultData", "Shape", "Mesh", "ShapeMaterial"}  # of objects
+# number of wrong values for each argument in a normal run; --long tries all
+SEED, SAMPLE_SIZE = 20261128, 5
+NOT_COMPARED = {"Proxy", "ResultData", "Shape", "Mesh", "ShapeMaterial"}  # attributes of objects
 
 
 @pytest.fixture(scope="module")
 def world(tmp_path_factory):
-    """A job in coarse layers, parts for all families, and what is none of that document."""
+    """Return a job in coarse layers, parts for all families, and objects outside of that
+    document."""
     folder = tmp_path_factory.mktemp("wrong")
-    doc, other, closed = (App.newDocument(name) for name in ("Wrong", "Elsewhere", "Closed"))
+    doc, other_document, closed = (
+        App.newDocument(name) for name in ("Wrong", "Elsewhere", "Closed")
+    )
     doc.UndoMode = 1
-    there, gone = other.addObject("Part::Box", "There"), doc.addObject("Part::Box", "Gone")
+    foreign_box, gone = (
+        other_document.addObject("Part::Box", "There"),
+        doc.addObject("Part::Box", "Gone"),
+    )
     doc.removeObject("Gone")
     App.closeDocument("Closed")
     box, pipe = doc.addObject("Part::Box", "Box"), doc.addObject("Part::Feature", "Pipe")
@@ -53,14 +61,14 @@ def world(tmp_path_factory):
         program = api.make_program(doc, path, name="CUP")
     api.export_cell(cell, str(folder / "cell.yaml"))
     with pytest.MonkeyPatch.context() as patch:
-        patch.chdir(folder)  # where names that are paths lead to
+        patch.chdir(folder)  # the folder of relative paths
         yield SimpleNamespace(**locals())
-    for name in (doc.Name, other.Name):
+    for name in (doc.Name, other_document.Name):
         App.closeDocument(name)
 
 
 COARSE = {"layer_height": 10, "chord_error": 0.5}
-RIGHT = {  # of each function arguments that serve, by name
+RIGHT_ARGUMENTS = {  # valid arguments of each function, by name
     "array_element": lambda w: {"array": w.array, "index": 1},
     "change": lambda w: {
         "obj": w.feature,
@@ -259,7 +267,7 @@ RIGHT = {  # of each function arguments that serve, by name
     "stages_of": lambda w: {"doc": w.doc, "kind": "program"},
     "told_to": lambda w: {"listener": print, "findings": None},
 }
-WRONG = {
+WRONG_VALUES = {
     "none": lambda w: None,
     "text": lambda w: "Body",
     "empty": lambda w: "",
@@ -295,8 +303,8 @@ WRONG = {
 
 
 def snapshot(doc):
-    """All objects of a document with what they have, and its steps of undo."""
-    found = [
+    """Return all objects of a document with their properties, and its undo steps."""
+    objects = [
         (
             obj.Name,
             [
@@ -307,41 +315,42 @@ def snapshot(doc):
         )
         for obj in doc.Objects
     ]
-    return found, doc.UndoCount, doc.HasPendingTransaction, App.getActiveTransaction()
+    return objects, doc.UndoCount, doc.HasPendingTransaction, App.getActiveTransaction()
 
 
 def call(world, function, arguments):
-    """The error that a function ends with, of whatever kind; None where it serves, and what it did is taken back."""
-    doc, before = world.doc, snapshot(world.doc)
+    """Return the error that a function raises, of any kind. Return None if it succeeds, and undo
+    its effect."""
+    doc, original = world.doc, snapshot(world.doc)
     try:
-        made = getattr(api, function)(**arguments)
+        created = getattr(api, function)(**arguments)
         if function == "told_to":
-            with made:
+            with created:
                 pass
     except Exception as error:
-        assert snapshot(doc) == before, f"something is left of what failed: {error!r}"
+        assert snapshot(doc) == original, f"something is left of what failed: {error!r}"
         return error
-    while doc.UndoCount > before[1]:
+    while doc.UndoCount > original[1]:
         doc.undo()
     assert not doc.HasPendingTransaction and App.getActiveTransaction() is None
-    assert [name for name, _ in snapshot(doc)[0]] == [name for name, _ in before[0]]
+    assert [name for name, _ in snapshot(doc)[0]] == [name for name, _ in original[0]]
     return None
 
 
 def test_every_function_is_tried(world):
-    assert sorted(RIGHT) == sorted(api.__all__)
-    for function, right in RIGHT.items():
+    assert sorted(RIGHT_ARGUMENTS) == sorted(api.__all__)
+    for function, right in RIGHT_ARGUMENTS.items():
         signature = inspect.signature(getattr(api, function)).parameters.values()
-        assert {one.name for one in signature if one.kind != one.VAR_KEYWORD} <= right(
-            world
-        ).keys(), function
+        assert {
+            parameter.name for parameter in signature if parameter.kind != parameter.VAR_KEYWORD
+        } <= right(world).keys(), function
 
 
-@pytest.mark.parametrize("function", sorted(RIGHT))
+@pytest.mark.parametrize("function", sorted(RIGHT_ARGUMENTS))
 def test_right_arguments_serve(world, function):
     if function == "array_element" and App.Version()[:2] == ["1", "0"]:
         pytest.skip("FreeCAD 1.0 does not take back a new App::Link; see docs/compatibility.md")
-    assert call(world, function, RIGHT[function](world)) is None
+    assert call(world, function, RIGHT_ARGUMENTS[function](world)) is None
 
 
 @pytest.mark.parametrize(("axis", "code"), [
@@ -355,7 +364,7 @@ def test_an_axis_that_is_not_there(world, axis, code):
 
 
 def test_a_stage_is_not_made_from_what_follows_it(world):
-    """FreeCAD took such a link, and fell over it."""
+    """FreeCAD accepted such a link and crashed."""
     for later in (world.toolpath, world.path, world.program, world.feature):
         for links in (
             {"source": later},
@@ -371,10 +380,10 @@ def test_a_stage_is_not_made_from_what_follows_it(world):
     [{"kind": "revolve"}, {"process": {"travel_speed": -1}}, {"post": 7}, {"source": "Box"}],
 )
 def test_a_job_that_is_refused_leaves_nothing_where_no_undo_is_kept(world, wrong):
-    """As in documents of macros without a window: the cell stayed."""
+    """In documents of macros without a window, the cell once remained."""
     world.doc.UndoMode = 0
     try:
-        assert call(world, "make_all", {**RIGHT["make_all"](world), **wrong}) is not None
+        assert call(world, "make_all", {**RIGHT_ARGUMENTS["make_all"](world), **wrong}) is not None
     finally:
         world.doc.UndoMode = 1
 
@@ -391,21 +400,21 @@ def test_parameters_of_another_family_are_not_passed_over(world):
 ])  # fmt: skip
 @pytest.mark.parametrize("number", [1e300, 2e9])
 def test_an_absurd_number_is_refused_before_anything_is_computed_with_it(world, key, most, number):
-    """The squares of a width of 1e300 mm overflowed in the search for collisions, and numpy warned."""
-    error = call(world, "make_toolpath", {**RIGHT["make_toolpath"](world), key: number})
+    """The squares of a width of 1e300 mm overflowed in the collision search, and numpy warned."""
+    error = call(world, "make_toolpath", {**RIGHT_ARGUMENTS["make_toolpath"](world), key: number})
     assert (error.code, error.where) == ("BAD_VALUE", f"process.{key}") and error.message.endswith(
         f"at most {most}"
     )
 
 
-@pytest.mark.parametrize("function", sorted(RIGHT))
+@pytest.mark.parametrize("function", sorted(RIGHT_ARGUMENTS))
 def test_wrong_arguments_are_refused_by_an_error_of_ours(world, function, pytestconfig):
-    chosen, bad = random.Random(f"{SEED} {function}"), []
-    right = RIGHT[function](world)
+    random_source, bad = random.Random(f"{SEED} {function}"), []
+    right = RIGHT_ARGUMENTS[function](world)
     for argument in right:
-        every = sorted(WRONG)
-        for kind in every if pytestconfig.option.long else chosen.sample(every, SOME):
-            value = WRONG[kind](world)
+        kinds = sorted(WRONG_VALUES)
+        for kind in kinds if pytestconfig.option.long else random_source.sample(kinds, SAMPLE_SIZE):
+            value = WRONG_VALUES[kind](world)
             try:
                 error = call(world, function, {**right, argument: value})
             except AssertionError as left:

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every robot of checkouts of ROS packages as a URDF: those that lie there, and those that xacro makes.
-
-A program, run by a Python that has xacro: FOLDER of the checkouts, FOLDER for the URDFs. Packages are found by their
-`package.xml`, those of the same checkout first, where ROS has them installed.
-"""
+"""Write every robot in checkouts of ROS packages as a URDF: existing ones, and those that xacro
+generates. This program runs in a Python with xacro: FOLDER of the checkouts, FOLDER for the URDFs.
+It finds packages by their `package.xml`, those of the same checkout first, where ROS has them
+installed."""
 
 from __future__ import annotations
 
@@ -17,15 +16,15 @@ import xacro
 FAMILY, MEMBERS = (
     "ur_type",
     "config",
-)  # the argument that says which robot of a family it is, and where these are
+)  # the argument that names a robot of a family, and their folder
 
 
 def main(checkouts: Path, target: Path) -> None:
     for checkout in sorted(path for path in checkouts.iterdir() if path.is_dir()):
         packages = {
             name: folder
-            for other in [*checkouts.iterdir(), checkout]
-            for name, folder in _packages(other)
+            for other_checkout in [*checkouts.iterdir(), checkout]
+            for name, folder in _packages(other_checkout)
         }
         _installed(packages)
         for path in sorted(checkout.rglob("*.urdf")):
@@ -36,7 +35,7 @@ def main(checkouts: Path, target: Path) -> None:
                     text = xacro.process_file(str(path), mappings=mappings).toxml()
                 except (
                     Exception
-                ) as error:  # whatever xacro, and the Python within a file, may raise
+                ) as error:  # xacro, and the Python within a file, may raise anything
                     print(
                         f"{path.relative_to(checkouts)}: {' '.join(str(error).split())[:160]}",
                         file=sys.stderr,
@@ -46,16 +45,16 @@ def main(checkouts: Path, target: Path) -> None:
 
 
 def _packages(checkout: Path) -> list[tuple[str, Path]]:
-    found = []
+    packages = []
     for path in checkout.rglob("package.xml"):
         name = re.search(r"<name>\s*(\S+?)\s*</name>", path.read_text(encoding="utf-8"))
         if name:
-            found.append((name[1], path.parent))
-    return found
+            packages.append((name[1], path.parent))
+    return packages
 
 
 def _installed(packages: dict[str, Path]) -> None:
-    """The module that xacro asks where a package is."""
+    """Return the module that xacro asks for the location of a package."""
     index = types.ModuleType("ament_index_python.packages")
     index.get_package_share_directory = lambda name: str(packages[name])  # type: ignore[attr-defined]
     sys.modules["ament_index_python"] = types.ModuleType("ament_index_python")
@@ -63,21 +62,28 @@ def _installed(packages: dict[str, Path]) -> None:
 
 
 def _variants(path: Path) -> list[dict[str, str]]:
-    """Values of arguments: of a file for a family of robots, each of the family."""
+    """Return values of arguments: for a file of a robot family, one set for each robot."""
     text = path.read_text(encoding="utf-8")
     members = path.parents[1] / MEMBERS
     if f'arg name="{FAMILY}"' not in text or not members.is_dir():
         return [{}]
     named = (
-        one.name for one in sorted(members.iterdir()) if (one / "default_kinematics.yaml").is_file()
+        member.name
+        for member in sorted(members.iterdir())
+        if (member / "default_kinematics.yaml").is_file()
     )
     return [{FAMILY: name, "name": name} for name in named]
 
 
-def _keep(text: str, target: Path, checkout: Path, path: Path, *more: str) -> None:
-    """A file of it, where anything in it moves: files of macros and colours are none."""
+def _keep(text: str, target: Path, checkout: Path, path: Path, *arguments: str) -> None:
+    """Keep a file if anything in it moves; files of macros and colours have no moving joints."""
     if re.search(r'<joint[^>]*type="(revolute|continuous|prismatic)"', text):
-        words = [checkout.name, "urdfs", *path.relative_to(checkout).with_suffix("").parts, *more]
+        words = [
+            checkout.name,
+            "urdfs",
+            *path.relative_to(checkout).with_suffix("").parts,
+            *arguments,
+        ]
         (target / ("+".join(words) + ".urdf")).write_text(text, encoding="utf-8")
 
 

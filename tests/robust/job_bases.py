@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sound jobs to start from: every shipped example, and every family on every machine; coarse, of a second each."""
+"""Valid jobs to start from: every shipped example, and every family on every machine, coarse enough
+for a second each."""
 
 import copy
 import functools
@@ -18,7 +19,7 @@ from tests.core.kinematics.arms import EXAMPLES as MACHINES
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "resources" / "examples"
 MACHINE_FILES = ROOT / "freecad_am" / "machines"
-# mm; about eight layers each, and a few of each of FAMILIES: most of a round are jobs of these
+# mm; about eight layers each, and a few of each of FAMILIES: these are most jobs of a round
 # fmt: off
 LAYERS = {
     "hemisphere": 12, "hemisphere-on-table": 12, "hemisphere-on-positioner": 12, "intake-funnel": 14, "laval-nozzle": 14,
@@ -86,8 +87,8 @@ ENDS = {
     "start": {"length": "2 mm", "travel_speed": "5 mm/s"},
     "end": {"length": "3 mm", "travel_speed": "8 mm/s"},
 }
-# what may be told of any family, and the families that it is told of
-TOLD = {
+# options for any family, and the families that accept them
+FAMILY_OPTIONS = {
     "classes": (
         {"process": {"schedule": 2, "classes": CLASSES, **ENDS}},
         ("solid", "surface", "features"),
@@ -110,11 +111,11 @@ PULSES = (
     980.0,
     876.8125,
     454.75,
-)  # of an axis each, as a user's machine file tells them
+)  # speed and acceleration of each axis, in the form of a user's machine file
 RAIL = {"machine": "kuka-kl100-2", "pose": [0, 0, -356, 0, 0, 90], "carries": "robot"}
 TURNS = {"machine": "motoman-motopos-d500", "pose": [850, 60, -300, 0, 0, 20], "carries": "part"}
-# machine: where the part stands, and its post
-RAILS = {
+# machine: where the part is, and its post
+TRACKS = {
     "fanuc-arcmate120ic": ([1000, 500, -100, 0, 0, 0], "fanuc"),
     "motoman-ma2010": ([1000, 500, -300, 0, 0, 0], "yaskawa"),
     "kuka-kr16-2": ([1050, 500, 200, 0, 0, 0], "kuka"),
@@ -123,7 +124,8 @@ RAILS = {
 
 
 def write_parts(folder):
-    """The small parts of FAMILIES, a mesh of each, scans of the block, machine files of a user, and a document."""
+    """Write the small parts of FAMILIES, a mesh of each, scans of the block, machine files of a
+    user, and a document."""
     up = FreeCAD.Vector(0, 0, 1)
     cup = Part.makeSphere(30.0, FreeCAD.Vector(), up, 0, 60, 360)
     cup.exportStep(str(folder / "cup.step"))
@@ -182,31 +184,36 @@ def write_parts(folder):
 
 @functools.cache
 def bases(folder):
-    """(name, job) of all, the job as values with absolute paths of its parts, of which the small ones are in `folder`."""
-    found = [(path.stem, _example(path)) for path in sorted(EXAMPLES.rglob("*.yaml"))]
+    """Return (name, job) of all bases; a job is a tree of values with absolute paths of its parts,
+    and the small parts are in `folder`."""
+    jobs = [(path.stem, _example(path)) for path in sorted(EXAMPLES.rglob("*.yaml"))]
     for machine in sorted(MACHINES, key="{}.json".format):
-        found += [
-            (f"{family} on {machine}", _on(machine, sections, folder))
+        jobs += [
+            (f"{family} on {machine}", _place_on_machine(machine, sections, folder))
             for family, sections in FAMILIES.items()
         ]
-    return found + [*_told(folder), *_on_rails(folder)]
+    return jobs + [*_with_options(folder), *_on_tracks(folder)]
 
 
-def _told(folder):
-    """Jobs of some families and machines with further sections, those of TOLD."""
+def _with_options(folder):
+    """Return jobs of some families and machines with additional sections, those of
+    FAMILY_OPTIONS."""
     for machine in TOLD_ON:
-        for what, (more, families) in TOLD.items():
+        for what, (options, families) in FAMILY_OPTIONS.items():
             for family in families:
-                sections = {**(POST if family == "post" else FAMILIES[family]), **more}
-                yield f"{what} of {family} on {machine}", _on(machine, sections, folder)
+                sections = {**(POST if family == "post" else FAMILIES[family]), **options}
+                yield (
+                    f"{what} of {family} on {machine}",
+                    _place_on_machine(machine, sections, folder),
+                )
 
 
-def _on_rails(folder):
-    """Jobs of robots on a track, beside a positioner or not."""
-    for machine, (point, post) in RAILS.items():
+def _on_tracks(folder):
+    """Return jobs of robots on a track, with and without a positioner."""
+    for machine, (point, post) in TRACKS.items():
         for family in ("curves", "solid"):
             for external in ([RAIL], [TURNS], [RAIL, TURNS]):
-                job = _on(machine, FAMILIES[family], folder)
+                job = _place_on_machine(machine, FAMILIES[family], folder)
                 cell = {
                     "machine": machine,
                     "setup": "tool-on-robot",
@@ -217,8 +224,8 @@ def _on_rails(folder):
                     "nozzle": {"tool": [0, 0, 250, 0, 0, 0]},
                 }
                 if post == "yaskawa":
-                    for one in (cell, *cell["external"]):
-                        one["machine"] = str(Path(folder) / f"{one['machine']}.json")
+                    for values in (cell, *cell["external"]):
+                        values["machine"] = str(Path(folder) / f"{values['machine']}.json")
                 cell.update(
                     {"platform": "10 mm"} if TURNS in external else {"deposition_point": point}
                 )
@@ -226,8 +233,8 @@ def _on_rails(folder):
                 yield f"rail of {family} on {machine}", {**job, "cell": cell, "program": program}
 
 
-def _on(name, sections, folder):
-    """The job of a family on a machine."""
+def _place_on_machine(name, sections, folder):
+    """Return the job of a family on a machine."""
     machine = json.loads((MACHINE_FILES / f"{name}.json").read_text(encoding="utf-8"))
     job = copy.deepcopy(sections)
     for where in (job, *job.get("features", ())):

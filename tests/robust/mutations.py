@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What is done to a sound job, by a seed: to its text, its structure and its values."""
+"""Mutate a valid job at random from a seed: its text, its structure and its values."""
 
 import copy
 import dataclasses
@@ -26,11 +26,14 @@ SECTIONS = {
     "process": ProcessParameters,
     "program": ProgramParameters,
 }
-LATER = {"place": PlaceParameters, "substrate": ScanParameters}  # sections that few jobs have,
+RARE_SECTIONS = {
+    "place": PlaceParameters,
+    "substrate": ScanParameters,
+}  # sections that few jobs have,
 LATER_BY = {
     "place": {"points", "proven"},
     "substrate": {"scan"},
-}  # and which of their keys tell that
+}  # and their keys
 STRATEGIES = {kind: family.parameters for kind, family in families.KINDS.items()}
 OTHER_KEYS = (
     "version",
@@ -79,47 +82,49 @@ PUT_IN = (
 
 
 def mutated(base, chance, folder):
-    """The text, bytes, of a job like `base` with one to three things done to it; `folder` has the small parts."""
+    """Return the text in bytes of a job like `base` with one to three mutations; `folder` has the
+    small parts."""
     job = copy.deepcopy(base)
     kind = chance.choices(("valid", "values", "structure", "text"), (6, 5, 3, 4))[0]
     if kind == "valid":
-        if chance.random() < 0.3:  # the toolpath alone
+        if chance.random() < 0.3:  # only the toolpath
             job.pop("cell", None), job.pop("program", None), job.pop("joints", None)
         for _ in range(chance.randint(1, 4)):
             put(job, *_valid(job, chance))
-        return _written(job)
+        return _dump(job)
     if kind == "values":
         for _ in range(chance.randint(1, 2)):
             put(job, *_odd(job, chance, folder))
-        return _written(job)
+        return _dump(job)
     if kind == "structure":
         return _restructured(job, chance)
-    return damaged_text(_written(job), chance)
+    return damaged_text(_dump(job), chance)
 
 
 def put(job, key, value):
-    """Give a dotted key its value, where its section is one."""
-    *above, last = key.split(".")
+    """Set the value of a dotted key, if its parent is a section."""
+    *above, leaf = key.split(".")
     section = job
     for name in above:
         if not isinstance(section.get(name), dict):
             section[name] = {}
         section = section[name]
-    section[last] = value
+    section[leaf] = value
 
 
 def specs(job):
-    """(dotted key, Spec, default) of all parameters that the job may have."""
+    """Return (dotted key, Spec, default) of all parameters that the job may have."""
     kind = str(job.get("strategy", {}).get("kind", "revolution"))
-    kind = kind if kind in STRATEGIES else "revolution"  # what was done to it before
-    own = {
+    # an earlier mutation may have changed the kind
+    kind = kind if kind in STRATEGIES else "revolution"
+    own_specs = {
         name: factory
-        for name, factory in LATER.items()
+        for name, factory in RARE_SECTIONS.items()
         if _section(job, name).keys() & LATER_BY[name]
     }
     return [
         entry
-        for name, factory in {"strategy": STRATEGIES[kind], **SECTIONS, **own}.items()
+        for name, factory in {"strategy": STRATEGIES[kind], **SECTIONS, **own_specs}.items()
         for entry in _specs(factory, name)
     ]
 
@@ -139,7 +144,7 @@ def _specs(factory, prefix):
 
 
 def _valid(job, chance):
-    """A key and a value that it may well have."""
+    """Return a key and a plausible value for it."""
     if "scan" in _section(job, "substrate") and chance.random() < 0.2:
         key = chance.choice(list(SCAN_KEYS))
         return key, chance.choice(SCAN_KEYS[key])
@@ -157,22 +162,22 @@ def _valid(job, chance):
 
 
 def _classes(chance):
-    """Some classes of beads with keys of their own."""
-    found = {}
+    """Return some classes of beads with keys of their own."""
+    classes = {}
     for name in chance.sample(bead_classes.CLASSES, chance.randint(1, 3)):
-        found[name] = {}
+        classes[name] = {}
         for key in chance.sample(list(bead_classes.SPECS), chance.randint(1, 4)):
             phase, _, inner = key.partition("_")
             value = valid_value(key, bead_classes.SPECS[key], 3.0, chance)
             if phase in (bead_classes.START, bead_classes.END):
-                found[name].setdefault(phase, {})[inner] = value
+                classes[name].setdefault(phase, {})[inner] = value
             else:
-                found[name][key] = value
-    return found
+                classes[name][key] = value
+    return classes
 
 
 def valid_value(key, spec, default, chance):
-    """A value in the range of a parameter, as a job file may write it."""
+    """Return a value in the range of a parameter, in the form of a job file."""
     if spec.words and chance.random() < 0.3:
         return chance.choice(spec.words)
     if spec.optional and chance.random() < 0.2:
@@ -214,9 +219,9 @@ def valid_value(key, spec, default, chance):
 
 
 def _odd(job, chance, folder):
-    """A key and a value that is seldom right."""
-    chosen = chance.choice([*specs(job), *((key, None, None) for key in _others(job))])
-    key, spec, _ = chosen
+    """Return a key and a value that is rarely valid."""
+    choice_ = chance.choice([*specs(job), *((key, None, None) for key in _others(job))])
+    key, spec, _ = choice_
     if key in ("process.classes", "cell.external") and chance.random() < 0.8:
         return key, _odd_entries(job, key, chance, folder)
     if key.endswith((".file", ".scan")) or (
@@ -233,9 +238,9 @@ def _odd(job, chance, folder):
             (1.0, 1.0 - 1e-12, 1.0 + 1e-12, 1.001, 1e6)
         ) * spec.high / f.TO_INNER.get(spec.kind, 1.0)
     if key == "fixtures":
-        other = {"file": "x.step", "faces": ["Face1"]}
+        unrelated = {"file": "x.step", "faces": ["Face1"]}
         return key, chance.choice(
-            ([], {}, [{}], [{"file": f"{folder}/block.step"}], [other], "x", [None])
+            ([], {}, [{}], [{"file": f"{folder}/block.step"}], [unrelated], "x", [None])
         )
     if key == "part.set":
         properties = {"Radius": "9 mm"}, {"Shape": 1}, {}, {"Radius": [1]}
@@ -246,7 +251,7 @@ def _odd(job, chance, folder):
 
 
 def _others(job):
-    """Keys that no dataclass has."""
+    """Return keys that no dataclass has."""
     return (
         (*OTHER_KEYS, "substrate.scan", *SCAN_KEYS)
         if "scan" in _section(job, "substrate")
@@ -255,26 +260,26 @@ def _others(job):
 
 
 def _odd_entries(job, key, chance, folder):
-    """Classes, or external axes, of which something is seldom right."""
+    """Return classes, or external axes, with a rarely valid entry."""
     if key == "process.classes":
-        found = _classes(chance)
-        name = chance.choice(list(found))
+        entries = _classes(chance)
+        name = chance.choice(list(entries))
         inner = chance.choice((*bead_classes.SPECS, "start", "end", "length", "classes"))
-        found[chance.choice((name, name, "seam", ""))] = {inner: chance.choice(ODD)}
-        return found
+        entries[chance.choice((name, name, "seam", ""))] = {inner: chance.choice(ODD)}
+        return entries
     name, parent = (
         chance.choice(("machine", "pose", "carries", "x")),
         _section(job, "cell").get("external"),
     )
-    found = (
+    entries = (
         copy.deepcopy(parent)
         if isinstance(parent, list) and parent
         else [
             {"machine": "kuka-kl100-2", "pose": [0, 0, -356, 0, 0, 90], "carries": "robot"},
         ]
     )
-    if not isinstance(found[0], dict) or chance.random() < 0.2:
-        return found * chance.randint(2, 4)
+    if not isinstance(entries[0], dict) or chance.random() < 0.2:
+        return entries * chance.randint(2, 4)
     odd = (
         *ODD,
         "robot",
@@ -284,34 +289,34 @@ def _odd_entries(job, key, chance, folder):
         "table-xyzac",
         f"{folder}/{chance.choice(PATHS)}",
     )
-    found[0][name] = chance.choice(odd)
-    return found
+    entries[0][name] = chance.choice(odd)
+    return entries
 
 
 def _restructured(job, chance):
-    """Sections and keys that go, move, are misspelt, stand twice, or are wrapped."""
+    """Remove, move, misspell, duplicate or wrap sections and keys."""
     for _ in range(chance.randint(1, 3)):
         sections = [job, *(section for section in job.values() if isinstance(section, dict))]
         section = chance.choice([section for section in sections if section] or [job])
         key = chance.choice(list(section) or ["part"])
         value = section.get(key)
-        done = chance.randrange(7)
-        if done == 0:
+        kind_ = chance.randrange(7)
+        if kind_ == 0:
             section.pop(key, None)
-        elif done == 1:
-            at = chance.randrange(len(key) + 1)
+        elif kind_ == 1:
+            index = chance.randrange(len(key) + 1)
             section[
-                key[:at] + chance.choice("abz_- éß\u00a0") + key[at + chance.randint(0, 1) :]
+                key[:index] + chance.choice("abz_- éß\u00a0") + key[index + chance.randint(0, 1) :]
             ] = section.pop(key, None)
-        elif done == 2:
+        elif kind_ == 2:
             chance.choice(sections)[key] = value
-        elif done == 3:
+        elif kind_ == 3:
             section[key] = [value]
-        elif done == 4:
+        elif kind_ == 4:
             for _ in range(chance.choice((1, 5, 19, 40))):
                 value = {key: value}
             section[key] = value
-        elif done == 5:
+        elif kind_ == 5:
             section[
                 chance.choice(
                     ("x", "", "part.file", "<<", "=", "null", "1", "é", "\u2028", "x" * 3000)
@@ -319,47 +324,47 @@ def _restructured(job, chance):
             ] = value
         else:
             section[key] = chance.choice(ODD)
-    return _written(job)
+    return _dump(job)
 
 
 def damaged_text(data, chance):
-    """Bytes, signs and lines of a text that are others."""
+    """Change bytes, signs and lines of a text."""
     for _ in range(chance.randint(1, 4)):
-        at, other = chance.randrange(max(1, len(data))), chance.randrange(max(1, len(data)))
-        low, high = sorted((at, other))
+        start, end = chance.randrange(max(1, len(data))), chance.randrange(max(1, len(data)))
+        low, high = sorted((start, end))
         lines = data.split(b"\n")
         row = chance.randrange(len(lines))
-        done = chance.randrange(12)
-        if done == 0:
-            data = data[:at]
-        elif done == 1:
-            data = data[:at] + bytes([chance.randrange(256)]) + data[at + 1 :]
-        elif done == 2:
-            data = data[:at] + chance.choice(PUT_IN) + data[at:]
-        elif done == 3:
+        kind_ = chance.randrange(12)
+        if kind_ == 0:
+            data = data[:start]
+        elif kind_ == 1:
+            data = data[:start] + bytes([chance.randrange(256)]) + data[start + 1 :]
+        elif kind_ == 2:
+            data = data[:start] + chance.choice(PUT_IN) + data[start:]
+        elif kind_ == 3:
             data = b"\n".join([*lines[:row], *lines[row + 1 :]])
-        elif done == 4:
+        elif kind_ == 4:
             data = b"\n".join([*lines[:row], lines[row], *lines[row:]])
-        elif done == 5:
+        elif kind_ == 5:
             chance.shuffle(lines)
             data = b"\n".join(lines)
-        elif done == 6:
+        elif kind_ == 6:
             digits = [k for k, sign in enumerate(data) if sign in b"0123456789"]
             if digits:
-                place = chance.choice(digits)
+                match = chance.choice(digits)
                 data = (
-                    data[:place]
+                    data[:match]
                     + chance.choice((b"-", b"9", b"0", b"e", b".", b"1e", b"999"))
-                    + data[place + 1 :]
+                    + data[match + 1 :]
                 )
-        elif done == 7:
+        elif kind_ == 7:
             data = data[:low] + data[high:]
-        elif done == 8:
+        elif kind_ == 8:
             data = data[:high] + data[low:]
-        elif done == 9:
+        elif kind_ == 9:
             coding = chance.choice(("utf-16", "latin-1", "utf-7", "utf-8-sig"))
             data = data.decode("utf-8", "replace").encode(coding, "replace")
-        elif done == 10:
+        elif kind_ == 10:
             data = data.replace(
                 b"\n", chance.choice((b"\r\n", b"\r", b"\n\n", b"\x0b", b"\xe2\x80\xa8"))
             )
@@ -369,8 +374,8 @@ def damaged_text(data, chance):
     return data
 
 
-def _written(job):
-    """The job as YAML; what YAML cannot write is written as JSON would, which YAML reads."""
+def _dump(job):
+    """Return the job as YAML, or as JSON, which YAML reads, where YAML cannot write it."""
     try:
         return yaml.safe_dump(job, allow_unicode=True, sort_keys=False).encode(
             "utf-8", "surrogatepass"

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""URDFs of all robots of the makers' public description repositories, fetched and expanded: nothing of them is kept here.
-
-`ROBOT_DESCRIPTIONS` names a folder with checkouts, `owner+name` each; without it they are cloned into `.test-env`, and xacro
-is put into a Python environment there. What cannot be had is told as the reason to skip.
-"""
+"""URDFs of all robots in the manufacturers' public description repositories, downloaded and
+expanded; the project keeps none of them. `ROBOT_DESCRIPTIONS` names a folder with checkouts,
+`owner+name` each; without it they are cloned into `.test-env`, where xacro gets a Python
+environment. If they are unavailable, the tests skip with the reason."""
 
 from __future__ import annotations
 
@@ -14,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-HERE = Path(__file__).resolve()
-ENVIRONMENT = HERE.parents[2] / ".test-env"
+THIS_FILE = Path(__file__).resolve()
+ENVIRONMENT = THIS_FILE.parents[2] / ".test-env"
 MAKERS = {
     "ros-industrial/abb": "ABB",
     "ros-industrial/abb_experimental": "ABB",
@@ -32,17 +31,23 @@ MAKERS = {
     "Kawasaki-Robotics/khi_robot": "Kawasaki",
     "doosan-robotics/doosan-robot2": "Doosan",
 }
-READ = r"\.(xacro|urdf|yaml|xml)$"  # of a checkout: no meshes
-LIMIT = 600  # s, of one command
+TEXT_FILES = r"\.(xacro|urdf|yaml|xml)$"  # the files of a checkout without meshes
+TIMEOUT_S = 600  # s, for one command
 
 
 def expanded(target: Path) -> list[tuple[str, Path]]:
-    """Maker and file of each URDF, put into a folder; skips, with the reason, where they cannot be had."""
-    python = _with_xacro()
+    """Return manufacturer and file of each URDF in a folder. Skip with the reason if they are
+    unavailable."""
+    python = _python_with_xacro()
     for repository in MAKERS:
         _checkout(repository)
-    _done(
-        [python, str(HERE.with_name("expand_descriptions.py")), str(_checkouts()), str(target)],
+    _run_or_skip(
+        [
+            python,
+            str(THIS_FILE.with_name("expand_descriptions.py")),
+            str(_checkouts()),
+            str(target),
+        ],
         "xacro ended in an error",
     )
     names = {repository.replace("/", "+"): maker for repository, maker in MAKERS.items()}
@@ -55,46 +60,50 @@ def _checkouts() -> Path:
 
 
 def _checkout(repository: str) -> None:
-    """The newest text files of a repository."""
+    """Return the newest text files of a repository."""
     folder = _checkouts() / repository.replace("/", "+")
     if not folder.is_dir():
         source = f"https://github.com/{repository}"
         reason = f"{source} cannot be cloned: put a checkout at {folder.name} in the folder that ROBOT_DESCRIPTIONS names"
         folder.parent.mkdir(parents=True, exist_ok=True)
-        _done(
+        _run_or_skip(
             ["git", "clone", "-q", "-n", "--depth", "1", "--filter=blob:none", source, str(folder)],
             reason,
         )
-        listed = f"git ls-files | grep -E '{READ}' | git checkout -q HEAD --pathspec-from-file=-"
-        _done(
+        listed = (
+            f"git ls-files | grep -E '{TEXT_FILES}' | git checkout -q HEAD --pathspec-from-file=-"
+        )
+        _run_or_skip(
             ["sh", "-c", f"cd '{folder}' && git reset -q && {listed}"],
             f"{source} cannot be checked out",
         )
 
 
-def _with_xacro() -> str:
-    """A Python that has xacro."""
+def _python_with_xacro() -> str:
+    """Return a Python that has xacro."""
     python = ENVIRONMENT / "xacro" / "bin" / "python"
     if not python.exists():
-        _done(
+        _run_or_skip(
             [sys.executable, "-m", "venv", str(python.parents[1])],
             "no Python environment can be made",
         )
     if subprocess.run(
         [str(python), "-c", "import xacro"], capture_output=True, check=False
     ).returncode:
-        _done(
+        _run_or_skip(
             [str(python), "-m", "pip", "install", "-q", "xacro", "PyYAML"],
             "xacro cannot be installed by pip",
         )
     return str(python)
 
 
-def _done(command: list[str], reason: str) -> None:
-    """Run a command, or skip with the reason and the last line that it said."""
+def _run_or_skip(command: list[str], reason: str) -> None:
+    """Run a command, or skip with the reason and the last line of its output."""
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=LIMIT, check=False)
+        process = subprocess.run(
+            command, capture_output=True, text=True, timeout=TIMEOUT_S, check=False
+        )
     except (OSError, subprocess.TimeoutExpired) as error:
         pytest.skip(f"{reason}: {error}")
-    if done.returncode:
-        pytest.skip(f"{reason}: {(done.stderr.strip().splitlines() or ['no word'])[-1]}")
+    if process.returncode:
+        pytest.skip(f"{reason}: {(process.stderr.strip().splitlines() or ['no word'])[-1]}")

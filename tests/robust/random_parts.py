@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Random parts with random settings, and how far points are off each by its own formula, or by its triangles."""
+"""Random parts with random settings, and the distance of points from each by its own formula, or by
+its triangles."""
 
 import functools
 import math
@@ -12,16 +13,20 @@ from tests.robust import job_bases, mutations, triangles
 
 UP = FreeCAD.Vector(0, 0, 1)
 DEFLECTION = 0.02  # mm of triangles, where a part has no formula
-ROUNDED = 0.021  # mm that the package allows walls beside the chord error
+ROUNDED = 0.021  # mm of deviation that the package allows for walls, besides the chord error
 
 
 def write(chance, folder, machines):
-    """A job, as values, of a part and perhaps a substrate that are written into `folder`, and what tells by how much, mm,
-    the farthest of points (n, 3) is farther off than the job allows."""
+    """Return a job, as values, of a part and perhaps a substrate that are written into `folder`,
+    and a function that returns the largest excess of points (n, 3), in mm, over the deviation that
+    the job allows."""
     size = chance.choices((1.0, 80.0, 1500.0), (1, 12, 2))[0] * 10 ** chance.uniform(-0.4, 0.4)
-    job, part, substrate, away, margin = chance.choice(KINDS)(chance, size)
+    job, shape, substrate, distance, margin = chance.choice(KINDS)(chance, size)
     placed = _placement(chance, size)
-    job = {"part": _write(part.transformed(placed.toMatrix(), True), folder, "part", chance), **job}
+    job = {
+        "part": _write(shape.transformed(placed.toMatrix(), True), folder, "part", chance),
+        **job,
+    }
     if substrate is not None:
         mesh = chance.random() < 0.25
         job["substrate"] = _write(
@@ -39,11 +44,11 @@ def write(chance, folder, machines):
         job["cell"], job["program"] = dict(sections["cell"]), dict(sections["program"])
     for _ in range(chance.randint(0, 4)):
         _set(job, chance)
-    return job, functools.partial(_excess, job, away, margin, placed)
+    return job, functools.partial(_excess, job, distance, margin, placed)
 
 
 def _set(job, chance):
-    """One parameter as it may well be."""
+    """Set one parameter to a plausible value."""
     key, spec, default = chance.choice(mutations.specs(job))
     section = key.split(".")[0]
     lengths = (
@@ -61,8 +66,9 @@ def _set(job, chance):
         mutations.put(job, key, mutations.valid_value(key, spec, default, chance))
 
 
-def _excess(job, away, margin, placed, points, build):
-    """By how much the farthest point is off; away: distances in the part's own place, margin: mm allowed."""
+def _excess(job, distance, margin, placed, points, build):
+    """Return the largest excess of a point; distance: from the part at its own location, margin:
+    allowed mm."""
     if not len(points):
         return 0.0
     inverse = np.array(placed.inverse().toMatrix().A).reshape(4, 4)
@@ -74,33 +80,35 @@ def _excess(job, away, margin, placed, points, build):
     )  # plane layers are cut at their bottom, middle or top
     cuts = [points + share * high * build for share in shares]
     farthest = np.min(
-        [away(cut @ inverse[:3, :3].T + inverse[:3, 3]) for cut in cuts], axis=0
+        [distance(cut @ inverse[:3, :3].T + inverse[:3, 3]) for cut in cuts], axis=0
     ).max()
     rounding = 1e-9 * np.abs(points).max() + 2e-6  # waypoints have six decimals
     return float(farthest) - margin(job) - rounding
 
 
-def _on_wall(job):
+def _is_on_wall(job):
     return float(job["strategy"]["chord_error"].split()[0]) + ROUNDED
 
 
 def _placement(chance, size):
-    """Where it is: in its own place, turned and moved, or far away."""
-    far = chance.choices((0.0, 1.0, 1e3), (5, 4, 1))[0] * size
-    if not far:
+    """Return a placement: the identity, a rotation with a shift, or one far away."""
+    distance = chance.choices((0.0, 1.0, 1e3), (5, 4, 1))[0] * size
+    if not distance:
         return FreeCAD.Placement()
     axis = FreeCAD.Vector(*(chance.gauss(0.0, 1.0) for _ in range(3)))
     turned = FreeCAD.Rotation(axis, chance.uniform(0.0, 360.0))
     return FreeCAD.Placement(
-        FreeCAD.Vector(*(far * chance.gauss(0.0, 1.0) for _ in range(3))), turned
+        FreeCAD.Vector(*(distance * chance.gauss(0.0, 1.0) for _ in range(3))), turned
     )
 
 
-# revolution ------------------------------------------------------------------------------------------------------------
+# revolution
+# ------------------------------------------------------------------------------------------------------------
 
 
-def turned(chance, size):
-    """A meridian of lines or an arc, turned about an axis: a shell, or a solid with a wall."""
+def revolved(chance, size):
+    """Return a meridian of lines or an arc, revolved about an axis: a shell, or a solid with a
+    wall."""
     radius, tall = size * chance.uniform(0.1, 1.0), size * chance.uniform(0.3, 1.0)
     count = chance.randint(2, 5)
     corners = [(radius * chance.uniform(0.2, 1.0), tall * k / (count - 1)) for k in range(count)]
@@ -135,7 +143,7 @@ def turned(chance, size):
         return np.min([_off_line(r - add, points[:, 2], line) for add in {0.0, thick}], axis=0)
 
     def margin(job):
-        return _on_wall(job) + (thick if job["strategy"].get("wall") == "middle" else 0.0)
+        return _is_on_wall(job) + (thick if job["strategy"].get("wall") == "middle" else 0.0)
 
     return {"strategy": {"kind": "revolution"}}, shape, None, away, margin
 
@@ -145,29 +153,30 @@ def _turn(chance):
 
 
 def _off_line(r, z, line):
-    """Distances of places (n,) from the straight pieces of a line (k, 2)."""
-    places = np.stack([r, z], axis=-1)[:, None]
+    """Return distances of points (n,) from the straight segments of a line (k, 2)."""
+    positions = np.stack([r, z], axis=-1)[:, None]
     along = np.diff(line, axis=0)
-    share = ((places - line[:-1]) * along).sum(2) / np.maximum((along**2).sum(1), 1e-300)
+    share = ((positions - line[:-1]) * along).sum(2) / np.maximum((along**2).sum(1), 1e-300)
     return np.linalg.norm(
-        line[:-1] + np.clip(share, 0.0, 1.0)[..., None] * along - places, axis=2
+        line[:-1] + np.clip(share, 0.0, 1.0)[..., None] * along - positions, axis=2
     ).min(axis=1)
 
 
-# tubes on parts --------------------------------------------------------------------------------------------------------
+# tubes on parts
+# --------------------------------------------------------------------------------------------------------
 
 
 def tube(chance, size):
-    """A cylinder or cone that leaves a block, a rod or a ball, straight or leaning."""
+    """Return a cylinder or cone on a block, a rod or a ball, straight or leaning."""
     radius, tall = size * chance.uniform(0.1, 0.4), size * chance.uniform(0.4, 1.2)
     grows = chance.choice((0.0, 0.0, 0.3, -0.3))
     low, high = -0.3 * size, tall
     wide = radius * (1.0 + grows)
-    narrow, at = radius * (1.0 - grows * 0.3 * size / tall), FreeCAD.Vector(0, 0, low)
+    narrow, start = radius * (1.0 - grows * 0.3 * size / tall), FreeCAD.Vector(0, 0, low)
     shape = (
-        Part.makeCone(narrow, wide, high - low, at)
+        Part.makeCone(narrow, wide, high - low, start)
         if grows
-        else Part.makeCylinder(radius, high - low, at)
+        else Part.makeCylinder(radius, high - low, start)
     )
     wall = shape.Faces[0]
     slope = (wide - narrow) / (high - low)
@@ -179,7 +188,7 @@ def tube(chance, size):
         r = np.hypot(points[:, 0], points[:, 1])
         return np.abs(r - radius - slope * points[:, 2]) / math.hypot(1.0, slope)
 
-    return _surface(), faces[0] if faces else wall, foot, away, _on_wall
+    return _surface(), faces[0] if faces else wall, foot, away, _is_on_wall
 
 
 def _foot(chance, size, radius):
@@ -198,10 +207,10 @@ def _foot(chance, size, radius):
 
 
 def bend(chance, size):
-    """A piece of a torus on a block."""
+    """Return a segment of a torus on a block."""
     big, small = size * chance.uniform(0.3, 1.0), size * chance.uniform(0.05, 0.35)
     torus = Part.Toroid()
-    torus.MinorRadius = 1e-3  # at no time may it be more than the other
+    torus.MinorRadius = 1e-3  # the minor radius must never exceed the major one
     torus.MajorRadius, torus.MinorRadius = max(big, 1.05 * small), small
     torus.Center, torus.Axis = FreeCAD.Vector(-torus.MajorRadius, 0, 0), FreeCAD.Vector(0, -1, 0)
     shape = torus.toShape(
@@ -218,11 +227,11 @@ def bend(chance, size):
             np.hypot(np.hypot(points[:, 0] + middle, points[:, 2]) - middle, points[:, 1]) - small
         )
 
-    return _surface(), shape, foot, away, _on_wall
+    return _surface(), shape, foot, away, _is_on_wall
 
 
 def sheared(chance, size):
-    """A circle pushed along a slanted line, on a block or a ball."""
+    """Return a circle swept along a slanted line, on a block or a ball."""
     radius, tall, lean = (
         size * chance.uniform(0.05, 0.3),
         size * chance.uniform(0.5, 1.2),
@@ -236,13 +245,13 @@ def sheared(chance, size):
 
     def away(points):
         r = np.hypot(points[:, 0] - lean * points[:, 2], points[:, 1])
-        return np.abs(r - radius) / math.hypot(1.0, lean)  # at least
+        return np.abs(r - radius) / math.hypot(1.0, lean)  # a lower bound
 
-    return _surface(), faces[0] if faces else wall, foot, away, _on_wall
+    return _surface(), faces[0] if faces else wall, foot, away, _is_on_wall
 
 
 def lofted(chance, size):
-    """A shell through a circle and ellipses, on a block."""
+    """Return a shell through a circle and ellipses, on a block."""
     wires = []
     for k in range(chance.randint(2, 4)):
         a, b = sorted((size * chance.uniform(0.1, 0.4) for _ in range(2)), reverse=True)
@@ -250,9 +259,11 @@ def lofted(chance, size):
             Part.Ellipse(FreeCAD.Vector(), a, b) if k else Part.Circle(FreeCAD.Vector(), UP, a)
         ).toShape()
         shift = 0.05 * size * min(k, 1)
-        at = FreeCAD.Vector(shift * chance.gauss(0, 1), shift * chance.gauss(0, 1), 0.4 * size * k)
+        centre = FreeCAD.Vector(
+            shift * chance.gauss(0, 1), shift * chance.gauss(0, 1), 0.4 * size * k
+        )
         leans = FreeCAD.Rotation(FreeCAD.Vector(1, 0, 0), chance.uniform(-10, 10) * min(k, 1))
-        ellipse.Placement = FreeCAD.Placement(at, leans)
+        ellipse.Placement = FreeCAD.Placement(centre, leans)
         wires.append(Part.Wire([ellipse]))
     shape = Part.makeLoft(wires, False, chance.random() < 0.3)
     foot = Part.makeBox(
@@ -264,7 +275,7 @@ def lofted(chance, size):
         shape,
         foot,
         lambda points: triangles.distance(points, facets),
-        lambda job: _on_wall(job) + DEFLECTION,
+        lambda job: _is_on_wall(job) + DEFLECTION,
     )
 
 
@@ -272,11 +283,12 @@ def _surface():
     return {"strategy": {"kind": "surface"}}
 
 
-# solids ----------------------------------------------------------------------------------------------------------------
+# solids
+# ----------------------------------------------------------------------------------------------------------------
 
 
 def boxes_on_hub(chance, size):
-    """Boxes around a cylinder or cone, fused or side by side."""
+    """Return boxes around a cylinder or cone, fused or side by side."""
     radius, tall = size * chance.uniform(0.3, 0.8), 2.0 * size
     top = radius * chance.uniform(0.4, 0.95)
     hub = (
@@ -293,14 +305,14 @@ def boxes_on_hub(chance, size):
         )
         box.rotate(FreeCAD.Vector(), UP, chance.uniform(0.0, 360.0))
         solids.append(box)
-    whole = solids[0].multiFuse(solids[1:]) if len(solids) > 1 else solids[0]
-    part = Part.Compound(whole.cut(hub).Solids)
-    facets = _facets(part)
+    fused = solids[0].multiFuse(solids[1:]) if len(solids) > 1 else solids[0]
+    remainder = Part.Compound(fused.cut(hub).Solids)
+    facets = _facets(remainder)
 
     def away(points):
         return np.where(triangles.inside(points, facets), 0.0, triangles.distance(points, facets))
 
-    return {"strategy": {"kind": "developable"}}, part, hub, away, _beside_solids
+    return {"strategy": {"kind": "developable"}}, remainder, hub, away, _beside_solids
 
 
 def _beside_solids(job):
@@ -309,11 +321,11 @@ def _beside_solids(job):
         job_length(strategy["bead_spacing"]),
         job_length(job.get("process", {}).get("bead_width", 8.0)),
     )
-    return 0.5 * widest + job_length(strategy.get("margin", 0.0)) + _on_wall(job) + DEFLECTION
+    return 0.5 * widest + job_length(strategy.get("margin", 0.0)) + _is_on_wall(job) + DEFLECTION
 
 
 def mixed(chance, size):
-    """Something for no family, or of several solids."""
+    """Return a shape of no family, or several solids."""
     things = [
         Part.makeBox(*(size * 10 ** chance.uniform(-2.0, 0.0) for _ in range(3))),
         Part.makeSphere(0.4 * size),
@@ -322,13 +334,15 @@ def mixed(chance, size):
         Part.makeCone(0.5 * size, 0.1 * size, size),
         Part.makeBox(size, size, size).cut(Part.makeSphere(0.9 * size)),
     ]
-    chosen = chance.sample(things, chance.randint(1, 3))
-    for one in chosen[1:]:
-        one.translate(FreeCAD.Vector(*(size * chance.choice((0.0, 0.5, 3.0)) for _ in range(3))))
+    shapes = chance.sample(things, chance.randint(1, 3))
+    for other_shape in shapes[1:]:
+        other_shape.translate(
+            FreeCAD.Vector(*(size * chance.choice((0.0, 0.5, 3.0)) for _ in range(3)))
+        )
     shape = (
-        chosen[0].multiFuse(chosen[1:])
-        if len(chosen) > 1 and chance.random() < 0.5
-        else Part.Compound(chosen)
+        shapes[0].multiFuse(shapes[1:])
+        if len(shapes) > 1 and chance.random() < 0.5
+        else Part.Compound(shapes)
     )
     kind = chance.choice(("revolution", "surface", "developable", "solid", "solid", "solid"))
     foot = None if kind in ("revolution", "solid") else _foot(chance, size, 0.2 * size)
@@ -338,7 +352,9 @@ def mixed(chance, size):
         if kind in FILLED:
             return _beside_solids(job)
         return (
-            _on_wall(job) + DEFLECTION + (size if job["strategy"].get("wall") == "middle" else 0.0)
+            _is_on_wall(job)
+            + DEFLECTION
+            + (size if job["strategy"].get("wall") == "middle" else 0.0)
         )
 
     def away(points):
@@ -350,8 +366,8 @@ def mixed(chance, size):
 
 FILLED = ("developable", "solid")
 KINDS = (
-    turned,
-    turned,
+    revolved,
+    revolved,
     tube,
     tube,
     bend,
@@ -365,7 +381,7 @@ KINDS = (
 
 
 def job_length(value):
-    """mm."""
+    """Return a length in mm."""
     return float(str(value).split()[0])
 
 
@@ -375,11 +391,13 @@ def _facets(shape):
     return np.array([[tuple(vertices[k]) for k in facet] for facet in facets])
 
 
-# files -----------------------------------------------------------------------------------------------------------------
+# files
+# -----------------------------------------------------------------------------------------------------------------
 
 
 def _write(shape, folder, name, chance, mesh=False):
-    """The section of a job about a file of a shape, or of its triangles, which may be damaged."""
+    """Return the section of a job about a file of a shape, or of its triangles, which may be
+    damaged."""
     if mesh:
         facets = _facets(shape)
         (folder / f"{name}.stl").write_text(
@@ -393,16 +411,16 @@ def _write(shape, folder, name, chance, mesh=False):
 
 
 def _damaged(facets, chance):
-    """Triangles that are missing, turned over, twice, shaken, without area or far away."""
+    """Return triangles with some missing, flipped, duplicated, shaken, without area or far away."""
     facets = facets.copy()
-    some = [chance.randrange(len(facets)) for _ in range(chance.randint(1, 4))]
+    indices = [chance.randrange(len(facets)) for _ in range(chance.randint(1, 4))]
     kind = chance.randrange(6)
     if kind == 0:
-        return np.delete(facets, some, axis=0)
+        return np.delete(facets, indices, axis=0)
     if kind == 1:
-        facets[some] = facets[some][:, ::-1]
+        facets[indices] = facets[indices][:, ::-1]
     elif kind == 2:
-        return np.concatenate([facets, facets[some]])
+        return np.concatenate([facets, facets[indices]])
     elif kind == 3:
         facets += (
             1e-4
@@ -410,9 +428,9 @@ def _damaged(facets, chance):
             * np.random.default_rng(chance.randrange(1000)).normal(size=facets.shape)
         )
     elif kind == 4:
-        facets[some, 1] = facets[some, 0]
+        facets[indices, 1] = facets[indices, 0]
     else:
-        facets[some[0], 0] = 1e6
+        facets[indices[0], 0] = 1e6
     return facets
 
 
@@ -429,12 +447,12 @@ def _stl(facets):
     return "\n".join([*lines, "endsolid part", ""])
 
 
-def machines(parts):
-    """The sections of cells and programs that parts are planned on; those that stand there once more for families that came
-    later are left out, so that seeds make the parts they made."""
-    later = ("cladding on", "features on", *job_bases.TOLD, "rail")
+def machines(folder_):
+    """Return the sections of cells and programs on which parts are planned. Sections that were
+    duplicated for later families are left out, so that seeds still give the same parts."""
+    later = ("cladding on", "features on", *job_bases.FAMILY_OPTIONS, "rail")
     return [
         job
-        for name, job in job_bases.bases(parts)
+        for name, job in job_bases.bases(folder_)
         if "cell" in job and "program" in job and not name.startswith(later)
     ]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Folders, names and texts made to mislead: nothing outside the folder of outputs is touched, no message is forged."""
+"""Misleading folders, names and texts touch nothing outside the output folder and forge no
+message."""
 
 import base64
 import hashlib
@@ -21,25 +22,25 @@ OURS = "/PROG  {}\n/MN\n   1:  !Limits: maker ;\n   2:  !Travel speed 6 mm/s ;\n
 
 
 def tree(folder):
-    """Everything below a folder: contents of files, targets of links."""
-    found = {}
+    """Return everything below a folder: contents of files, targets of links."""
+    entries = {}
     for path in sorted(folder.rglob("*")):
         name = str(path.relative_to(folder))
-        found[name] = (
+        entries[name] = (
             os.readlink(path)
             if path.is_symlink()
             else path.read_bytes()
             if path.is_file()
             else None
         )
-    return found
+    return entries
 
 
 def publish(folder, files):
-    with outputs.Outputs(str(folder)) as made:
+    with outputs.Outputs(str(folder)) as folder_:
         for name, content in files.items():
-            made.write(name, content)
-        return made.publish(outputs.earlier_outputs(made.folder))
+            folder_.write(name, content)
+        return folder_.publish(outputs.earlier_outputs(folder_.folder))
 
 
 def planted_report(programs, name="cup"):
@@ -48,7 +49,7 @@ def planted_report(programs, name="cup"):
 
 @pytest.fixture
 def elsewhere(tmp_path):
-    """A folder of the user's own, beside the folder of outputs."""
+    """Return a user's own folder next to the output folder."""
     folder = tmp_path / "elsewhere"
     (folder / "sub").mkdir(parents=True)
     for name in ("OTHER.LS", "CUP.LS", "sub/CUP.LS"):
@@ -60,11 +61,13 @@ def test_a_link_in_the_place_of_program_is_refused_before_the_work(workshop, els
     out = workshop.folder / "out" / "cup"
     out.mkdir(parents=True)
     (out / "program").symlink_to(elsewhere)
-    before = tree(elsewhere), tree(out)
-    done = workshop.run("plan", "cup.yaml")
-    assert done.status == 2
-    assert re.fullmatch(r"error\[UNWRITABLE\] \S*out/cup/program: .*link.*-o\n", done.err), done.err
-    assert (tree(elsewhere), tree(out)) == before
+    original = tree(elsewhere), tree(out)
+    command = workshop.run("plan", "cup.yaml")
+    assert command.status == 2
+    assert re.fullmatch(r"error\[UNWRITABLE\] \S*out/cup/program: .*link.*-o\n", command.err), (
+        command.err
+    )
+    assert (tree(elsewhere), tree(out)) == original
 
 
 @pytest.mark.parametrize("told", [
@@ -76,12 +79,12 @@ def test_a_planted_report_removes_nothing_behind_a_link(tmp_path, elsewhere, tol
     (out / "program").mkdir(parents=True)
     (out / "program" / "x").symlink_to(elsewhere)
     (out / "report.json").write_text(planted_report(told))
-    before = tree(elsewhere)
+    original = tree(elsewhere)
     assert publish(out, {"report.json": b"{}", "program/CUP.LS": b"new"}) == [
         "program/CUP.LS",
         "report.json",
     ]
-    assert tree(elsewhere) == before
+    assert tree(elsewhere) == original
     assert tree(out) == {
         "program": None,
         "program/CUP.LS": b"new",
@@ -96,9 +99,9 @@ def test_a_planted_report_of_an_odd_name_removes_nothing(tmp_path, elsewhere, na
     out.mkdir()
     (out / "report.json").write_text(planted_report([], name))
     (elsewhere / "OTHER.FCStd").write_text("mine")
-    before = tree(elsewhere)
+    original = tree(elsewhere)
     publish(out, {"report.json": b"{}"})
-    assert tree(elsewhere) == before
+    assert tree(elsewhere) == original
 
 
 def test_a_link_in_the_place_of_a_file_is_replaced_and_not_written_through(tmp_path, elsewhere):
@@ -106,9 +109,9 @@ def test_a_link_in_the_place_of_a_file_is_replaced_and_not_written_through(tmp_p
     (out / "program").mkdir(parents=True)
     (out / "program" / "CUP.LS").symlink_to(elsewhere / "CUP.LS")
     (out / "waypoints.csv").symlink_to(elsewhere / "OTHER.LS")
-    before = tree(elsewhere)
+    original = tree(elsewhere)
     publish(out, {"program/CUP.LS": b"new", "waypoints.csv": b"rows"})
-    assert tree(elsewhere) == before
+    assert tree(elsewhere) == original
     assert tree(out) == {"program": None, "program/CUP.LS": b"new", "waypoints.csv": b"rows"}
 
 
@@ -116,11 +119,13 @@ def test_an_application_that_is_a_link_is_refused(tmp_path, elsewhere):
     out = tmp_path / "out"
     (out / "program").mkdir(parents=True)
     (out / "program" / "cup").symlink_to(elsewhere)
-    before = tree(elsewhere), tree(out)
-    with pytest.raises(InputError, match="link") as told:
+    original = tree(elsewhere), tree(out)
+    with pytest.raises(InputError, match="link") as error_info:
         publish(out, {"program/cup/start.pgx": b"new"})
-    assert told.value.code == "UNWRITABLE" and told.value.where == str(out / "program" / "cup")
-    assert (tree(elsewhere), tree(out)) == before
+    assert error_info.value.code == "UNWRITABLE" and error_info.value.where == str(
+        out / "program" / "cup"
+    )
+    assert (tree(elsewhere), tree(out)) == original
 
 
 def test_the_users_own_programs_stay(workshop):
@@ -138,9 +143,9 @@ def test_the_users_own_programs_stay(workshop):
         (program / name).write_bytes(content)
     workshop.change("name: cup", "name: bowl")
     assert workshop.run("plan", "cup.yaml", "--no-page", "-o", "out/cup").status == 0
-    found = {path.name: path.read_bytes() for path in program.iterdir()}
-    assert set(found) == {*theirs, "BOWL.LS"}
-    assert all(found[name] == content for name, content in theirs.items())
+    programs = {path.name: path.read_bytes() for path in program.iterdir()}
+    assert set(programs) == {*theirs, "BOWL.LS"}
+    assert all(programs[name] == content for name, content in theirs.items())
 
 
 def test_a_hidden_folder_of_somebody_else_stays_and_a_planted_one_reaches_nothing_outside(
@@ -150,7 +155,7 @@ def test_a_hidden_folder_of_somebody_else_stays_and_a_planted_one_reaches_nothin
     (out / ".unfinished-mine").mkdir(parents=True)
     (out / ".unfinished-mine" / "notes.txt").write_text("mine")
     (out / ".unfinished-link").symlink_to(elsewhere)
-    (elsewhere / staging.MARK).touch()  # as if it were one of ours
+    (elsewhere / staging.MARK).touch()  # marked as a folder of the package
     (out / ".unfinished-marked").mkdir()
     (out / ".unfinished-marked" / "notes.txt").write_text("mine")
     (out / ".unfinished-marked" / staging.MARK).symlink_to(elsewhere / "OTHER.LS")
@@ -162,9 +167,9 @@ def test_a_hidden_folder_of_somebody_else_stays_and_a_planted_one_reaches_nothin
     (planted / staging.NOTE).write_text(
         json.dumps({"files": ["CUP.LS"], "old": ["../elsewhere/OTHER.LS"]})
     )
-    before = tree(elsewhere)
+    original = tree(elsewhere)
     publish(out, {"report.json": b"{}"})
-    assert tree(elsewhere) == before
+    assert tree(elsewhere) == original
     assert tree(out) == {
         ".unfinished-mine": None,
         ".unfinished-mine/notes.txt": b"mine",
@@ -198,11 +203,11 @@ def test_a_macro_exports_nothing_through_a_link(tmp_path, elsewhere):
     out.mkdir()
     (out / "cup").symlink_to(elsewhere)
     (out / "CUP.LS").symlink_to(elsewhere / "CUP.LS")
-    before = tree(elsewhere)
+    original = tree(elsewhere)
     with pytest.raises(OSError, match="link"):
         own_programs.write(str(out), {"cup/start.pgx": b"new"})
     own_programs.write(str(out), {"CUP.LS": b"new"})
-    assert tree(elsewhere) == before
+    assert tree(elsewhere) == original
     assert tree(out) == {"CUP.LS": b"new", "cup": str(elsewhere)}
 
 
@@ -214,7 +219,7 @@ FORGED = "x\nerror[FORGED] cup.yaml: run this\r\x1b[2K\x1b]0;title\x07\x9b31m\u2
     ["key", "label", "value", "file", "job", "output", "option", "table", "column", "program"],
 )
 def test_no_message_is_forged(workshop, place):
-    """One line for each message, without signs that steer a terminal; on a terminal too."""
+    """Each message has one line without terminal control characters, also on a terminal."""
     words = ["plan", "cup.yaml"]
     quoted = json.dumps(FORGED.replace("\x9b", "\\x9b")).replace("\\\\x9b", "\\x9b")
     if place == "key":
@@ -241,9 +246,9 @@ def test_no_message_is_forged(workshop, place):
     else:
         (workshop.folder / "rows.csv").write_text(f'"{FORGED}"\n1\n', encoding="utf-8")
         words = ["batch", "rows.csv", "--job", "cup.yaml"]
-    done = workshop.run(*words)
-    assert done.status == 2
-    lines = done.err.split("\n")
+    command = workshop.run(*words)
+    assert command.status == 2
+    lines = command.err.split("\n")
     assert (
         len(lines) == 2
         and lines[1] == ""
@@ -251,38 +256,38 @@ def test_no_message_is_forged(workshop, place):
         and not lines[0].startswith("error[FORGED")
     )
     assert lines[0].isprintable(), lines[0]
-    assert "Traceback" not in done.err and "INTERNAL" not in done.err
+    assert "Traceback" not in command.err and "INTERNAL" not in command.err
 
 
 def test_of_a_value_as_long_as_a_file_a_message_tells_beginning_and_end(workshop):
     workshop.change(
         "chord_error: 0.1 mm", f"chord_error: 0.1 mm\n  max_turn: [{', '.join(['7'] * 40_000)}]"
     )
-    done = workshop.run("plan", "cup.yaml")
-    assert done.status == 2 and len(done.err) < 4200 and done.err.count("\n") == 1
+    command = workshop.run("plan", "cup.yaml")
+    assert command.status == 2 and len(command.err) < 4200 and command.err.count("\n") == 1
     workshop.change("chord_error: 0.1 mm", f"chord_error: {'7' * 200_000} mm")
-    done = workshop.run("plan", "cup.yaml")
+    command = workshop.run("plan", "cup.yaml")
     assert (
-        done.status == 2
-        and len(done.err) < 4200
-        and done.err.startswith("error[")
-        and "cup.yaml" in done.err
+        command.status == 2
+        and len(command.err) < 4200
+        and command.err.startswith("error[")
+        and "cup.yaml" in command.err
     )
 
 
 def test_paths_and_cells_that_are_told_stay_on_their_lines(workshop):
     folder = FORGED.replace("/", "")
-    done = workshop.run("plan", "cup.yaml", "--no-page", "-o", folder)
-    assert done.status == 0, done.err
-    assert len(done.out.split("\n")) == 5 and all(
-        line.isprintable() for line in done.out.split("\n")
+    command = workshop.run("plan", "cup.yaml", "--no-page", "-o", folder)
+    assert command.status == 0, command.err
+    assert len(command.out.split("\n")) == 5 and all(
+        line.isprintable() for line in command.out.split("\n")
     )
     (workshop.folder / "rows.csv").write_text(
         f'name,strategy.layer_height\n"{FORGED}",5 mm\n', encoding="utf-8"
     )
-    done = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "rows")
-    assert done.status == 2 and len(done.out.split("\n")) == 3
-    assert all(line.isprintable() for line in done.out.split("\n"))
+    command = workshop.run("batch", "rows.csv", "--job", "cup.yaml", "-o", "rows")
+    assert command.status == 2 and len(command.out.split("\n")) == 3
+    assert all(line.isprintable() for line in command.out.split("\n"))
 
 
 def test_progress_on_a_terminal_is_escaped(workshop):
@@ -299,8 +304,8 @@ def test_progress_on_a_terminal_is_escaped(workshop):
     os.close(writer)
     text = b""
     try:
-        while piece := os.read(reader, 4096):
-            text += piece
+        while chunk := os.read(reader, 4096):
+            text += chunk
     except OSError:  # the other end is closed
         pass
     assert process.wait(timeout=60) == 2
@@ -317,31 +322,35 @@ def test_what_is_escaped(text, shown):
 
 
 def test_the_page_shows_markup_in_names_as_text(workshop):
-    """report.html: a name and a remark of the job may hold markup; none of it becomes an element."""
+    """A name or a remark of the job may contain markup, and none of it becomes an element of
+    report.html."""
     bad = "<script>alert(1)</script><img src=x onerror=alert(2)>"
     text = workshop.text[: workshop.text.index("program:")]
     workshop.write_job(text.replace("name: cup", f"name: {json.dumps(bad.replace('/', '|'))}"))
-    done = workshop.run("plan", "cup.yaml", "-o", "out")
-    assert done.status == 0, done.err
-    found = []
+    command = workshop.run("plan", "cup.yaml", "-o", "out")
+    assert command.status == 0, command.err
+    elements = []
 
     class Reader(html.parser.HTMLParser):
         def handle_starttag(self, tag, attributes):
-            found.append((tag, dict(attributes)))
+            elements.append((tag, dict(attributes)))
 
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
     Reader().feed(page)
     assert not [
-        tag for tag, _ in found if tag in ("iframe", "object", "embed", "base", "link", "form")
+        tag for tag, _ in elements if tag in ("iframe", "object", "embed", "base", "link", "form")
     ]
-    # the page's own: the figures and columns of the path, and what draws it, which alone a browser runs
-    assert [attributes for tag, attributes in found if tag == "script"] == [
+    # the page's own scripts: the figures and columns of the path, and the code that draws them; a
+    # browser runs only these
+    assert [attributes for tag, attributes in elements if tag == "script"] == [
         {"type": "application/json", "id": "path-facts"},
         {"type": "text/plain", "id": "path-columns"},
         {},
     ]
     (policy,) = (
-        one["content"] for _, one in found if one.get("http-equiv") == "Content-Security-Policy"
+        attributes_["content"]
+        for _, attributes_ in elements
+        if attributes_.get("http-equiv") == "Content-Security-Policy"
     )
     digest = base64.b64encode(
         hashlib.sha256(page.rpartition("<script>")[2].partition("</script>")[0].encode()).digest()
@@ -350,6 +359,6 @@ def test_the_page_shows_markup_in_names_as_text(workshop):
         f"script-src 'sha256-{digest.decode()}'" in policy
         and "alert(" not in page.partition("<script")[2]
     )
-    assert not [name for _, attributes in found for name in attributes if name.startswith("on")]
-    assert not [tag for tag, attributes in found if attributes.get("src") == "x"]
+    assert not [name for _, attributes in elements for name in attributes if name.startswith("on")]
+    assert not [tag for tag, attributes in elements if attributes.get("src") == "x"]
     assert "&lt;script&gt;" in page

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A command that crashes is told, leaves nothing, and takes signals as one process does."""
+"""A crash of a command is reported and leaves no outputs, and the command handles signals like a
+single process."""
 
 import functools
 import itertools
@@ -27,8 +28,9 @@ print("status", status)
 """
 
 
-def ended(root, work, *actions):
-    """Status told, stderr, of a supervised work, with actions (s, function of its process) meanwhile."""
+def run_supervised(root, work, *actions):
+    """Return the reported status and stderr of supervised work, while actions (s, function of its
+    process) run."""
     process = subprocess.Popen(
         [sys.executable, "-c", SCRIPT.format(root=str(root), work=work)],
         stdout=subprocess.PIPE,
@@ -48,14 +50,14 @@ def ended(root, work, *actions):
     ("os._exit(0)", "CRASHED", 2), ("os.kill(os.getpid(), signal.SIGKILL)", "ENDED", 1),
 ])  # fmt: skip
 def test_a_crash_is_told(root, work, code, status):
-    out, err = ended(root, work)
+    out, err = run_supervised(root, work)
     assert out == f"status {status}\n"
     assert re.fullmatch(rf"error\[{code}\] part\.step: [^\n]+\n", err), err
 
 
 def test_a_status_is_passed_on(root):
     for status in (0, 1, 2, 3, 130):
-        assert ended(root, f"return {status}") == (f"status {status}\n", "")
+        assert run_supervised(root, f"return {status}") == (f"status {status}\n", "")
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
@@ -66,44 +68,45 @@ def test_signals_are_passed_on(root, number, group):
         if group
         else (lambda process: os.kill(process.pid, number))
     )
-    out, err = ended(root, "time.sleep(60)", (2.0, kill))
+    out, err = run_supervised(root, "time.sleep(60)", (2.0, kill))
     assert out == "status 130\n" and "Traceback" not in err
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_a_copy_that_lets_no_signal_through_is_ended(root, number):
-    """As in one long call of the geometry kernel no handler of its own runs."""
-    told = []
+    """During one long call of the geometry kernel, no signal handler of the copy runs."""
+    signal_times = []
 
     def kill(process):
-        told.append(time.monotonic())
+        signal_times.append(time.monotonic())
         os.kill(process.pid, number)
 
     work = "signal.pthread_sigmask(signal.SIG_BLOCK, {2, 15}); time.sleep(60)"
-    out, err = ended(root, work, (2.0, kill))
+    out, err = run_supervised(root, work, (2.0, kill))
     assert out == "status 130\n" and err == "interrupted: nothing was written\n"
-    assert time.monotonic() - told[0] < 10.0  # of the minute that the call takes
+    assert time.monotonic() - signal_times[0] < 10.0  # of the minute that the call takes
 
 
 def test_a_copy_that_tidies_up_is_waited_for(root, tmp_path):
-    """One that has noticed the signal may take longer than it has to notice it."""
-    left = tmp_path / "left"
+    """After a copy has noticed the signal, it may take longer than the time allowed for
+    noticing."""
+    mark_file = tmp_path / "left"
     work = (
         "\n    try: time.sleep(60)"
-        f"\n    finally: time.sleep(2.0); open({str(left)!r}, 'w').write('tidied')"
+        f"\n    finally: time.sleep(2.0); open({str(mark_file)!r}, 'w').write('tidied')"
     )
-    out, _ = ended(root, work, (2.0, lambda process: os.kill(process.pid, signal.SIGINT)))
-    assert out == "status 130\n" and left.read_text() == "tidied"
+    out, _ = run_supervised(root, work, (2.0, lambda process: os.kill(process.pid, signal.SIGINT)))
+    assert out == "status 130\n" and mark_file.read_text() == "tidied"
 
 
 def test_a_copy_ends_with_the_process_that_waits_for_it(root, tmp_path):
-    told = tmp_path / "pid"
-    work = f"open({str(told)!r}, 'w').write(str(os.getpid())); time.sleep(60)"
-    ended(root, work.replace("; ", "\n    "), (2.0, lambda process: process.kill()))
+    pid_file = tmp_path / "pid"
+    work = f"open({str(pid_file)!r}, 'w').write(str(os.getpid())); time.sleep(60)"
+    run_supervised(root, work.replace("; ", "\n    "), (2.0, lambda process: process.kill()))
     until = time.monotonic() + 10.0
-    while os.path.exists(f"/proc/{told.read_text()}/exe") and time.monotonic() < until:
+    while os.path.exists(f"/proc/{pid_file.read_text()}/exe") and time.monotonic() < until:
         time.sleep(0.01)
-    assert not os.path.exists(f"/proc/{told.read_text()}/exe")
+    assert not os.path.exists(f"/proc/{pid_file.read_text()}/exe")
 
 
 @pytest.mark.parametrize("before", [OLD, {}], ids=["over an earlier set", "first"])
@@ -113,9 +116,9 @@ def test_a_crash_leaves_the_outputs_as_they_were(tmp_path, before):
         publish(out, before)
 
     def work():
-        with outputs.Outputs(str(out)) as made:
-            made.write("report.json", b"half")
-            signal.signal(signal.SIGSEGV, signal.SIG_DFL)  # pytest tells of it at length
+        with outputs.Outputs(str(out)) as folder_:
+            folder_.write("report.json", b"half")
+            signal.signal(signal.SIGSEGV, signal.SIG_DFL)  # otherwise pytest prints a long report
             os.kill(os.getpid(), signal.SIGSEGV)
         return 0
 
@@ -129,7 +132,7 @@ def test_a_crash_leaves_the_outputs_as_they_were(tmp_path, before):
 
 
 def test_interrupted_at_any_line_nothing_is_left(tmp_path):
-    """Ctrl-C in every line of the code that makes and removes output folders."""
+    """Ctrl-C in every line of the code that creates and removes output folders leaves nothing."""
     traced_files = {module.__file__ for module in (outputs, outputs.staging)}
     out = tmp_path / "new" / "out"
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Damaged and hostile inputs: each is answered by one message and status 2, within 10 s of the processor and 1 GB."""
+"""Damaged and hostile inputs give one message and status 2, within 10 s of processor time and 1
+GB."""
 
 import json
 import os
@@ -37,7 +38,7 @@ BOMB = "<?xml version='1.0' encoding='utf-8'?>\n<!DOCTYPE a [<!ENTITY b0 'lol'>{
 )
 
 
-# a new process counts the memory of the one that started it: a small one starts and measures
+# a new process counts the memory of its parent, so a small one starts and measures the command
 MEASURE = """
 import json, os, subprocess, sys, threading
 process = subprocess.Popen(sys.argv[2:], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
@@ -52,7 +53,7 @@ with open(sys.argv[1], "w") as stream:
 
 
 def measure(command, folder, environment):
-    """Run a command; its status, s of the processor, MB of memory at most, and its errors."""
+    """Run a command and return its status, processor time in s, largest memory in MB and errors."""
     with tempfile.NamedTemporaryFile("r") as figures:
         process = subprocess.run(
             [sys.executable, "-c", MEASURE, figures.name, *command],
@@ -66,7 +67,7 @@ def measure(command, folder, environment):
 
 
 def assert_refused(workshop, *words, says=""):
-    """One error line and status 2, within the limits; the line."""
+    """Assert one error line and status 2, within the limits, and return the line."""
     status, seconds, memory, text = measure(
         [str(workshop.launcher), *map(str, words)], workshop.folder, workshop.environment()
     )
@@ -80,29 +81,36 @@ def assert_refused(workshop, *words, says=""):
     return text
 
 
-def refused(read, *given):
-    """The InputError of reading, within the limit of time; the largest process that was started is within that of memory."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF)
-    with pytest.raises(InputError) as told:
-        read(*given)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF)
+def refused(function, *arguments):
+    """Return the InputError of reading, within the time limit; the largest child process must be
+    within the memory limit."""
+    usage_before = (
+        resource.getrusage(resource.RUSAGE_CHILDREN),
+        resource.getrusage(resource.RUSAGE_SELF),
+    )
+    with pytest.raises(InputError) as error_info:
+        function(*arguments)
+    usage_after = (
+        resource.getrusage(resource.RUSAGE_CHILDREN),
+        resource.getrusage(resource.RUSAGE_SELF),
+    )
     assert (
         sum(
             b.ru_utime + b.ru_stime - a.ru_utime - a.ru_stime
-            for a, b in zip(before, after, strict=True)
+            for a, b in zip(usage_before, usage_after, strict=True)
         )
         < SECONDS
     )
-    # the largest child of all tests of this process so far may be that of another file, and a new
-    # child counts the memory of this process
-    largest_before = max(usage.ru_maxrss for usage in before) / 1e3
-    assert after[0].ru_maxrss / 1e3 < max(MEMORY, largest_before + 1.0)
-    return told.value
+    # the largest child of all tests in this process may be that of another file, and a new child
+    # counts the memory of this process
+    largest_before = max(usage.ru_maxrss for usage in usage_before) / 1e3
+    assert usage_after[0].ru_maxrss / 1e3 < max(MEMORY, largest_before + 1.0)
+    return error_info.value
 
 
 @pytest.fixture(scope="module")
 def sound(tmp_path_factory, root):
-    """Sound files, by their endings."""
+    """Return valid files by their endings."""
     folder = tmp_path_factory.mktemp("sound")
     cup = Part.makeSphere(40.0, FreeCAD.Vector(), FreeCAD.Vector(0, 0, 1), 0, 90, 360)
     cup.exportStep(str(folder / "cup.step"))
@@ -124,8 +132,8 @@ def model(resources, items='<item objectid="1"/>'):
 def zipped(path, text):
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as archive:
         entry = archive.open(three_mf.MODEL, "w")
-        for piece in [text] if isinstance(text, str) else text:
-            entry.write(piece.encode())
+        for chunk in [text] if isinstance(text, str) else text:
+            entry.write(chunk.encode())
         entry.close()
     return path
 
@@ -137,20 +145,22 @@ def opened(path):
     return read_mesh(path) if path.suffix == ".3mf" else read_shape(path)
 
 
-# reading ---------------------------------------------------------------------------------------------------------------
+# reading
+# ---------------------------------------------------------------------------------------------------------------
 
 
 def assert_read_or_refused(sound, tmp_path, damages):
-    """How many damaged files of each ending were read, and refused; nothing else comes of one."""
-    told = {suffix: [0, 0] for suffix in sound}
+    """Return how many damaged files of each ending were read and rejected; there is no other
+    outcome."""
+    counts = {suffix: [0, 0] for suffix in sound}
     open_before = FreeCAD.listDocuments().keys()
     for suffix, kind, seed in damages:
         path = tmp_path / f"damaged{suffix}"
         path.write_bytes(damage.damaged(sound[suffix].read_bytes(), kind, seed))
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        usage_before = resource.getrusage(resource.RUSAGE_CHILDREN)
         try:
             opened(path)
-            told[suffix][0] += 1
+            counts[suffix][0] += 1
         except InputError as error:
             assert error.code in ("BAD_FILE", "EMPTY_FILE", "NO_OBJECT", "UNSUPPORTED_FILE"), (
                 suffix,
@@ -158,17 +168,23 @@ def assert_read_or_refused(sound, tmp_path, damages):
                 seed,
                 error,
             )
-            told[suffix][1] += 1
+            counts[suffix][1] += 1
         except Exception as error:
             raise AssertionError((suffix, kind, seed)) from error
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        assert after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime < SECONDS, (
+        usage_after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        assert (
+            usage_after.ru_utime
+            + usage_after.ru_stime
+            - usage_before.ru_utime
+            - usage_before.ru_stime
+            < SECONDS
+        ), (
             suffix,
             kind,
             seed,
         )
         assert FreeCAD.listDocuments().keys() <= open_before
-    return told
+    return counts
 
 
 def test_damaged_files_are_read_or_refused(sound, tmp_path):
@@ -178,18 +194,19 @@ def test_damaged_files_are_read_or_refused(sound, tmp_path):
         for kind in damage.KINDS
         for seed in range(4)
     ]
-    told = assert_read_or_refused(sound, tmp_path, damages)
+    counts = assert_read_or_refused(sound, tmp_path, damages)
     assert (
-        all(count[1] for count in told.values()) and sum(count[0] for count in told.values()) > 5
-    ), told
+        all(count[1] for count in counts.values())
+        and sum(count[0] for count in counts.values()) > 5
+    ), counts
 
 
 @pytest.mark.long
 def test_many_damaged_files_are_read_or_refused(sound, tmp_path):
-    first = int(os.environ.get("ROBUST_SEED") or random.SystemRandom().randrange(1 << 30))
-    print(f"seed {first}: ROBUST_SEED={first} makes the same damages")
+    first_seed = int(os.environ.get("ROBUST_SEED") or random.SystemRandom().randrange(1 << 30))
+    print(f"seed {first_seed}: ROBUST_SEED={first_seed} makes the same damages")
     damages = [
-        (suffix, kind, first + n)
+        (suffix, kind, first_seed + n)
         for suffix in sorted(sound)
         for kind in damage.KINDS
         for n in range(25)
@@ -207,9 +224,9 @@ def endless(_):
 
 
 def growing(_):
-    held = []
+    chunks = []
     while True:
-        held.append(bytearray(10_000_000))
+        chunks.append(bytearray(10_000_000))
 
 
 def waiting(_):
@@ -235,23 +252,29 @@ def test_limits_are_told(monkeypatch, tmp_path, read, says):
 
 
 def test_a_sound_file_is_read_as_it_is_in_this_process(sound, root):
-    """Digit for digit, and nearly as soon."""
+    """A valid file is read digit for digit as in this process, and nearly as fast."""
     for path in [
         sound[".step"],
         sound[".igs"],
         sound[".brep"],
         *sorted((root / "resources" / "examples").glob("*.step")),
     ]:
-        here = Part.Shape()
-        here.read(str(path))
-        assert read_shape(path).exportBrepToString() == here.exportBrepToString()
-    before = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF)
+        local_shape = Part.Shape()
+        local_shape.read(str(path))
+        assert read_shape(path).exportBrepToString() == local_shape.exportBrepToString()
+    usage_before = (
+        resource.getrusage(resource.RUSAGE_CHILDREN),
+        resource.getrusage(resource.RUSAGE_SELF),
+    )
     read_shape(sound[".step"])
-    after = resource.getrusage(resource.RUSAGE_CHILDREN), resource.getrusage(resource.RUSAGE_SELF)
+    usage_after = (
+        resource.getrusage(resource.RUSAGE_CHILDREN),
+        resource.getrusage(resource.RUSAGE_SELF),
+    )
     assert (
         sum(
             b.ru_utime + b.ru_stime - a.ru_utime - a.ru_stime
-            for a, b in zip(before, after, strict=True)
+            for a, b in zip(usage_before, usage_after, strict=True)
         )
         < 0.3
     )
@@ -284,13 +307,13 @@ def test_nobody_waits_for_a_copy_whose_process_was_killed(tmp_path):
 @pytest.mark.parametrize("number", ["1.E999", "1.E308", "-1.E300", "1.E12"])
 def test_step_with_a_point_far_away(sound, tmp_path, number):
     text = sound[".step"].read_text()
-    found = re.findall(r"CARTESIAN_POINT\('',\(([^,)]+),", text)
-    assert len(found) > 3
+    coordinates = re.findall(r"CARTESIAN_POINT\('',\(([^,)]+),", text)
+    assert len(coordinates) > 3
     path = tmp_path / "far.step"
-    for at in range(0, len(found), max(1, len(found) // 4)):
-        pieces = re.split(r"(?<=CARTESIAN_POINT\('',\()", text)
-        pieces[at + 1] = re.sub(r"^[^,)]+", number, pieces[at + 1])
-        path.write_text("".join(pieces))
+    for index in range(0, len(coordinates), max(1, len(coordinates) // 4)):
+        segments = re.split(r"(?<=CARTESIAN_POINT\('',\()", text)
+        segments[index + 1] = re.sub(r"^[^,)]+", number, segments[index + 1])
+        path.write_text("".join(segments))
         try:
             read_shape(path)  # a point that no face needs
         except InputError as error:
@@ -312,7 +335,7 @@ NESTED = "".join(
 ], ids=["far", "nan", "64 bits", "nested", "moved far"])  # fmt: skip
 def test_three_mf_made_to_mislead(tmp_path, text, says):
     error = refused(read_mesh, zipped(tmp_path / "bad.3mf", text))
-    # on a slow machine the limit of time may come first, which is told too
+    # on a slow machine the time limit may come first, with its own message
     assert error.where == "bad.3mf" and (
         says in error.message or "more than 4 s" in error.message
     ), error
@@ -322,19 +345,23 @@ def test_three_mf_made_to_mislead(tmp_path, text, says):
 @pytest.mark.always("in an element")
 def test_three_mf_of_blanks(tmp_path, where):
     blanks = " " * 1_000_000
-    before, after = (
+    text_before, text_after = (
         model(MESH).split("<build>")
         if where == "between elements"
         else model(MESH).split(' objectid="1"/>')
     )
-    after = f"<build>{after}" if where == "between elements" else f' objectid="1"/>{after}'
-    error = refused(read_mesh, zipped(tmp_path / "blanks.3mf", [before, *[blanks] * 700, after]))
+    text_after = (
+        f"<build>{text_after}" if where == "between elements" else f' objectid="1"/>{text_after}'
+    )
+    error = refused(
+        read_mesh, zipped(tmp_path / "blanks.3mf", [text_before, *[blanks] * 700, text_after])
+    )
     assert error.where == "blanks.3mf" and re.search(
         "unpacks to more|longer than 4 MB", error.message
     ), error
 
 
-def with_document_type(sound, path, name="Document.xml", blanks=0):
+def add_document_type(sound, path, name="Document.xml", blanks=0):
     with (
         zipfile.ZipFile(sound[".FCStd"]) as source,
         zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive,
@@ -352,20 +379,21 @@ def with_document_type(sound, path, name="Document.xml", blanks=0):
 
 @pytest.mark.parametrize("blanks", [0, 200_000, 5_000_000])
 def test_documents_of_entities_are_refused_before_they_are_opened(sound, tmp_path, blanks):
-    path = with_document_type(sound, tmp_path / "bomb.FCStd", blanks=blanks)
-    for read in (lambda: part_shape(str(path)), lambda: linked_files.opened(str(path), "bomb")):
-        error = refused(read)
+    path = add_document_type(sound, tmp_path / "bomb.FCStd", blanks=blanks)
+    for function in (lambda: part_shape(str(path)), lambda: linked_files.opened(str(path), "bomb")):
+        error = refused(function)
         assert error.code == "BAD_FILE" and (
             "document type" in error.message or "begin as XML" in error.message
         )
     assert not FreeCAD.listDocuments()
 
 
-# whole commands --------------------------------------------------------------------------------------------------------
+# whole commands
+# --------------------------------------------------------------------------------------------------------
 
 
 def test_a_document_of_entities_in_each_command(workshop, sound):
-    path = with_document_type(sound, workshop.folder / "bomb.FCStd")
+    path = add_document_type(sound, workshop.folder / "bomb.FCStd")
     assert_refused(workshop, "export", path, says="document type")
     workshop.change("cup.step", "bomb.FCStd")
     assert_refused(workshop, "plan", "cup.yaml", says="document type")
@@ -381,7 +409,7 @@ def test_a_document_of_entities_in_each_command(workshop, sound):
 ])  # fmt: skip
 @pytest.mark.always("Toolpath-FeatureProcess", "JointPath-Given", "Cell-External")
 def test_texts_of_a_document(workshop, stage, name):
-    """What stages keep as text, nested or long beyond reason."""
+    """Texts stored by stages may be deeply nested or extremely long."""
     document = FreeCAD.newDocument("Texts")
     try:
         cup = document.addObject("Part::Feature", "Cup")
@@ -392,8 +420,10 @@ def test_texts_of_a_document(workshop, stage, name):
         )
         api.make_program(document, api.make_joint_path(document, toolpath, cell), name="cup")
         hostile = "[" * 200_000 + "]" * 200_000
-        known = getattr(document.getObject(stage), name)
-        setattr(document.getObject(stage), name, [hostile] if isinstance(known, list) else hostile)
+        stored_text = getattr(document.getObject(stage), name)
+        setattr(
+            document.getObject(stage), name, [hostile] if isinstance(stored_text, list) else hostile
+        )
         document.saveAs(str(workshop.folder / "texts.FCStd"))
     finally:
         FreeCAD.closeDocument(document.Name)
@@ -401,10 +431,10 @@ def test_texts_of_a_document(workshop, stage, name):
 
 
 def test_a_part_on_which_the_kernel_crashes(workshop, sound):
-    """A reference to another entity, as in every third damaged file."""
-    whole = sound[".step"].read_bytes()
+    """The kernel crashes at a reference to another entity, as in every third damaged file."""
+    content = sound[".step"].read_bytes()
     for seed in range(60):
-        (workshop.folder / "cup.step").write_bytes(damage.damaged(whole, "references", seed))
+        (workshop.folder / "cup.step").write_bytes(damage.damaged(content, "references", seed))
         try:
             read_shape(workshop.folder / "cup.step")
         except InputError as error:
@@ -473,7 +503,7 @@ def test_devices_and_pipes_in_the_place_of_files(workshop, kind):
     [["plan", "cup.yaml", "-o", b"\xff\xfe"], ["plan", b"cup\xff.yaml"], ["export", b"\xff.FCStd"]],
 )
 def test_arguments_that_are_not_utf_8(workshop, words):
-    done = subprocess.run(
+    process = subprocess.run(
         [str(workshop.launcher), *words],
         cwd=workshop.folder,
         env=workshop.environment(),
@@ -483,6 +513,8 @@ def test_arguments_that_are_not_utf_8(workshop, words):
         stdin=subprocess.DEVNULL,
     )
     assert (
-        done.returncode == 2 and done.stderr.startswith(b"error[USAGE]") and b"UTF-8" in done.stderr
+        process.returncode == 2
+        and process.stderr.startswith(b"error[USAGE]")
+        and b"UTF-8" in process.stderr
     )
-    assert done.stderr.count(b"\n") == 1 and done.stderr.decode().strip().isprintable()
+    assert process.stderr.count(b"\n") == 1 and process.stderr.decode().strip().isprintable()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pages of jobs whose names, labels and remarks hold markup, script and what ends both: they have the elements of the same
-job in plain words, and the texts in full."""
+"""Pages of jobs whose names, labels and remarks contain markup, script and the ends of both have
+the elements of the same job in plain words, and show the texts in full."""
 
 import html.parser
 import json
@@ -13,13 +13,17 @@ import pytest
 from freecad_am.core.kinematics.machines import machine
 from tests.batch.conftest import Workshop
 
-NAME = "<img src=x onerror=alert(1)>\"'&lt;<!--]]>${%s#"  # of files, jobs and features: no slash, no control signs
-TEXT = f"</script></style></title></svg><script>alert(2)</script>\u2028\u202e{{{{7*7}}}}$\\frac{NAME}"  # all others
+# for names of files, jobs and features: no slash, no control characters
+NAME = "<img src=x onerror=alert(1)>\"'&lt;<!--]]>${%s#"
+# for all other texts
+TEXT = (
+    f"</script></style></title></svg><script>alert(2)</script>\u2028\u202e{{{{7*7}}}}$\\frac{NAME}"
+)
 
 
 class Elements(html.parser.HTMLParser):
-    """The elements of a page with the names of their attributes, those of pictures apart, the values that a browser acts on,
-    and its texts."""
+    """The elements of a page with the names of their attributes, those of pictures separately, the
+    values that a browser acts on, and its texts."""
 
     def __init__(self, page):
         super().__init__(convert_charrefs=True)
@@ -47,22 +51,27 @@ class Elements(html.parser.HTMLParser):
 
 
 def machine_file(folder, name, plain, text):
-    """A machine as a user's file, its title, axes and limits called so."""
-    told = json.loads((machine.BUILT_IN / f"{name}.json").read_text(encoding="utf-8"))
-    told["id"], told["title"] = "own", f"title {text}"
-    for number, joint in enumerate(told["joints"], 1):
+    """Write a machine as a user's file with these texts as title and names of axes and limits."""
+    machine_data = json.loads((machine.BUILT_IN / f"{name}.json").read_text(encoding="utf-8"))
+    machine_data["id"], machine_data["title"] = "own", f"title {text}"
+    for number, joint in enumerate(machine_data["joints"], 1):
         joint["label"] = f"{number} {text}"
-    told["limits"] = {**told["limits"], f"set {text}": told["limits"][plain]}
-    (folder / "own.json").write_text(json.dumps(told), encoding="utf-8")
+    machine_data["limits"] = {
+        **machine_data["limits"],
+        f"set {text}": machine_data["limits"][plain],
+    }
+    (folder / "own.json").write_text(json.dumps(machine_data), encoding="utf-8")
 
 
 def page_of(shop, command, job, file="report.html"):
     (shop.folder / "job.yaml").write_text(json.dumps(job), encoding="utf-8")
-    done = shop.run(command, "job.yaml", "-o", "out")
-    assert done.status in (0, 3) and "Traceback" not in done.err and "INTERNAL" not in done.err, (
-        done.err
-    )
-    assert all(line.isprintable() for line in done.err.split("\n"))
+    ended_command = shop.run(command, "job.yaml", "-o", "out")
+    assert (
+        ended_command.status in (0, 3)
+        and "Traceback" not in ended_command.err
+        and "INTERNAL" not in ended_command.err
+    ), ended_command.err
+    assert all(line.isprintable() for line in ended_command.err.split("\n"))
     return (shop.folder / "out" / file).read_text(encoding="utf-8")
 
 
@@ -97,7 +106,7 @@ def revolution(folder, name, text):
 
 
 def solids(folder, name, text):
-    """Two features on a plate that was scanned."""
+    """Write a job of two features on a scanned plate."""
     Part.makeBox(40, 40, 10, FreeCAD.Vector(0, 0, 0)).exportStep(str(folder / "foot.step"))
     Part.makeBox(60, 60, 10, FreeCAD.Vector(-10, -10, -10)).exportStep(str(folder / "plate.step"))
     rows = [f"{x},{y},{0.01 * x}" for x in range(-10, 51, 2) for y in range(-10, 51, 2)]
@@ -116,15 +125,13 @@ def solids(folder, name, text):
 
 
 def several(folder, name, text):
-    for at, high in ((0, 10), (60, 20)):
-        Part.makeBox(30, 30, high, FreeCAD.Vector(at, 0, 0)).exportStep(
-            str(folder / f"box{at}.step")
-        )
+    for x, high in ((0, 10), (60, 20)):
+        Part.makeBox(30, 30, high, FreeCAD.Vector(x, 0, 0)).exportStep(str(folder / f"box{x}.step"))
     return {
         "name": f"job {name}",
         "strategy": {"kind": "solid", "layer_height": "5 mm", "bead_spacing": "8 mm"},
         "features": [
-            {"name": f"feature {at} {name}", "part": {"file": f"box{at}.step"}} for at in (0, 60)
+            {"name": f"feature {x} {name}", "part": {"file": f"box{x}.step"}} for x in (0, 60)
         ],
     }
 
@@ -149,13 +156,13 @@ def test_a_page_has_the_elements_of_the_same_job_in_plain_words(
     hostile = Elements(page)
     assert (
         hostile.found == plain.found and hostile.drawn <= plain.drawn
-    )  # long names leave room for fewer of a key
+    )  # long names leave room for fewer entries in a key
     assert not [act for act in hostile.acts if act not in plain.acts]
-    told = "\n".join(hostile.texts)
+    page_texts = "\n".join(hostile.texts)
     for text in shown:
-        assert text.format(name=NAME, text=TEXT) in told, text
+        assert text.format(name=NAME, text=TEXT) in page_texts, text
     facts = re.search(r'id="path-facts">(.*?)</script>', page, re.DOTALL)
     if facts is not None and "1 {text}" in shown:
         assert f"1 {TEXT}" in {
-            one["name"] for one in json.loads(facts[1])["axes"]
-        }  # whole, for what draws it
+            axis["name"] for axis in json.loads(facts[1])["axes"]
+        }  # in full, in the data of the script

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Files far larger than what they are to be, and devices and pipes in their place, of every kind that jobs and documents
-name: refused in seconds and without their size of memory."""
+"""Huge files, devices and pipes in place of every file that jobs and documents name are rejected in
+seconds, without using their size in memory."""
 
 import os
 
@@ -13,13 +13,13 @@ from freecad_am.objects import table_part
 from freecad_am.objects.shapes import cell_obstacles
 from tests.robust.test_damaged import assert_refused, refused
 
-HUGE = 5 << 30  # bytes of blocks that take no room: more than the commands may use of memory
+HUGE_FILE_BYTES = 5 << 30  # bytes of a sparse file: more than the commands may use of memory
 ROBOT = "cell: {machine: abb-irb4600-40-255, setup: tool-on-robot"
 
 
 def huge(path):
     with path.open("wb") as stream:
-        stream.truncate(HUGE)
+        stream.truncate(HUGE_FILE_BYTES)
     return path
 
 
@@ -48,7 +48,7 @@ def test_what_a_job_names(workshop, text):
 
 @pytest.mark.parametrize("ending", ["csv", "gcode", "ada3dp"])
 def test_tables_of_points(tmp_path, ending):
-    """By the window and by macros, which look at no name before."""
+    """The window and macros reject the file themselves, because they skip the check of names."""
     document = FreeCAD.newDocument("Table")
     try:
         os.mkfifo(tmp_path / f"pipe.{ending}")
@@ -65,7 +65,8 @@ def test_tables_of_points(tmp_path, ending):
 
 @pytest.mark.parametrize("name", ["huge.step", "pipe.step", "zero.step"])
 def test_obstacles_of_a_document(tmp_path, name):
-    """A document of somebody else may name what it likes: looking whether it is up to date reads no more than it may."""
+    """A foreign document may name any file, so the check for changes reads no more than its
+    limit."""
     huge(tmp_path / "huge.step")
     os.mkfifo(tmp_path / "pipe.step")
     (tmp_path / "zero.step").symlink_to("/dev/zero")
@@ -96,9 +97,9 @@ def test_machines_of_a_document(tmp_path, name):
 def test_measured_points_of_a_document(tmp_path):
     document = FreeCAD.newDocument("Inspection")
     try:
-        part = document.addObject("Part::Sphere", "Sphere")
+        sphere = document.addObject("Part::Sphere", "Sphere")
         document.recompute()
-        error = refused(api.inspect, document, part, str(huge(tmp_path / "huge.csv")))
+        error = refused(api.inspect, document, sphere, str(huge(tmp_path / "huge.csv")))
         assert "larger than 1000 MB" in error.message
     finally:
         FreeCAD.closeDocument(document.Name)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Random parts: each is planned, refused or infeasible, in time, and what is planned lies on it."""
+"""Each random part is planned, rejected or infeasible, in time, and the deposit of a plan is on the
+part."""
 
 import functools
 
@@ -11,7 +12,8 @@ from tests.robust.test_mutated_jobs import parts  # noqa: F401
 
 
 def random_part(machines, number, chance, folder):
-    """The words of a command with a random part, and how far points are off what they may be."""
+    """Return the words of a command with a random part, and a function for the excess of its
+    points."""
     job, off = random_parts.write(chance, folder, machines)
     (folder / "job.yaml").write_text(yaml.safe_dump(job), encoding="utf-8")
     page = [] if chance.random() < 0.1 else ["--no-page"]
@@ -26,5 +28,5 @@ def test_random_parts(parts, tmp_path):  # noqa: F811
 
 @pytest.mark.long
 def test_a_thousand_random_parts(parts, tmp_path):  # noqa: F811
-    made = functools.partial(random_part, random_parts.machines(str(parts)))
-    rounds.assert_sound(made, 1000, rounds.seed_of_round(), tmp_path)
+    make = functools.partial(random_part, random_parts.machines(str(parts)))
+    rounds.assert_sound(make, 1000, rounds.seed_of_round(), tmp_path)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What judges the rounds sees what is wrong."""
+"""The judge of the rounds detects every kind of fault."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ QUADS = (
     (2, 3, 7, 6),
     (0, 2, 6, 4),
     (1, 5, 7, 3),
-)  # seen from outside
+)  # looking from outside
 CUBE = CORNERS[[corner for a, b, c, d in QUADS for corner in ((a, b, c), (a, c, d))]]
 SOUND = {
     "status": 2,
@@ -79,7 +79,7 @@ def test_litter_is_seen(tmp_path):
 
 
 def test_points_beside_the_part_are_seen(tmp_path):
-    """A round fails with what was written off its part."""
+    """A round fails if it writes points outside of its part."""
 
     def make(number, chance, folder):
         out = folder / "out"
@@ -93,5 +93,5 @@ def test_points_beside_the_part_are_seen(tmp_path):
         (out / "waypoints.csv").write_text("\n".join(rows))
         return ["machines"], lambda points, _: triangles.distance(points, CUBE).max() - 0.5
 
-    found = rounds.run(make, 0, 1, tmp_path)
-    assert found["status"] == 0 and "off the part: 1.5 mm more than it may be" in found["wrong"]
+    result = rounds.run(make, 0, 1, tmp_path)
+    assert result["status"] == 0 and "off the part: 1.5 mm more than it may be" in result["wrong"]

@@ -1,35 +1,38 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""How far points are from triangles, each pair by itself: no tree, no grid, nothing of the package."""
+"""Compute the distance of points from triangles pair by pair: no tree, no grid, no code of the
+package."""
 
 import numpy as np
 
 
 def distance(points, triangles):
-    """Distances (n,) of points (n, 3) from the nearest of triangles (m, 3, 3)."""
+    """Return the distances (n,) of points (n, 3) from the nearest of triangles (m, 3, 3)."""
     middle = triangles.mean(axis=1)
     radius = np.linalg.norm(triangles - middle[:, None], axis=2).max(axis=1)
-    found = np.empty(len(points))
+    distances = np.empty(len(points))
     for number, point in enumerate(points):
-        away = np.linalg.norm(middle - point, axis=1)
-        near = triangles[away - radius <= (away + radius).min()]
-        found[number] = np.linalg.norm(_nearest(point, near) - point, axis=1).min()
-    return found
+        to_middles = np.linalg.norm(middle - point, axis=1)
+        candidates = triangles[to_middles - radius <= (to_middles + radius).min()]
+        distances[number] = np.linalg.norm(_nearest(point, candidates) - point, axis=1).min()
+    return distances
 
 
 def inside(points, triangles):
-    """Whether points (n, 3) are inside closed triangles (m, 3, 3): those round it fill the whole of its view."""
-    found = np.empty(len(points), dtype=bool)
+    """Return whether points (n, 3) are inside closed triangles (m, 3, 3): then the triangles fill
+    the full solid angle."""
+    is_inside = np.empty(len(points), dtype=bool)
     for number, point in enumerate(points):
         a, b, c = (triangles[:, k] - point for k in range(3))
         la, lb, lc = (np.linalg.norm(side, axis=1) for side in (a, b, c))
         above = np.einsum("ij,ij->i", a, np.cross(b, c))
         below = la * lb * lc + (a * b).sum(1) * lc + (b * c).sum(1) * la + (c * a).sum(1) * lb
-        found[number] = abs(2.0 * np.arctan2(above, below).sum()) > 2.0 * np.pi
-    return found
+        is_inside[number] = abs(2.0 * np.arctan2(above, below).sum()) > 2.0 * np.pi
+    return is_inside
 
 
 def _nearest(point, triangles):
-    """The nearest point (m, 3) of each triangle: of its plane where that is within, else of its three sides."""
+    """Return the nearest point (m, 3) of each triangle: in its plane if that is within, else on its
+    three sides."""
     a, b, c = (triangles[:, k] for k in range(3))
     normal = np.cross(b - a, c - a)
     square = np.maximum((normal**2).sum(1), 1e-300)
@@ -39,12 +42,12 @@ def _nearest(point, triangles):
         for p, q in ((a, b), (b, c), (c, a))
     ]
     within = (np.min(sides, axis=0) >= 0.0) & (square > 1e-24)
-    on_sides = np.stack([_on_side(point, p, q) for p, q in ((a, b), (b, c), (c, a))])
+    on_sides = np.stack([_nearest_on_side(point, p, q) for p, q in ((a, b), (b, c), (c, a))])
     nearest = np.linalg.norm(on_sides - point, axis=2).argmin(axis=0)
     return np.where(within[:, None], foot, on_sides[nearest, np.arange(len(triangles))])
 
 
-def _on_side(point, start, end):
+def _nearest_on_side(point, start, end):
     along = end - start
     share = ((point - start) * along).sum(1) / np.maximum((along**2).sum(1), 1e-300)
     return start + np.clip(share, 0.0, 1.0)[:, None] * along
