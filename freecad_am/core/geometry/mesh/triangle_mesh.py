@@ -327,8 +327,10 @@ class Mesh:
         a, b, c = corners[row, odd], corners[row, (odd + 1) % 3], corners[row, (odd + 2) % 3]
         ab, ac = np.sort(np.stack([a, b], 1), axis=1), np.sort(np.stack([a, c], 1), axis=1)
         start, end = np.where(single[:, None], ab, ac), np.where(single[:, None], ac, ab)
-        edges, node = np.unique(np.vstack([start, end]), axis=0, return_inverse=True)
-        node = np.ravel(node)
+        # integers sort faster than rows of two
+        low_vertex, high_vertex = np.vstack([start, end]).astype(np.int64).T
+        keys, node = np.unique(low_vertex * len(self.vertices) + high_vertex, return_inverse=True)
+        edges = np.column_stack(np.divmod(keys, len(self.vertices)))
         following = np.full(len(edges), -1, dtype=np.intp)
         following[node[: len(row)]] = node[len(row) :]
         arrives = np.bincount(node[len(row) :], minlength=len(edges))

@@ -37,7 +37,6 @@ from .nozzle_check import (
     turn_issues,
 )
 from .tilt_search import (
-    RELEASED,
     SPREAD,
     Change,
     TiltSearch,
@@ -400,7 +399,12 @@ class _Knotted(NamedTuple):
         """
         stuck = [row[:0] for row in self.rows]
         numbers = np.flatnonzero(searched)
-        knots = {k: self._adjustable(k) for k in numbers}
+        free, reach = self.free, RELEASED * self.spread
+        if near and len(numbers):
+            points = np.concatenate([self.knots[k] for k in numbers])
+            free, reach = np.ones(len(self.free), dtype=bool), REPAIR_REACH * self.spread
+            free[points] = self.space.clear(points, self.tool[points])
+        knots = {k: self._adjustable(k, free, reach) for k in numbers}
         blocks = _blocks(numbers, np.array([len(knots[k]) for k in numbers], dtype=np.intp))
         for number, block in enumerate(blocks if len(numbers) else ()):
             share = watch.section(number / len(blocks), (number + 1) / len(blocks))
@@ -411,8 +415,9 @@ class _Knotted(NamedTuple):
                 self.closed[block],
                 self.tool_before,
                 self.plane,
-                self.free,
+                free,
                 self.spread,
+                reach,
             )
             offset, touching = (
                 tilts.repair(self.tool[tilts.flat], share) if near else tilts.search(share)
@@ -428,12 +433,11 @@ class _Knotted(NamedTuple):
                     )
         return stuck
 
-    def _adjustable(self, number: int) -> Index:
-        """Return the knots of a bead that may be tilted, the knots next to them, and both ends."""
+    def _adjustable(self, number: int, free: Mask, reach: float) -> Index:
+        """Return the knots of a bead within `reach` mm of points that are not free (n,), their neighbours, and both ends."""
         row, knots = self.rows[number], self.knots[number]
-        reach = RELEASED * self.spread
         points = self.space.points[row]
-        near = near_marks(points, ~self.free[row], bool(self.closed[number]), reach)
+        near = near_marks(points, ~free[row], bool(self.closed[number]), reach)
         near = near[np.searchsorted(row, knots)]
         kept = near.copy()
         kept[1:] |= near[:-1]
@@ -551,6 +555,10 @@ def _slowed(
 KNOT_MM = 2.0  # mm; distance of knots along a bead, less than half of SPREAD
 KNOT_TURN = np.radians(10.0)  # turn of the requested axis between knots
 MAX_POINTS = 2500  # maximum number of points of a bead at which tilts are searched
+RELEASED = 4.0  # times SPREAD; distance at which a tilt has decayed
+REPAIR_REACH = (
+    2.0  # times SPREAD; distance from touching points within which a repair changes tilts
+)
 REPAIRS = 4  # maximum number of searches near tilts that touch between knots
 
 

@@ -166,11 +166,12 @@ LEVELS = 4  # number of refinements, each at half the distance
 REPAIRED = 1  # first refinement of axes that touch between knots
 COARSE = 0.6  # fraction of the progress before the refinements
 SPREAD = 5.0  # mm; distance along the bead over which a tilt builds up and decays
-RELEASED = 4.0  # times SPREAD; distance at which a tilt has decayed
 
 
 class TiltSearch:
     """Tilt search at some points, `rows`, of several blocked beads: concatenated (m,), and padded to chains (b, n).
+
+    Tilts change within `reach` mm along the bead of points that are not free.
 
     A tilt is a rotation from the original axis. Its two components, rad, are along directions that are carried along the
     bead without twist. One component is 0 if the tool must stay in a plane.
@@ -186,10 +187,11 @@ class TiltSearch:
         plane: Array | None,
         free: Mask,
         spread: float,
+        reach: float,
     ) -> None:
         self.space, self.closed, self.plane, self.spread = space, closed, plane, spread
         self.flat = np.concatenate(rows)
-        self.asked = tool
+        self.asked, self._free = tool, free[self.flat]
         self.counts = np.array([len(row) for row in rows])
         self.begin = np.r_[0, np.cumsum(self.counts)][:-1]
         self._bead = np.repeat(np.arange(len(self.counts)), self.counts)
@@ -210,9 +212,7 @@ class TiltSearch:
         self.step[self.begin + self.counts - 1] = 0.0
         self.near = np.concatenate(
             [
-                near_marks(space.points[bead], ~free[bead], loop, RELEASED * spread)[
-                    np.searchsorted(bead, row)
-                ]
+                near_marks(space.points[bead], ~free[bead], loop, reach)[np.searchsorted(bead, row)]
                 for bead, row, loop in zip(beads, rows, closed, strict=True)
             ]
         )
@@ -273,7 +273,7 @@ class TiltSearch:
         return offset, stuck
 
     def repair(self, axes: Array, watch: Watch) -> tuple[Array, Mask]:
-        """Search near given axes, which may touch at some points.
+        """Search near given axes, which touch at the points that are not free.
 
         Parameters
         ----------
@@ -289,11 +289,7 @@ class TiltSearch:
         stuck : (m,) bool array
             Points without a clear tilt near the given axis.
         """
-        offset = self._offsets(axes)
-        clear = ~self.near
-        rows = np.flatnonzero(self.near)
-        clear[rows] = self._clear(rows, offset[rows, None])[:, 0]
-        stuck = ~clear
+        offset, stuck = self._offsets(axes), ~self._free
         for level in range(REPAIRED, LEVELS + 1):
             watch.share((level - REPAIRED) / (LEVELS + 1 - REPAIRED))
             offset, stuck = self.finer(offset, RING / 2.0**level, level, ~stuck)
@@ -770,10 +766,13 @@ class Touching(NamedTuple):
         return all(self._clear_at(space, tool, batch) for batch in batches)
 
     def _clear_at(self, space: Space, tool: Array, rows: Index) -> bool:
-        for number in range(round(MAX_TILT_RAD / RING) + 1):
+        last_ring = round(MAX_TILT_RAD / RING)
+        # several cones together, because a test of few axes takes as long as one of hundreds
+        for first, end in ((0, 1), (1, 3), (3, 7), (7, last_ring + 1)):
             if not len(rows):
-                return True
-            axes = self._cone(tool[rows], number * RING)
+                break
+            angles = RING * np.arange(first, end)
+            axes = np.concatenate([self._cone(tool[rows], angle) for angle in angles], axis=1)
             free = (
                 space.clear(np.repeat(rows, axes.shape[1]), axes.reshape(-1, 3))
                 .reshape(len(rows), -1)
