@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Level lines of meshes: known lines, holes, order and sides."""
+"""Level lines of meshes: known lines, holes, order and sides; feet on smooth meshes."""
 
 import numpy as np
 import pytest
 
+from freecad_am.core.geometry.mesh import coarsen
 from freecad_am.core.geometry.mesh.triangle_mesh import Mesh, chains
 from freecad_am.core.issues import InputError
 
@@ -96,3 +97,19 @@ def test_edges_are_each_there_once_in_order_and_borders_have_one_face():
         )
         assert np.array_equal(mesh.edges, edges)
         assert np.array_equal(mesh.border_edges, half[counts[np.ravel(edge_index)] == 1])
+
+
+def test_projection_from_afar_counts_all_samples(monkeypatch):
+    """Points up to 1.5 sample distances off a wavy surface have the feet that a sum over all samples gives."""
+    mesh = sheet(21, 10.0)
+    samples = mesh.vertices.copy()
+    samples[:, 2] = 2.0 * np.sin(0.3 * samples[:, 0]) * np.cos(0.2 * samples[:, 1])
+    rng = np.random.default_rng(0)
+    points = np.column_stack([rng.uniform(-6, 6, (200, 2)), np.zeros(200)])
+    points[:, 2] = 2.0 * np.sin(0.3 * points[:, 0]) * np.cos(0.2 * points[:, 1])
+    points[:, 2] += rng.uniform(-1.5, 1.5, 200)
+    feet, normals = coarsen.SmoothMesh(samples, mesh.faces, 1.0).project(points)
+    monkeypatch.setattr(coarsen, "NEIGHBOUR_COUNT", len(samples))
+    all_feet, all_normals = coarsen.SmoothMesh(samples, mesh.faces, 1.0).project(points)
+    np.testing.assert_allclose(feet, all_feet, rtol=0.0, atol=1e-9)
+    np.testing.assert_allclose(normals, all_normals, rtol=0.0, atol=1e-9)
