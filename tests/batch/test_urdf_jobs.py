@@ -8,7 +8,7 @@ import pytest
 from freecad_am.core.kinematics.machines import machine
 from freecad_am.core.kinematics.urdf import text as urdf_text
 from tests.batch.test_plan_command import deposit
-from tests.core.kinematics.arms import on_track
+from tests.core.kinematics.arms import mount_on_track
 
 JOB = """\
 part: {file: cup.step}
@@ -47,7 +47,7 @@ def test_a_job_on_a_urdf_moves_as_on_the_machine_file(planned, workshop):
 def test_a_robot_with_its_track_is_refused_and_told_where_the_robot_begins(planned, workshop):
     """It was taken for a five-axis machine, whatever else was chosen. The remedy that is told is one."""
     (workshop.folder / "rail.urdf").write_text(
-        on_track((workshop.folder / "arm.urdf").read_text()), encoding="utf-8"
+        mount_on_track((workshop.folder / "arm.urdf").read_text()), encoding="utf-8"
     )
     for name in ("rail.urdf", "rail.urdf, setup: tool-on-robot"):
         done = planned(name)

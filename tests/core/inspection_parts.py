@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Planned walls that are written down, and synthetic scans of them."""
+"""Planned walls given by formulas, and synthetic scans of them."""
 
 import numpy as np
 
@@ -22,7 +22,8 @@ def hemisphere(start=0.0, end=2.0 * np.pi, full=True):
 
 
 def funnel():
-    """A quarter of a circle that bends outward: every tilt and shift of it is felt, its turn is not."""
+    """A quarter circle that bends outwards: deviations depend on every tilt and shift, but not on a
+    rotation about its axis."""
     angle = np.linspace(0.0, 0.5 * np.pi, 700)
     points = np.column_stack([90.0 - R0 * np.cos(angle), R0 * np.sin(angle)])
     tangents = np.column_stack([np.sin(angle), np.cos(angle)])
@@ -31,7 +32,7 @@ def funnel():
 
 
 def sampled(wall, rng, count, low=0.0, high=1.0):
-    """Points (n, 3) all over a stretch of a wall, with its normals."""
+    """Points (n, 3) spread over a stretch of a wall, with its normals."""
     s = rng.uniform(low, high, count) * wall.meridian.length
     azimuth = rng.uniform(wall.start, wall.end, count)
     radius, height, tangent = wall.meridian.at(s)
@@ -39,11 +40,11 @@ def sampled(wall, rng, count, low=0.0, high=1.0):
     return wall.points(radius, height, azimuth), wall.directions(normal, azimuth)
 
 
-def moved(points, by):
+def apply_motion(points, by):
     return points @ by[:3, :3].T + by[:3, 3]
 
 
-def away(rng, angle, shift):
+def random_motion(rng, angle, shift):
     axis = rng.normal(size=3)
     return pose(rotation_about(axis / np.linalg.norm(axis), angle), rng.uniform(-shift, shift, 3))
 

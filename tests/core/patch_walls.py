@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Analytic walls for the tests of fronts: patches with meshes, first layers cut by implicit solids, rims; measures."""
+"""Analytic walls for the tests of fronts: patches with meshes, first layers cut by implicit solids,
+rims; measures."""
 
 import numpy as np
 from scipy.spatial import ConvexHull, Delaunay, cKDTree
@@ -11,18 +12,19 @@ from freecad_am.core.geometry.walls.patch_wall import FirstCurve, PatchWall, Rim
 from freecad_am.core.geometry.walls.surface import dot
 
 TURN = 2.0 * np.pi
-SUBSTRATE = 1e-9  # mm; a rim that reaches no farther above the substrate lies on it
+SUBSTRATE = 1e-9  # mm; a rim that is no higher above the substrate is on it
 
 
 def patch_wall(
     vertices, triangles, patches, owner, substrate, is_end=lambda points: False, label="wall"
 ):
-    """The wall of a mesh whose triangles (m, 3) belong to the patches owner (m,); it starts where it leaves `substrate`."""
+    """The wall of a mesh whose triangles (m, 3) belong to the patches owner (m,); it starts where
+    it leaves `substrate`."""
     uv = np.empty((len(triangles), 3, 2))
     for k, patch in enumerate(patches):
-        mine = owner == k
-        uv[mine] = patch.unwrap(
-            patch.inverse(vertices[triangles[mine]].reshape(-1, 3)).reshape(-1, 3, 2)
+        is_owned = owner == k
+        uv[is_owned] = patch.unwrap(
+            patch.inverse(vertices[triangles[is_owned]].reshape(-1, 3)).reshape(-1, 3, 2)
         )
     bare = PatchWall(
         vertices,
@@ -35,10 +37,12 @@ def patch_wall(
         (),
         label,
     )
-    first = tuple(_first(bare, substrate))
+    first_curves = tuple(_first(bare, substrate))
     behind = substrate.value(vertices)[0] < 0.0
     rims = tuple(_rims(bare, substrate, is_end))
-    return PatchWall(vertices, triangles, owner, uv, tuple(patches), first, behind, rims, label)
+    return PatchWall(
+        vertices, triangles, owner, uv, tuple(patches), first_curves, behind, rims, label
+    )
 
 
 def _first(wall, substrate):
@@ -83,9 +87,10 @@ def _rims(wall, substrate, is_end):
 
 
 def grid(point, u, v, closed=False):
-    """Vertices and triangles over u and v; closed: the last column of v is followed by the first."""
+    """Vertices and triangles over u and v; closed: the last column of v is followed by the
+    first."""
     n, m = len(u), len(v)
-    vertices = point(*(one.ravel() for one in np.meshgrid(u, v, indexing="ij")))
+    vertices = point(*(parameters.ravel() for parameters in np.meshgrid(u, v, indexing="ij")))
     i, j = (
         k.ravel()
         for k in np.meshgrid(np.arange(n - 1), np.arange(m if closed else m - 1), indexing="ij")
@@ -96,7 +101,7 @@ def grid(point, u, v, closed=False):
 
 
 def one_patch(patch, vertices, triangles, substrate, is_end=lambda points: False, label="wall"):
-    """A wall of a single patch, its triangles turned to the patch's outer side."""
+    """A wall of a single patch, its triangles oriented to the patch's outer side."""
     a, b, c = vertices[triangles].transpose(1, 0, 2)
     normal = patch.at(patch.inverse((a + b + c) / 3.0))[1]
     turned = dot(np.cross(b - a, c - a), normal) < 0.0
@@ -113,7 +118,8 @@ def one_patch(patch, vertices, triangles, substrate, is_end=lambda points: False
 
 
 def bend(substrate, low, high, step, start=0.0, width=TURN, radius=60.0, tube=15.0):
-    """A bend as `geometry.surface.Torus` has it: the angle along it from low to high, the one around it start to + width."""
+    """A bend as in `geometry.surface.Torus`: the angle along it from low to high, the one around it
+    from start to start + width."""
     # OpenCASCADE's torus is about its own Z, here -Y of the part, through (-radius, 0, 0)
     frame = np.array([[1.0, 0, 0, -radius], [0, 0, -1.0, 0], [0, 1.0, 0, 0], [0, 0, 0, 1.0]])
     patch = Patch(TORUS, (radius, tube), frame, 1.0, (TURN, TURN))
@@ -137,7 +143,7 @@ def bend(substrate, low, high, step, start=0.0, width=TURN, radius=60.0, tube=15
 
 
 def tube(substrate, height, step, radius=20.0, low=-5.0, start=0.0, width=TURN):
-    """A cylinder about Z, or a part of one, that ends at Z = height."""
+    """A cylinder about Z, or a sector of one, that ends at Z = height."""
     patch = Patch(CYLINDER, (radius,), np.eye(4), 1.0, (TURN, 0.0))
     closed = width > 6.28
     count = int(np.ceil(width * radius / step))
@@ -150,7 +156,7 @@ def tube(substrate, height, step, radius=20.0, low=-5.0, start=0.0, width=TURN):
 
 
 def ball(substrate, count=6000, radius=20.0):
-    """A sphere of evenly spread vertices."""
+    """A sphere with evenly spread vertices."""
     i = np.arange(count) + 0.5
     height, turn = np.arccos(1.0 - 2.0 * i / count), np.pi * (1.0 + np.sqrt(5.0)) * i
     points = radius * np.stack(
@@ -179,16 +185,16 @@ def sheet(substrate, holes=(), low=(-30.0, -10.0), high=(30.0, 50.0), step=1.0):
     points = np.vstack([points, *rounds])
     faces = Delaunay(points).simplices
     a, b, c = points[faces].transpose(1, 0, 2)
-    kept = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) > 1e-9
+    is_kept = np.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) > 1e-9
     start = len(points)
-    for one in reversed(rounds):  # faces between vertices of one hole alone fill it
-        start -= len(one)
-        kept &= ~((faces >= start) & (faces < start + len(one))).all(axis=1)
+    for hole in reversed(rounds):  # faces between vertices of one hole only would fill it
+        start -= len(hole)
+        is_kept &= ~((faces >= start) & (faces < start + len(hole))).all(axis=1)
     vertices = np.column_stack([points, np.zeros(len(points))])
     return one_patch(
         Patch(PLANE, (), np.eye(4)),
         vertices,
-        faces[kept],
+        faces[is_kept],
         substrate,
         lambda points: points[:, 1] > high[1] - 1e-9,
     )
@@ -198,18 +204,19 @@ def brute(points, curves, times=60):
     """Distances to fine polylines through the curves."""
     a = np.vstack([curve.at(curve.refined(times))[0][:-1] for curve in curves])
     b = np.vstack([curve.at(curve.refined(times))[0][1:] for curve in curves])
-    found = np.full(len(points), np.inf)
+    distances = np.full(len(points), np.inf)
     for k in cKDTree(0.5 * (a + b)).query(points, k=12)[1].T:
         along = b[k] - a[k]
         t = ((points - a[k]) * along).sum(-1) / np.maximum((along**2).sum(-1), 1e-300)
-        found = np.minimum(
-            found, np.linalg.norm(points - a[k] - np.clip(t, 0.0, 1.0)[:, None] * along, axis=1)
+        distances = np.minimum(
+            distances, np.linalg.norm(points - a[k] - np.clip(t, 0.0, 1.0)[:, None] * along, axis=1)
         )
-    return found
+    return distances
 
 
 def samples(wall, times=3):
-    """Points all over the deposited wall: the middles of its triangles cut in times^2, on the exact surface."""
+    """Points over the deposited wall: the centres of its triangles divided into times^2, on the
+    exact surface."""
     i, j = (k.ravel() for k in np.meshgrid(np.arange(times), np.arange(times), indexing="ij"))
     inside = i + j < times
     share = np.stack([i[inside] + 1.0 / 3.0, j[inside] + 1.0 / 3.0], axis=1) / times

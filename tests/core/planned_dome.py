@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A dome of few layers, planned as far as its motion, for the tests of what is told of motions."""
+"""A dome of few layers, planned up to its motion, for tests of motions."""
 
 from typing import NamedTuple
 
@@ -21,7 +21,7 @@ from freecad_am.core.toolpath import Toolpath
 
 
 class Dome(NamedTuple):
-    """Its stages."""
+    """The stages of planning."""
 
     toolpath: Toolpath
     cell: Cell

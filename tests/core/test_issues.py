@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Findings of one kind in several layers are one line with their count, their layers and the worst place."""
+"""Similar issues in several layers become one with count, layers and the worst position."""
 
 import pytest
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What the rows of a motion are for."""
+"""Roles of the rows of a motion."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ LETTERS = {"D": DEPOSIT, "R": RETRACT, "T": TRAVEL, "A": APPROACH}
 
 
 def motion(letters, **columns):
-    """Rows of the roles that the letters name; a bead begins at a D after another letter."""
+    """Rows of the roles given by letters; a bead begins at a D after another letter."""
     role = np.array([LETTERS[letter] for letter in letters if letter != "|"])
     deposit, n = role == DEPOSIT, len(role)
     point = np.zeros(n, dtype=int)
@@ -38,13 +38,13 @@ def motion(letters, **columns):
     ["TADDD", "TADDRTADDR", "TADDRTTTADDRTADDR", "TDDTDD", "TDDTTDD", "DDDD", "DDRTAD", "DRTADR"],
 )
 def test_a_motion_without_roles_has_those_of_one_retract_and_one_approach_row(letters):
-    role, found = motion(letters)
-    assert found.role.dtype == np.int64 and found.role.tolist() == role.tolist()
+    role, made_motion = motion(letters)
+    assert made_motion.role.dtype == np.int64 and made_motion.role.tolist() == role.tolist()
 
 
 def test_it_stops_at_every_rapid_row_and_at_the_end_of_every_bead():
-    _, found = motion("TRADDDRRTADDR")
-    assert found.stops.tolist() == [letter != "D" for letter in "TRADD"] + [True] * 5 + [
+    _, made_motion = motion("TRADDDRRTADDR")
+    assert made_motion.stops.tolist() == [letter != "D" for letter in "TRADD"] + [True] * 5 + [
         False,
         True,
         True,

@@ -15,7 +15,7 @@ from freecad_am.kdl import KdlArm
 from freecad_am.objects import user_machines
 from freecad_am.objects.fields import preferences
 from tests.core.kinematics import urdf_cells
-from tests.core.kinematics.arms import on_track
+from tests.core.kinematics.arms import mount_on_track
 
 NAME = "RoboticAM_NewMachine"
 
@@ -379,7 +379,7 @@ def test_what_was_entered_is_not_lost_without_a_question(person, hand, wizard):
 
 def test_a_robot_on_its_track_begins_with_the_robot(person, hand, wizard, tmp_path):
     path = tmp_path / "rail.urdf"
-    path.write_text(on_track(urdf_text.text(machine.load("abb-irb140"))), encoding="utf-8")
+    path.write_text(mount_on_track(urdf_text.text(machine.load("abb-irb140"))), encoding="utf-8")
     hand.enter(wizard, "file", str(path))
     base = person.field(wizard, "baseLink")
     assert base.currentText() == "carriage"  # proposed

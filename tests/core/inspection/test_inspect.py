@@ -14,7 +14,15 @@ from freecad_am.core.inspection.inspect import inspect
 from freecad_am.core.inspection.planned import revolution_surface, triangle_surface
 from freecad_am.core.issues import AmError, InputError
 from freecad_am.core.parameters.inspection import InspectionParameters
-from tests.core.inspection_parts import R0, away, funnel, hemisphere, moved, sampled, scan
+from tests.core.inspection_parts import (
+    R0,
+    apply_motion,
+    funnel,
+    hemisphere,
+    random_motion,
+    sampled,
+    scan,
+)
 
 EXAMPLES = Path(__file__).resolve().parents[3] / "resources" / "examples"
 
@@ -37,15 +45,16 @@ def test_any_attitude_is_found_to_within_the_noise_over_the_root_of_the_points(s
     rng = np.random.default_rng(seed)
     wall, noise, count = funnel(), 0.03, 4000
     points, normal = sampled(wall, rng, count)
-    by = away(rng, rng.uniform(0.5, 3.0), 400.0)
+    by = random_motion(rng, rng.uniform(0.5, 3.0), 400.0)
     result = inspected(
-        moved(points + normal * rng.normal(0.0, noise, (count, 1)), by), revolution_surface(wall)
+        apply_motion(points + normal * rng.normal(0.0, noise, (count, 1)), by),
+        revolution_surface(wall),
     )
     residual_motion = result.motion @ by
     axis = residual_motion[:3, :3] @ wall.frame[:3, 2]
     bound = 8.0 * noise / np.sqrt(count)
     assert np.abs(axis - wall.frame[:3, 2]).max() < bound / 20.0
-    origin = moved(wall.frame[None, :3, 3], residual_motion)[0]
+    origin = apply_motion(wall.frame[None, :3, 3], residual_motion)[0]
     assert np.abs(origin - wall.frame[:3, 3]).max() < 3.0 * bound
     assert (
         result.spread.deviation == pytest.approx(noise, rel=0.05)
@@ -66,9 +75,11 @@ def test_a_few_turns_of_a_dome_tell_where_it_is_with_outliers_and_a_ball(seed):
     outliers = rng.permutation(count)[:150]
     scanned = points + normal * (rng.normal(0.0, noise, count) + 1.5)[:, None]
     scanned[outliers] += rng.uniform(3.0, 12.0, (150, 1)) * normal[outliers]
-    by = away(rng, 0.1, 6.0)
-    result = inspected(moved(scanned, by), revolution_surface(wall), probe_radius=1.5, trim=0.08)
-    centre = moved(np.zeros((1, 3)), result.motion @ by)[0]
+    by = random_motion(rng, 0.1, 6.0)
+    result = inspected(
+        apply_motion(scanned, by), revolution_surface(wall), probe_radius=1.5, trim=0.08
+    )
+    centre = apply_motion(np.zeros((1, 3)), result.motion @ by)[0]
     assert np.abs(centre).max() < 12.0 * noise / np.sqrt(count)
     inliers = np.setdiff1d(np.arange(count), outliers)
     assert (
@@ -131,13 +142,15 @@ def test_pairs_of_points_tell_which_way_round_a_box_is():
     """Pairs of points determine the orientation of a box."""
     surface, points = box()
     rng = np.random.default_rng(21)
-    by = away(rng, 3.0, 700.0)
+    by = random_motion(rng, 3.0, 700.0)
     indices = rng.permutation(len(points))[:4]
     pairs = "; ".join(
         " ".join(f"{v:.2f}" for v in measured) + " > " + " ".join(f"{v:.2f}" for v in planned)
-        for measured, planned in zip(moved(points[indices], by), points[indices], strict=True)
+        for measured, planned in zip(
+            apply_motion(points[indices], by), points[indices], strict=True
+        )
     )
-    result = inspected(moved(points, by), surface, pairs=pairs)
+    result = inspected(apply_motion(points, by), surface, pairs=pairs)
     assert np.abs(result.points - points).max() < 1e-6
 
 

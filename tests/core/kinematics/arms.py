@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Arms without a spherical wrist, as their makers describe them, and what their poses come from that is not ours."""
+"""Arms without a spherical wrist as their manufacturers describe them, and independent solvers for
+their poses."""
 
 from types import SimpleNamespace
 
@@ -9,7 +10,8 @@ from freecad_am.core.geometry import frames
 from freecad_am.core.kinematics.chain import Chain
 from freecad_am.kdl import KdlArm
 
-# built-in machines of every maker, wrist and size for tests that are dear; test_machine_library looks at all of them
+# built-in machines of every manufacturer, wrist and size for expensive tests; test_machine_library
+# covers all of them
 EXAMPLES = (
     "abb-irb140",
     "abb-irb1600-6-12",
@@ -91,8 +93,8 @@ GOFA_5 = (
     ((101, 0, 80), (0, 0, 0), (1, 0, 0)),
     ((0, 0, 0), (0, 90, 0)),
 )
-# axis 2 lies ahead of axis 1: GoFa 10 by RobotComponents' preset CRB15000-10/1.52 (150 -110 -80 0 400 707 637 101), FANUC's
-# M-710iC/50E by its description
+# axis 2 is ahead of axis 1: GoFa 10 by RobotComponents' preset CRB15000-10/1.52 (150 -110 -80 0 400
+# 707 637 101), FANUC's M-710iC/50E by its description
 GOFA_10 = (
     ((0, 0, 400), (0, 0, 0), (0, 0, 1)),
     ((150, 0, 0), (0, 0, 0), (0, 1, 0)),
@@ -111,7 +113,8 @@ M710IC_50E = (
     ((0, 0, 160), (0, 0, 0), (-1, 0, 0)),
     ((170, 0, 0), (180, -90, 0)),
 )
-# of no maker: every zero elsewhere, axes 4 to 6 at 70 deg, axis 6 off axis 5, the flange beside axis 6 and turned
+# fictitious: shifted zeros, axes 4 to 6 at 70 deg, axis 6 off axis 5, the flange next to axis 6 and
+# rotated
 CROOKED_CRX = (
     ((0, 0, 300), (180, 0, 25), (0, 0, 1)),
     ((0, 0, 20), (90, 40, 10), (0, 0, 1)),
@@ -121,7 +124,8 @@ CROOKED_CRX = (
     ((40, 20, 90), (70, 0, 0), (0, 0, 1)),
     ((10, 20, 60), (30, 40, 50)),
 )
-# of no maker: axis 2 before axis 1, a forearm at an angle, axis 5 beside axis 4, the flange beside axis 6 and turned
+# fictitious: axis 2 before axis 1, a forearm at an angle, axis 5 next to axis 4, the flange next to
+# axis 6 and rotated
 CROOKED_UR = (
     ((0, 0, 200), (180, 0, 30), (0, 0, 1)),
     ((60, 15, -10), (90, 25, 0), (0, 0, -1)),
@@ -134,7 +138,7 @@ CROOKED_UR = (
 
 
 def chain(arm):
-    """The chain of one of these arms."""
+    """Return the chain of one of these arms."""
     *joints, (origin, rpy) = arm
     return Chain(
         np.stack([_pose(origin, rpy) for origin, rpy, _ in joints]),
@@ -150,35 +154,39 @@ def _pose(origin, rpy):
     )
 
 
-def second_opinion(of):
-    """PyKDL on a chain alone."""
-    return KdlArm(SimpleNamespace(axes=range(6), chain=of))
+def second_opinion(arm_chain):
+    """Return PyKDL's arm for a chain only."""
+    return KdlArm(SimpleNamespace(axes=range(6), chain=arm_chain))
 
 
-def numeric(of, pose, rng, starts):
-    """Joint angles (k, 6) in [-pi, pi] that differ, to each of which PyKDL's solver came from some random start."""
+def numeric(arm_chain, pose, rng, starts):
+    """Distinct joint angles (k, 6) in [-pi, pi] that PyKDL's solver reached from random starts."""
     scale = np.ones((4, 4))
-    scale[:3, 3] = 1e-3  # its weights are made for metres
-    kdl = second_opinion(Chain(of.origins * scale, of.directions, of.flange * scale))
+    scale[:3, 3] = 1e-3  # its weights assume metres
+    kdl = second_opinion(
+        Chain(arm_chain.origins * scale, arm_chain.directions, arm_chain.flange * scale)
+    )
     seeds = rng.uniform(-np.pi, np.pi, (starts, 6))
     q = kdl.inverse(np.broadcast_to(pose * scale, (starts, 4, 4)), seeds, "lma", 1e-9)
     q = q[np.isfinite(q).all(axis=1)]
     q = q[np.abs(kdl.forward(q) - pose * scale).max(axis=(1, 2), initial=0.0) < 1e-7]
     q -= 2.0 * np.pi * np.round(q / (2.0 * np.pi))
-    found = []
-    for one in q:
-        if all(apart(one, other) > 1e-3 for other in found):
-            found.append(one)
-    return np.array(found).reshape(-1, 6)
+    solutions = []
+    for candidate in q:
+        if all(joint_difference(candidate, solution) > 1e-3 for solution in solutions):
+            solutions.append(candidate)
+    return np.array(solutions).reshape(-1, 6)
 
 
-def apart(one, other):
-    """The largest difference of two joint vectors along leading axes, whole turns aside."""
-    return np.abs(np.exp(1j * np.asarray(one)) - np.exp(1j * np.asarray(other))).max(axis=-1)
+def joint_difference(vector_a, vector_b):
+    """Largest difference of two joint vectors along leading axes, modulo whole turns."""
+    return np.abs(np.exp(1j * np.asarray(vector_a)) - np.exp(1j * np.asarray(vector_b))).max(
+        axis=-1
+    )
 
 
-def on_track(text):
-    """The URDF of a robot whose base_link stands on a track, as one robot."""
+def mount_on_track(text):
+    """Return the URDF of a robot whose base_link is mounted on a track, as one robot."""
     return text.replace('"base_link"', '"carriage"').replace(
         "</robot>",
         """<link name="base_link"/>

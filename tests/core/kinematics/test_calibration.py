@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Calibrations of single robots, as ROS' ur_calibration writes them, against PyKDL on the poses of the file."""
+"""Calibrations of single robots as written by ROS' ur_calibration, against PyKDL on the poses of
+the file."""
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from freecad_am.core.kinematics.machines import machine
 
 kdl = pytest.importorskip("PyKDL")
 
-# of no robot; angles near pi are how the tool writes hardly any turn
+# fictitious; angles near pi are how the tool writes almost no rotation
 FILE = """\
 # made by ur_calibration
 kinematics:
@@ -74,15 +75,17 @@ def robot(calibration):
 
 
 def _by_kdl(text, q):
-    """(n, 4, 4) mm, tool0 in base_link, after UR's own URDF: base_link_inertia is base_link turned by pi."""
+    """(n, 4, 4) mm, tool0 in base_link, after UR's own URDF: base_link_inertia is base_link rotated
+    by pi."""
     chain = kdl.Chain()
     chain.addSegment(kdl.Segment(kdl.Joint(), kdl.Frame(kdl.Rotation.RPY(0, 0, np.pi))))
     for name in ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3"):
-        at = yaml.safe_load(text)["kinematics"][name]
-        turned = kdl.Rotation.RPY(*(float(at[key]) for key in ("roll", "pitch", "yaw")))
+        joint_values = yaml.safe_load(text)["kinematics"][name]
+        turned = kdl.Rotation.RPY(*(float(joint_values[key]) for key in ("roll", "pitch", "yaw")))
         chain.addSegment(
             kdl.Segment(
-                kdl.Joint(), kdl.Frame(turned, kdl.Vector(*(float(at[key]) for key in "xyz")))
+                kdl.Joint(),
+                kdl.Frame(turned, kdl.Vector(*(float(joint_values[key]) for key in "xyz"))),
             )
         )
         chain.addSegment(kdl.Segment(kdl.Joint(name, kdl.Joint.RotZ)))
@@ -99,32 +102,35 @@ def _by_kdl(text, q):
 
 def test_poses_are_those_of_the_calibrated_robot(robot):
     q = np.random.default_rng(1).uniform(-np.pi, np.pi, (200, 6))
-    wanted = _by_kdl(FILE, q)
-    off = np.abs(robot.chain.forward(q) - wanted)
+    expected = _by_kdl(FILE, q)
+    off = np.abs(robot.chain.forward(q) - expected)
     assert off[:, :3, 3].max() < 1e-9 and off[:, :3, :3].max() < 1e-12
-    nominal = np.linalg.norm((machine.load("ur-ur10e").chain.forward(q) - wanted)[:, :3, 3], axis=1)
+    nominal = np.linalg.norm(
+        (machine.load("ur-ur10e").chain.forward(q) - expected)[:, :3, 3], axis=1
+    )
     assert 1.0 < nominal.max() < 10.0
     assert "my robot.yaml (calib_123456789)" in robot.sources
 
 
 def test_every_solution_gives_its_pose_and_none_is_lost_where_the_arm_can_move(robot):
+    """Every solution gives its pose, and none is missing where the arm can move."""
     q = np.random.default_rng(2).uniform(-np.pi, np.pi, (1000, 6))
     poses = _by_kdl(FILE, q)
-    found = robot.arm.inverse(poses)
-    reached = np.isfinite(found).all(axis=2)
-    assert (reached == np.isfinite(found).any(axis=2)).all() and np.nanmax(
-        np.abs(found)
+    solutions = robot.arm.inverse(poses)
+    reached = np.isfinite(solutions).all(axis=2)
+    assert (reached == np.isfinite(solutions).any(axis=2)).all() and np.nanmax(
+        np.abs(solutions)
     ) <= np.pi + 1e-12
     for words in range(8):
-        some = reached[words]
-        assert (robot.arm.branch_of(found[words, some]) == words).all()
-        off = np.abs(_by_kdl(FILE, found[words, some][:100]) - poses[some][:100])
+        mask = reached[words]
+        assert (robot.arm.branch_of(solutions[words, mask]) == words).all()
+        off = np.abs(_by_kdl(FILE, solutions[words, mask][:100]) - poses[mask][:100])
         assert off[:, :3, 3].max() < 1e-6 and off[:, :3, :3].max() < 1e-9
-    assert np.array_equal(robot.arm.inverse_branch(poses, 5), found[5], equal_nan=True)
-    given = found[robot.arm.branch_of(q), np.arange(len(q))]
+    assert np.array_equal(robot.arm.inverse_branch(poses, 5), solutions[5], equal_nan=True)
+    own_solutions = solutions[robot.arm.branch_of(q), np.arange(len(q))]
     movable = condition(jacobian(robot.chain, q, poses[:, :3, 3]), 1000.0) > 0.01
     assert movable.sum() > 700
-    assert np.abs(np.exp(1j * given) - np.exp(1j * q))[movable].max() < 1e-6
+    assert np.abs(np.exp(1j * own_solutions) - np.exp(1j * q))[movable].max() < 1e-6
     several = machine.load("ur-ur10e").arm.inverse(poses)
     assert reached.sum() > 0.99 * np.isfinite(several[..., 0]).sum()
 
@@ -157,10 +163,10 @@ def test_a_broken_calibration_is_refused_with_its_place(tmp_path, old, new, wher
     path = tmp_path / "broken.yaml"
     assert old in FILE
     path.write_text(FILE.replace(old, new), encoding="utf-8")
-    with pytest.raises(InputError) as found:
+    with pytest.raises(InputError) as caught:
         machine.load(f"ur-ur10e calibration={path}")
-    assert found.value.code == "BAD_CALIBRATION"
-    assert found.value.where == f"{path}: {where}" and says in found.value.message
+    assert caught.value.code == "BAD_CALIBRATION"
+    assert caught.value.where == f"{path}: {where}" and says in caught.value.message
 
 
 def test_what_takes_no_calibration_says_so(calibration, tmp_path):
@@ -178,9 +184,9 @@ def test_what_takes_no_calibration_says_so(calibration, tmp_path):
         ),
         (f"ur-ur11 calibration={calibration}", "UNKNOWN_MACHINE", "did you mean"),
     ):
-        with pytest.raises(InputError) as found:
+        with pytest.raises(InputError) as caught:
             machine.load(name)
-        assert found.value.code == code and says in found.value.message
+        assert caught.value.code == code and says in caught.value.message
     (tmp_path / "image.yaml").write_bytes(b"\xff\xd8\xff\x00")
     with pytest.raises(InputError, match="cannot be read as a calibration"):
         machine.load(f"ur-ur10e calibration={tmp_path / 'image.yaml'}")

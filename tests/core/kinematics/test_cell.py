@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Poses of the flange from points of the part, and back; the rotation about the tool axis and the paper's RZ."""
+"""Flange poses from points of the part and back; the rotation about the tool axis and the paper's
+RZ."""
 
 import json
 
@@ -57,6 +58,7 @@ def test_the_tip_stands_on_the_point_along_the_tool_axis_for_every_rotation(setu
 
 @pytest.mark.parametrize("setup", SETUPS)
 def test_the_tip_alone_is_where_the_closed_form_takes_it(setup):
+    """The tip position agrees with the closed form."""
     rng = np.random.default_rng(6)
     cell = random_cell(rng, setup)
     position, tool, phi = (
@@ -69,8 +71,8 @@ def test_the_tip_alone_is_where_the_closed_form_takes_it(setup):
     assert np.count_nonzero(reached) > 1000
     points = np.broadcast_to(position, (len(joints), *position.shape))[reached]
     assert np.abs(cell.tip_at(joints[reached]) - points).max() < 1e-7
-    some = joints[reached][:6]
-    assert np.array_equal(cell.tip_at(some.reshape(2, 3, 6)).reshape(6, 3), cell.tip_at(some))
+    block = joints[reached][:6]
+    assert np.array_equal(cell.tip_at(block.reshape(2, 3, 6)).reshape(6, 3), cell.tip_at(block))
 
 
 @pytest.mark.parametrize("machine", ["table-xyzac", "head-xyzab"])
@@ -89,6 +91,7 @@ def test_the_tip_alone_of_machines_with_sliding_axes(machine):
 
 @pytest.mark.parametrize("setup", SETUPS)
 def test_the_spin_turns_the_flange_about_the_deposition_point(setup):
+    """The tool rotation rotates the flange about the deposition point."""
     rng = np.random.default_rng(2)
     cell = random_cell(rng, setup)
     position, tool, phi = (
@@ -97,20 +100,20 @@ def test_the_spin_turns_the_flange_about_the_deposition_point(setup):
         rng.uniform(-3, 3, 50),
     )
     step = 1e-6
-    here, later = (cell.flange_poses(position, tool, phi + d) for d in (-step, step))
+    earlier, later = (cell.flange_poses(position, tool, phi + d) for d in (-step, step))
     middle = cell.flange_poses(position, tool, phi)
     change = (
-        (later[:, :3, :3] - here[:, :3, :3]) / (2 * step) @ np.swapaxes(middle[:, :3, :3], 1, 2)
+        (later[:, :3, :3] - earlier[:, :3, :3]) / (2 * step) @ np.swapaxes(middle[:, :3, :3], 1, 2)
     )
     turning = np.stack([change[:, 2, 1], change[:, 0, 2], change[:, 1, 0]], axis=1)
     spin, point = cell.rotation_axis(middle), cell.deposition_point(middle)
     assert np.abs(turning - spin).max() < 1e-8
-    velocity = (later[:, :3, 3] - here[:, :3, 3]) / (2 * step)
+    velocity = (later[:, :3, 3] - earlier[:, :3, 3]) / (2 * step)
     assert np.abs(velocity - np.cross(spin, middle[:, :3, 3] - point)).max() < 1e-5
 
 
 def test_rz_is_the_last_bryant_angle_of_the_rotation_that_takes_the_build_direction_to_z():
-    """Chalvin 2020, eqs. 9 to 11, written down again here: b = [0 0 1] Rx Ry Rz in row form."""
+    """Chalvin 2020, eqs. 9 to 11, written independently: b = [0 0 1] Rx Ry Rz in row form."""
     rng = np.random.default_rng(3)
     cell = cells.resolve(CellParameters(limits="paper"), np.eye(4))
     tool, rz = directions(rng, 200), rng.uniform(-np.pi, np.pi, 200)
@@ -139,7 +142,7 @@ def test_the_rate_of_the_rotation_by_rz():
 
 
 def test_rz_degenerates_where_the_build_direction_is_nearly_horizontal():
-    """ERRATA: at 85 deg of tilt |d phi / d RZ| ranges from 0.09 to 11."""
+    """ERRATA: at 85 deg tilt |d phi / d RZ| ranges from 0.09 to 11."""
     cell = cells.resolve(CellParameters(limits="paper"), np.eye(4))
     tool = np.repeat([[np.sin(np.radians(85.0)), 0.0, np.cos(np.radians(85.0))]], 3600, axis=0)
     _, rate = cell.poses.phi_of_rz(tool, np.linspace(-np.pi, np.pi, 3600))
@@ -164,9 +167,9 @@ def test_what_cannot_be_resolved_is_refused(parameters, code):
 
 @pytest.mark.parametrize("setup", [*SETUPS, "rotary-table"])
 def test_a_machine_file_of_a_robot_with_its_track_is_refused_whatever_the_setup(setup, tmp_path):
-    """It was taken for a five-axis machine, and those without five axes for an internal error."""
-    told = json.loads((machine.BUILT_IN / "kuka-kr16-2.json").read_text(encoding="utf-8"))
-    told["joints"].insert(
+    """Such a file was once taken for a five-axis machine, or caused an internal error."""
+    description = json.loads((machine.BUILT_IN / "kuka-kr16-2.json").read_text(encoding="utf-8"))
+    description["joints"].insert(
         0,
         {
             "name": "rail",
@@ -177,15 +180,15 @@ def test_a_machine_file_of_a_robot_with_its_track_is_refused_whatever_the_setup(
             "max_speed": 1000,
         },
     )
-    told["controller"] |= {"matrix": np.eye(7).tolist(), "offset": [0] * 7}
-    told["limits"]["maker"]["axes"].insert(0, [-1000, 1000])
-    for pose in told["check_poses"]:
+    description["controller"] |= {"matrix": np.eye(7).tolist(), "offset": [0] * 7}
+    description["limits"]["maker"]["axes"].insert(0, [-1000, 1000])
+    for pose in description["check_poses"]:
         along = 100 if any(pose["q"]) else 0
         pose["q"].insert(0, along)
         pose["origin"][0] += along
-    del told["opw"], told["id"]
+    del description["opw"], description["id"]
     path = tmp_path / "rail.json"
-    path.write_text(json.dumps({"id": "rail", **told}), encoding="utf-8")
+    path.write_text(json.dumps({"id": "rail", **description}), encoding="utf-8")
     with pytest.raises(InputError) as info:
         cells.resolve(CellParameters(machine=str(path), setup=setup), np.eye(4))
     if setup == "rotary-table":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Forward kinematics of joint frames against the product of matrices it stands for."""
+"""Forward kinematics of joint frames against the product of matrices that defines it."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from freecad_am.core.kinematics.machines import machine
 
 
 def product(chain, q):
-    """Link poses and flange of one joint vector, as the definition says."""
+    """Link poses and flange of one joint vector by definition."""
     pose, links = np.eye(4), []
     for origin, direction, angle in zip(chain.origins, chain.directions, q, strict=True):
         pose = (
@@ -25,7 +25,7 @@ def product(chain, q):
 
 @pytest.fixture
 def skewed():
-    """A chain of three joints in general position, as no robot has it."""
+    """A chain of three joints in general position, unlike any robot."""
     rng = np.random.default_rng(4)
     directions = rng.standard_normal((3, 3))
     return Chain(
@@ -61,8 +61,8 @@ def test_any_leading_dimensions(skewed):
     assert np.abs(skewed.forward(q[2, 3]) - flange[2, 3]).max() < 1e-12
     assert skewed.frames(q[2, 3]).directions.shape == (3, 3)
     assert skewed.forward(q[:0]).shape == (0, 5, 4, 4)
-    many = np.tile(q.reshape(-1, 3), (500, 1))
-    assert np.abs(skewed.forward(many)[-20:] - flange.reshape(-1, 4, 4)).max() < 1e-12
+    repeated = np.tile(q.reshape(-1, 3), (500, 1))
+    assert np.abs(skewed.forward(repeated)[-20:] - flange.reshape(-1, 4, 4)).max() < 1e-12
 
 
 @pytest.mark.parametrize("name", ["skewed", "staubli-rx60bl", "head-table-xyzbc"])
@@ -72,8 +72,11 @@ def test_links_of_one_vector_are_the_product_of_matrices(name, skewed):
     links = chain.links(q)
     assert np.array_equal(links[0], np.eye(4))
     assert np.abs(links[-1] @ chain.flange - chain.forward(q)).max() < 1e-10
-    at = chain.frames(q)
+    joint_frames = chain.frames(q)
     for axis, link in enumerate(links[1:]):
-        assert np.abs(at.directions[axis] - link[:3, :3] @ chain.directions[axis]).max() < 1e-13
-        slid = q[axis] * at.directions[axis] if chain.sliding[axis] else 0.0
-        assert np.abs(at.origins[axis] + slid - link[:3, 3]).max() < 1e-10
+        assert (
+            np.abs(joint_frames.directions[axis] - link[:3, :3] @ chain.directions[axis]).max()
+            < 1e-13
+        )
+        slid = q[axis] * joint_frames.directions[axis] if chain.sliding[axis] else 0.0
+        assert np.abs(joint_frames.origins[axis] + slid - link[:3, 3]).max() < 1e-10

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Links of positioner and track as bodies: where they are by PyKDL, what they touch by points within their boxes."""
+"""Links of positioner and track as bodies: their poses against PyKDL, their contacts against points
+within their boxes."""
 
 import dataclasses
 import json
@@ -35,12 +36,12 @@ STANDS = (
     0.0,
     0.0,
     30.0,
-)  # mm, deg: near, so that a good share of random postures touches
+)  # mm, deg: near, so that many random postures touch
 RAIL = (0.0, -40.0, -356.0, 0.0, 0.0, 90.0)
 STEP = 12.0  # mm between points within boxes
 
 
-def cell_of(external, **more):
+def cell_of(external, **options):
     return cells.resolve(
         CellParameters(
             **{
@@ -51,7 +52,7 @@ def cell_of(external, **more):
                 "platform_diameter": 0.0,
                 "external": external,
                 "nozzle": NozzleParameters(tool=(20.0, 0.0, 300.0, 0.0, 0.6, 0.0)),
-                **more,
+                **options,
             }
         ),
         np.eye(4),
@@ -70,22 +71,22 @@ def kdl_frame(xyz, rpy=(0.0, 0.0, 0.0)):
 
 
 def matrix(frame):
-    found = np.eye(4)
-    found[:3, :3] = [[frame.M[i, j] for j in range(3)] for i in range(3)]
-    found[:3, 3] = list(frame.p)
-    return found
+    transform = np.eye(4)
+    transform[:3, :3] = [[frame.M[i, j] for j in range(3)] for i in range(3)]
+    transform[:3, 3] = list(frame.p)
+    return transform
 
 
 def mechanism(name, pose, values):
-    """The frames of a mechanism's links in the world, floor first, by PyKDL from its file."""
-    told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
+    """Frames of a mechanism's links in the world, base first, by PyKDL from its file."""
+    description = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
     turned = (
         PyKDL.Rotation.RotX(np.radians(pose[3]))
         * PyKDL.Rotation.RotY(np.radians(pose[4]))
         * PyKDL.Rotation.RotZ(np.radians(pose[5]))
     )
     chain = PyKDL.Chain()
-    for joint in told["joints"]:
+    for joint in description["joints"]:
         chain.addSegment(PyKDL.Segment(PyKDL.Joint(), kdl_frame(joint["origin"], joint["rpy"])))
         kind = PyKDL.Joint.TransAxis if joint.get("type") == "prismatic" else PyKDL.Joint.RotAxis
         chain.addSegment(
@@ -96,32 +97,33 @@ def mechanism(name, pose, values):
     solver, angles = PyKDL.ChainFkSolverPos_recursive(chain), PyKDL.JntArray(len(values))
     for index, value in enumerate(values):
         angles[index] = value
-    found = [turned_frame := PyKDL.Frame(turned, PyKDL.Vector(*pose[:3]))]
+    link_frames = [turned_frame := PyKDL.Frame(turned, PyKDL.Vector(*pose[:3]))]
     for k in range(len(values)):
         frame = PyKDL.Frame()
         solver.JntToCart(angles, frame, 2 * k + 2)
-        found.append(turned_frame * frame)
-    return [matrix(one) for one in found]
+        link_frames.append(turned_frame * frame)
+    return [matrix(frame_of_link) for frame_of_link in link_frames]
 
 
-def points_within(piece):
+def points_within(shape):
     """Points within a box or a cylinder of a file, in the frame of its link."""
     size = np.array(
-        piece["box"] if "box" in piece else [piece["cylinder"][0]] * 2 + [piece["cylinder"][1]]
+        shape["box"] if "box" in shape else [shape["cylinder"][0]] * 2 + [shape["cylinder"][1]]
     )
     axes = [np.linspace(-0.5, 0.5, int(np.ceil(length / STEP)) + 1) * length for length in size]
     grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    if "cylinder" in piece:
+    if "cylinder" in shape:
         grid = grid[np.hypot(grid[:, 0], grid[:, 1]) <= 0.5 * size[0]]
-    at = matrix(kdl_frame(piece["origin"], piece["rpy"]))
-    return grid @ at[:3, :3].T + at[:3, 3]
+    pose = matrix(kdl_frame(shape["origin"], shape["rpy"]))
+    return grid @ pose[:3, :3].T + pose[:3, 3]
 
 
 def bodies_of(name):
-    told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
-    links = ("base", *(joint["name"] for joint in told["joints"]))
+    description = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
+    links = ("base", *(joint["name"] for joint in description["joints"]))
     return [
-        np.concatenate([points_within(piece) for piece in told["bodies"][link]]) for link in links
+        np.concatenate([points_within(shape) for shape in description["bodies"][link]])
+        for link in links
     ]
 
 
@@ -136,22 +138,25 @@ def anywhere(cell, count, seed):
 
 
 def test_they_are_where_pykdl_has_them_seen_from_part_and_world():
+    """Frames of external links agree with PyKDL in part and world coordinates."""
     cell = cell_of(BOTH)
     q = anywhere(cell, 40, 1)
-    assert [one.name.rsplit(" ", 1)[1] for one in cell.shapes.external_links] == [
+    assert [
+        external_link.name.rsplit(" ", 1)[1] for external_link in cell.shapes.external_links
+    ] == [
         "base",
         "e1",
         "e2",
         "base",
         "e3",
     ]
-    seen, world = cell.external_link_frames(q), cell.world(q)
+    frames_in_part, world = cell.external_link_frames(q), cell.world(q)
     for k, row in enumerate(q):
-        wanted = [*mechanism(D500, STANDS, row[6:8]), *mechanism(TRACK, RAIL, row[8:])]
+        expected = [*mechanism(D500, STANDS, row[6:8]), *mechanism(TRACK, RAIL, row[8:])]
         to_world = np.linalg.inv(world[k])
-        assert np.abs(to_world @ seen[k] - wanted).max() < 1e-9
-        # and the robot on the carriage, the platform on the face
-        moved = wanted[4] @ np.linalg.inv(mechanism(TRACK, RAIL, [0.0])[1])
+        assert np.abs(to_world @ frames_in_part[k] - expected).max() < 1e-9
+        # and the robot on the carriage, the platform on the face plate
+        moved = expected[4] @ np.linalg.inv(mechanism(TRACK, RAIL, [0.0])[1])
         arm = (
             moved @ KdlArm(cell.robot).forward(row[None, :6])[0]
             if np.allclose(cell.robot.base, np.eye(4))
@@ -159,23 +164,24 @@ def test_they_are_where_pykdl_has_them_seen_from_part_and_world():
         )
         if arm is not None:
             assert np.abs(to_world @ cell.machine.chain.forward(row[None])[0] - arm).max() < 1e-6
-        face = (wanted[2] @ frames.pose(np.eye(3), [0, 0, 150.0]))[:3, 3]
+        face = (expected[2] @ frames.pose(np.eye(3), [0, 0, 150.0]))[:3, 3]
         assert np.abs(to_world[:3, 3] - face).max() < 1e-6
 
 
 def test_in_the_simulation_the_rail_stands_still_and_the_carriage_goes_under_the_robot():
+    """In the simulation the rail is fixed and the carriage moves with the robot."""
     cell = cell_of(text(TRACK, RAIL, "robot"))
     q = anywhere(cell, 2, 3)
     q[:, :6] = q[0, :6]
-    first, second = (placing(cell, one) for one in q)
-    assert np.abs(first.external_links[0] - second.external_links[0]).max() < 1e-9
-    assert np.abs(first.part - second.part).max() < 1e-9
-    went = np.linalg.norm((second.links[0] - first.links[0])[:3, 3])
+    placed_at_start, placed_at_end = (placing(cell, row) for row in q)
+    assert np.abs(placed_at_start.external_links[0] - placed_at_end.external_links[0]).max() < 1e-9
+    assert np.abs(placed_at_start.part - placed_at_end.part).max() < 1e-9
+    went = np.linalg.norm((placed_at_end.links[0] - placed_at_start.links[0])[:3, 3])
     assert went == pytest.approx(abs(q[1, 6] - q[0, 6])) and went > 100.0
-    for place in (first, second):
+    for placed_cell in (placed_at_start, placed_at_end):
         assert (
             np.abs(
-                (np.linalg.inv(place.external_links[1]) @ place.links[0])[:3, 3]
+                (np.linalg.inv(placed_cell.external_links[1]) @ placed_cell.links[0])[:3, 3]
                 - [40.0, 0.0, 356.0]
             ).max()
             < 1e-6
@@ -189,49 +195,57 @@ def test_in_the_simulation_the_rail_stands_still_and_the_carriage_goes_under_the
 def test_what_is_not_told_to_touch_has_no_point_of_a_mechanism_in_it_and_what_is_told_is_near(
     external,
 ):
+    """Unreported links contain no point of a mechanism, and reported ones are near."""
     cell = cell_of(external)
     rods = robot_cylinders(cell.robot.chain)
     arm = ArmContact(cell, rods)
     q = anywhere(cell, 1500, 2)
-    found, beside = arm.touches(q), bodies_of(D500)
-    told = np.flatnonzero(
-        found.any
-        & np.isin(found.what, [arm.names.index(one.name) for one in cell.shapes.external_links[:3]])
+    contacts, beside = arm.touches(q), bodies_of(D500)
+    reported = np.flatnonzero(
+        contacts.any
+        & np.isin(
+            contacts.what,
+            [
+                arm.names.index(external_link.name)
+                for external_link in cell.shapes.external_links[:3]
+            ],
+        )
     )
-    assert len(told) > 25 and (~found.any).sum() > 40
-    links, seen = cell.links(q), cell.external_link_frames(q)
+    assert len(reported) > 25 and (~contacts.any).sum() > 40
+    links, frames_in_part = cell.links(q), cell.external_link_frames(q)
 
     def depth(k, link, body):
-        """mm, how deep points of a body are in rods of a link, negative of how far they are off."""
-        to_link = np.linalg.inv(links[k, link]) @ seen[k, body]
+        """Depth (mm) of a body's points in the capsules of a link, negative outside."""
+        to_link = np.linalg.inv(links[k, link]) @ frames_in_part[k, body]
         points = beside[body] @ to_link[:3, :3].T + to_link[:3, 3]
         best = -np.inf
         for rod in rods[link]:
             axis = (rod.end - rod.start) / rod.length
-            away = points - rod.start
-            along = away @ axis
-            out = np.sqrt(np.maximum(np.einsum("ij,ij->i", away, away) - along * along, 0.0))
+            offset = points - rod.start
+            along = offset @ axis
+            out = np.sqrt(np.maximum(np.einsum("ij,ij->i", offset, offset) - along * along, 0.0))
             best = max(
                 best,
                 float(np.minimum(np.minimum(along, rod.length - along), rod.radius - out).max()),
             )
         return best
 
-    for k in np.flatnonzero(~found.any)[:60]:
+    for k in np.flatnonzero(~contacts.any)[:60]:
         for link in range(0 if "track" in external else 1, 7):
             for body in range(3):
                 assert depth(k, link, body) < 0.5, (k, link, body)
     checked = 0
-    for k in told[:120]:
-        body = int(found.what[k]) - arm.names.index(cell.shapes.external_links[0].name)
-        if found.link[k] <= 6:  # of nozzle and torch others tell
-            assert depth(k, int(found.link[k]), body) > -1.8 * STEP
+    for k in reported[:120]:
+        body = int(contacts.what[k]) - arm.names.index(cell.shapes.external_links[0].name)
+        if contacts.link[k] <= 6:  # other tests cover nozzle and torch
+            assert depth(k, int(contacts.link[k]), body) > -1.8 * STEP
             checked += 1
     assert checked > 15
 
 
 def test_the_nozzle_is_looked_at_too():
-    """About a posture whose tip is in the middle of a post: where it is deep within, and where it is far."""
+    """About a posture whose tip is in the middle of a post: postures deep inside it, and far
+    away."""
     posture = np.array([0.3, -0.6, 1.0, 0.2, 0.5, 0.1])
     middle, half = np.array([0.0, 290.0, 289.5]), 0.5 * np.array([300.0, 178.0, 429.0])
 
@@ -241,23 +255,26 @@ def test_the_nozzle_is_looked_at_too():
         )[:, :3, 3]
 
     anyhow = cell_of(text(D500, STANDS, "part"))
-    place = tip_of(anyhow, np.append(posture, [0.0, 0.0])[None])[0] - middle
-    cell = cell_of(text(D500, (*place, 0.0, 0.0, 0.0), "part"))
+    post_position = tip_of(anyhow, np.append(posture, [0.0, 0.0])[None])[0] - middle
+    cell = cell_of(text(D500, (*post_position, 0.0, 0.0, 0.0), "part"))
     q = np.concatenate(
         [posture + np.random.default_rng(5).uniform(-1.0, 1.0, (800, 6)) ** 3, np.zeros((800, 2))],
         axis=1,
     )
-    found, at = ArmContact(cell, [[] for _ in range(7)]).touches(q), tip_of(cell, q) - place
-    deep = (np.abs(at - middle) < half - 5.0).all(axis=1)
-    assert deep.sum() > 30 and (found.link[deep] == 8).all()
+    contacts, tips = (
+        ArmContact(cell, [[] for _ in range(7)]).touches(q),
+        tip_of(cell, q) - post_position,
+    )
+    deep = (np.abs(tips - middle) < half - 5.0).all(axis=1)
+    assert deep.sum() > 30 and (contacts.link[deep] == 8).all()
     names = ArmContact(cell, [[] for _ in range(7)]).names
-    assert {cell.shapes.external_links[0].name} == {names[what] for what in found.what[deep]}
-    far = np.linalg.norm(at - [0.0, -90.0, 260.0], axis=1) > 900.0
-    assert far.sum() > 10 and (found.link[far] == NONE).all()
+    assert {cell.shapes.external_links[0].name} == {names[what] for what in contacts.what[deep]}
+    is_far = np.linalg.norm(tips - [0.0, -90.0, 260.0], axis=1) > 900.0
+    assert is_far.sum() > 10 and (contacts.link[is_far] == NONE).all()
 
 
 def test_a_mechanism_against_an_obstacle_and_the_part_against_what_carries_it_not():
-    """The table tilts into a box beside it; the box is touched by the table, or by what stands on it, by nothing else."""
+    """The table tilts into a neighbouring box; the table touches the box, and nothing else does."""
     cell = cell_of(text(D500, (1400.0, 0.0, 0.0, 0.0, 0.0, 0.0), "part"))
     lamp = box((40.0, 40.0, 40.0), frames.pose(np.eye(3), [1400.0 - 255.0, 0.0, 245.0]), "lamp")
     cell = dataclasses.replace(cell, shapes=dataclasses.replace(cell.shapes, obstacles=(lamp,)))
@@ -265,20 +282,21 @@ def test_a_mechanism_against_an_obstacle_and_the_part_against_what_carries_it_no
     q = np.zeros((3, 8))
     q[:, :6] = [0.0, -1.6, 1.2, 0.0, 0.3, 0.0]
     q[1, 6], q[2, 6] = np.radians(60.0), np.radians(15.0)
-    found = arm.touches(q)
+    contacts = arm.touches(q)
     # by the file e1 turns about -Y: positive values tilt the face towards -X, where the lamp is
-    names = [None if link == NONE else arm.links[link] for link in found.link]
+    names = [None if link == NONE else arm.links[link] for link in contacts.link]
     assert names == [None, "Yaskawa MotoPos D500 e2", None]
-    assert arm.names[found.what[1]] == "lamp"
+    assert arm.names[contacts.what[1]] == "lamp"
 
 
 def test_links_read_once_are_not_read_again():
+    """Links that were read once are reused."""
     cell = cell_of(BOTH)
     moved = cell_of(text(D500, (900.0, 0.0, 0.0, 0.0, 0.0, 0.0), "part"))
     again = external_links(moved.external, known_links=cell.shapes.external_links)
     assert [
-        one.body.vertices is other.body.vertices
-        for one, other in zip(again, cell.shapes.external_links)
+        link.body.vertices is known_link.body.vertices
+        for link, known_link in zip(again, cell.shapes.external_links)
     ] == [True] * 3
 
 
@@ -294,7 +312,7 @@ FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
 
 
 def stl(path):
-    """A tetrahedron in a file of text."""
+    """Write a tetrahedron as STL text."""
     facets = "".join(
         "facet normal 0 0 1\nouter loop\n"
         + "".join("vertex {} {} {}\n".format(*corner) for corner in CORNERS[face])
@@ -305,7 +323,8 @@ def stl(path):
 
 
 def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
-    """Boxes, cylinders and a mesh, also of a link that is fixed to the table; the frames by a walk of our own."""
+    """Boxes, cylinders and a mesh, also of a link fixed to the table; the frames come from an
+    independent traversal."""
     stl(tmp_path / "plate.stl")
     text_ = urdf_cells.whole_cell(track=True)
     for link in ("positioner_base_link", "positioner_link_1", "track_link_1"):
@@ -326,42 +345,48 @@ def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
     cell = dataclasses.replace(
         cell, shapes=cells.CellShapes(external_links=external_links(cell.external, mesh_of))
     )
-    axes = {one.name.rsplit(" ", 1)[1] for one in cell.shapes.external_links}
+    axes = {external_link.name.rsplit(" ", 1)[1] for external_link in cell.shapes.external_links}
     assert axes == {"e1", "e2", "e3", "base"}
     values = {"track_E1": 0.4, "positioner_E1": 0.3, "positioner_E2": -0.7}
     order = [
         name
-        for one in cell.external.mechanisms
-        for name in (["track_E1"] if one.carries == "robot" else ["positioner_E1", "positioner_E2"])
+        for external_link in cell.external.mechanisms
+        for name in (
+            ["track_E1"] if external_link.carries == "robot" else ["positioner_E1", "positioner_E2"]
+        )
     ]
     joints = np.array(
         [[0.0] * 6 + [values[name] * (1000.0 if name == "track_E1" else 1.0) for name in order]]
     )
     zero = dict.fromkeys(re.findall(r'joint name="(robot_[^"]+)" type="rev', text_), 0.0)
-    at = urdf_cells.placed(text_, {**zero, **values})
+    link_poses = urdf_cells.placed(text_, {**zero, **values})
     still = urdf_cells.placed(text_, {**zero, **values, "track_E1": 0.0})
     to_world = np.linalg.inv(still["robot_base_link"] @ cell.robot.base)
-    seen = np.linalg.inv(cell.world(joints))[0] @ cell.external_link_frames(joints)[0]
-    for one, frame in zip(cell.shapes.external_links, seen):
-        corners = one.body.vertices @ frame[:3, :3].T + frame[:3, 3]
-        if one.axes_after == 0 and one.carries == "part":
-            there = to_world @ at["plate"]
-            expected = CORNERS @ there[:3, :3].T + there[:3, 3]
+    frames_in_world = np.linalg.inv(cell.world(joints))[0] @ cell.external_link_frames(joints)[0]
+    for external_link, frame in zip(cell.shapes.external_links, frames_in_world):
+        corners = external_link.body.vertices @ frame[:3, :3].T + frame[:3, 3]
+        if external_link.axes_after == 0 and external_link.carries == "part":
+            expected_pose = to_world @ link_poses["plate"]
+            expected = CORNERS @ expected_pose[:3, :3].T + expected_pose[:3, 3]
         else:
             moved = {"track_E1": "track_link_1", "positioner_E1": "positioner_link_1"}
-            link = "positioner_base_link" if one.axis < 0 else moved[order[one.axis]]
-            own = frames.from_rpy([100.0, 200.0, 300.0], [0.3, 0.0, 0.4])
-            there = to_world @ at[link] @ own
+            link = (
+                "positioner_base_link"
+                if external_link.axis < 0
+                else moved[order[external_link.axis]]
+            )
+            origin_pose = frames.from_rpy([100.0, 200.0, 300.0], [0.3, 0.0, 0.4])
+            expected_pose = to_world @ link_poses[link] @ origin_pose
             sides = np.array(
                 [[x, y, z] for x in (-100, 100) for y in (-150, 150) for z in (-200, 200)]
             )
-            expected = sides @ there[:3, :3].T + there[:3, 3]
+            expected = sides @ expected_pose[:3, :3].T + expected_pose[:3, 3]
         gap = np.linalg.norm(corners[None] - expected[:, None], axis=2).min(axis=1)
-        assert gap.max() < 1e-5, one.name
+        assert gap.max() < 1e-5, external_link.name
 
 
 def test_a_machine_file_made_of_a_urdf_has_its_bodies(tmp_path):
-    """As the file is read again: box, cylinder and mesh of a table, where their numbers say; and no others."""
+    """The file restores box, cylinder and mesh of a table at their poses, and nothing else."""
     stl(tmp_path / "plate.stl")
     text_ = urdf_cells.whole_cell()
     for link in ("positioner_base_link", "positioner_link_2"):
@@ -387,19 +412,19 @@ def test_a_machine_file_made_of_a_urdf_has_its_bodies(tmp_path):
     folder = tmp_path / "mine"
     folder.mkdir()
     (folder / "mine.json").write_text(machine_draft.text(draft), encoding="utf-8")
-    told = json.loads((folder / "mine.json").read_text(encoding="utf-8"))["bodies"]
-    assert told["source"] == "URDF bay.urdf" and set(told) == {
+    bodies = json.loads((folder / "mine.json").read_text(encoding="utf-8"))["bodies"]
+    assert bodies["source"] == "URDF bay.urdf" and set(bodies) == {
         "source",
         "base",
         list(described.joints)[1],
     }
     base, tilt, table = load("mine", (str(folder),)).bodies
     assert (len(base), len(tilt), len(table)) == (2, 0, 3)
-    at = frames.from_rpy([100.0, 200.0, 300.0], [0.3, 0.0, 0.4])
+    shape_pose = frames.from_rpy([100.0, 200.0, 300.0], [0.3, 0.0, 0.4])
     sides = (
         np.array([[x, y, z] for x in (-100, 100) for y in (-150, 150) for z in (-200, 200)])
-        @ at[:3, :3].T
-        + at[:3, 3]
+        @ shape_pose[:3, :3].T
+        + shape_pose[:3, 3]
     )
     for brick, rod in (base, table[:2]):
         assert np.linalg.norm(brick.points[None] - sides[:, None], axis=2).min(axis=1).max() < 1e-6
@@ -410,18 +435,20 @@ def test_a_machine_file_made_of_a_urdf_has_its_bodies(tmp_path):
             and np.ptp(rod.points[:, 2]) == pytest.approx(100.0)
             and rod.points[:, 2].min() == -100.0
         )
-        assert np.isclose(radius, 60.0 / np.cos(np.pi / 40)).any()  # the polygon holds the cylinder
+        assert np.isclose(
+            radius, 60.0 / np.cos(np.pi / 40)
+        ).any()  # the polygon contains the cylinder
     zero = urdf_cells.placed(
         text_, dict.fromkeys(re.findall(r'joint name="([^"]+)" type="(?:rev|pris|con)', text_), 0.0)
     )
-    seen = np.linalg.inv(zero["positioner_link_2"]) @ zero["plate"]
+    plate_pose = np.linalg.inv(zero["positioner_link_2"]) @ zero["plate"]
     np.testing.assert_allclose(
-        mesh_of(table[2])[0], CORNERS @ seen[:3, :3].T + seen[:3, 3], atol=1e-6
+        mesh_of(table[2])[0], CORNERS @ plate_pose[:3, :3].T + plate_pose[:3, 3], atol=1e-6
     )
 
 
 def mesh_of(shape):
-    """What a reader of files gives: the tetrahedron in the frame of the link."""
+    """Stand-in for a file reader: the tetrahedron in the frame of the link."""
     assert shape.path.name == "plate.stl" and shape.scale == pytest.approx(1.0)
     return CORNERS @ shape.pose[:3, :3].T + shape.pose[:3, 3], FACES
 
@@ -437,15 +464,15 @@ def mesh_of(shape):
     ids=["two numbers", "negative", "unknown link", "no source"],
 )
 def test_what_a_file_says_wrongly_is_refused(tmp_path, changed, words):
-    told = json.loads((MECHANISMS / f"{TRACK}.json").read_text(encoding="utf-8"))
+    description = json.loads((MECHANISMS / f"{TRACK}.json").read_text(encoding="utf-8"))
     path = tmp_path / "rail.json"
-    path.write_text(json.dumps({**told, "bodies": changed}), encoding="utf-8")
+    path.write_text(json.dumps({**description, "bodies": changed}), encoding="utf-8")
     with pytest.raises(InputError, match=words) as raised:
         cell_of(text(path, RAIL, "robot"))
     assert raised.value.code == "BAD_MACHINE"
 
 
-LOOKED_AT = {  # what is not looked at against what, of mechanism by mechanism's link
+LOOKED_AT = {  # unchecked pairs of each mechanism, by link
     "positioner": {
         "base": {"D500 base"},
         "part": {"D500 e1", "D500 e2"},
@@ -475,7 +502,7 @@ def shortly(name):
 
 @pytest.mark.parametrize("external", CELLS)
 def test_pairs_that_are_left_out_are_these_and_no_others(external):
-    """Of every pair of a link and a link beside the robot, or of such a one and the part, by name."""
+    """The pairs of robot link and external link, or of external link and part, by name."""
     cell = cell_of(CELLS[external], platform_diameter=100.0)
     arm = ArmContact(cell, robot_cylinders(cell.robot.chain))
     names = [arm.links[number] for number in range(len(arm.links))]
@@ -485,32 +512,34 @@ def test_pairs_that_are_left_out_are_these_and_no_others(external):
         for number in group.links
         if arm.solids[number] or names[number] in ("part", "torch")
     }
-    beside = [shortly(one.name) for one in cell.shapes.external_links]
-    # the part is looked at as a link where it moves, and else as what stands: either way counts
+    beside = [shortly(link.name) for link in cell.shapes.external_links]
+    # a moving part is checked as a link, a fixed one as an obstacle: either counts
     looked_at |= {
-        ("part", one) for one, other in looked_at if other == "platform" and one in beside
+        ("part", link) for link, second in looked_at if second == "platform" and link in beside
     }
-    own = [
+    robot_links = [
         str(name).removeprefix("A")
         for name in names
         if shortly(name) not in beside and name not in ("torch",)
     ]
-    tracks = [one for one in beside if one.startswith("KL")]
-    every = {(one, other) for one in own for other in beside} | {
-        (one, other) for one in tracks for other in beside if not other.startswith("KL")
+    tracks = [link for link in beside if link.startswith("KL")]
+    all_pairs = {(link, second) for link in robot_links for second in beside} | {
+        (link, second) for link in tracks for second in beside if not second.startswith("KL")
     }
     left_out = {}
-    for one, other in every - looked_at:
-        left_out.setdefault(one, set()).add(other)
+    for link, second in all_pairs - looked_at:
+        left_out.setdefault(link, set()).add(second)
     assert left_out == LOOKED_AT[external]
 
 
 def box_file(folder, name, changed):
-    """A mechanism's file whose links are made of other boxes."""
-    told = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
+    """A mechanism file whose links consist of other boxes."""
+    description = json.loads((MECHANISMS / f"{name}.json").read_text(encoding="utf-8"))
     path = folder / f"{name}-of-boxes.json"
     path.write_text(
-        json.dumps({**told, "id": f"{name}-of-boxes", "bodies": {"source": "made up", **changed}}),
+        json.dumps(
+            {**description, "id": f"{name}-of-boxes", "bodies": {"source": "made up", **changed}}
+        ),
         encoding="utf-8",
     )
     return path
@@ -521,7 +550,8 @@ def boxed(size, origin):
 
 
 def test_link_1_meets_a_post_of_the_rail_it_turns_past(tmp_path):
-    """The post stands beside the track: link 1 is in it where the robot has come to it and nothing else is there."""
+    """The post is next to the track: link 1 enters it at some carriage positions, and nothing else
+    does."""
     post = boxed((60.0, 60.0, 900.0), (0.0, 200.0, 450.0))
     rail = box_file(tmp_path, TRACK, {"base": post})
     cell = cell_of(text(rail, RAIL, "robot"))
@@ -532,28 +562,31 @@ def test_link_1_meets_a_post_of_the_rail_it_turns_past(tmp_path):
         np.linspace(cell.limits.lower[6], cell.limits.upper[6], 501),
         np.linspace(-2.0, 2.0, 501),
     )
-    found = arm.touches(q)
+    contacts = arm.touches(q)
     points = points_within(post[0])
     deep = np.zeros(501)
-    links, seen = cell.links(q), cell.external_link_frames(q)
+    links, frames_in_part = cell.links(q), cell.external_link_frames(q)
     for k in range(501):
-        to_link = np.linalg.inv(links[k, 1]) @ seen[k, 0]
-        at = points @ to_link[:3, :3].T + to_link[:3, 3]
+        to_link = np.linalg.inv(links[k, 1]) @ frames_in_part[k, 0]
+        points_in_link = points @ to_link[:3, :3].T + to_link[:3, 3]
         for rod in rods[1]:
             axis = (rod.end - rod.start) / rod.length
-            along = (at - rod.start) @ axis
-            out = np.linalg.norm(at - rod.start - along[:, None] * axis, axis=1)
+            along = (points_in_link - rod.start) @ axis
+            out = np.linalg.norm(points_in_link - rod.start - along[:, None] * axis, axis=1)
             deep[k] = max(
                 deep[k],
                 float(np.minimum(np.minimum(along, rod.length - along), rod.radius - out).max()),
             )
     assert (deep > 5.0).sum() > 10 and (deep == 0.0).sum() > 20
-    assert (found.link[deep > 1.0] == 1).all()
-    away = np.convolve(deep, np.ones(15), "same") == 0.0  # no point of it in the rod a good way on
-    assert away.sum() > 20 and not found.any[away].any()
+    assert (contacts.link[deep > 1.0] == 1).all()
+    is_clear = (
+        np.convolve(deep, np.ones(15), "same") == 0.0
+    )  # no point in the capsule over a wide margin
+    assert is_clear.sum() > 20 and not contacts.any[is_clear].any()
 
 
 def test_the_base_meets_what_a_positioner_swings_at_it_and_a_carriage_runs_into_the_part(tmp_path):
+    """The base touches the swung arm of a positioner, and a carriage runs into the part."""
     arm_of_table = boxed(
         (1400.0, 60.0, 60.0), (-700.0, 0.0, 0.0)
     )  # from the tilt axis towards the robot
@@ -564,25 +597,28 @@ def test_the_base_meets_what_a_positioner_swings_at_it_and_a_carriage_runs_into_
     q = np.zeros((3, 8))
     q[:, 6] = np.radians(
         [0.0, 40.0, -60.0]
-    )  # level it reaches the robot's foot, else it is over it or under the floor
+    )  # level it reaches the robot's foot, otherwise it is above it or below the floor
     names = [None if link == NONE else arm.links[link] for link in arm.touches(q).link]
     assert names == ["base", None, None]
 
     cell = cell_of(text(TRACK, RAIL, "robot"), deposition_point=(500.0, 900.0, 0.0, 0.0, 0.0, 0.0))
     wall = box((100.0, 100.0, 400.0), np.eye(4), "wall")
-    place = cell.poses.mount @ np.linalg.inv(
+    world_in_part = cell.poses.mount @ np.linalg.inv(
         cell.poses.station
     )  # the world, with the track at zero, in part coordinates
     across = frames.pose(np.eye(3), [0.0, 700.0, -150.0])
     wall = dataclasses.replace(
-        wall, vertices=wall.vertices @ (place @ across)[:3, :3].T + (place @ across)[:3, 3]
+        wall,
+        vertices=wall.vertices @ (world_in_part @ across)[:3, :3].T
+        + (world_in_part @ across)[:3, 3],
     )
     arm = ArmContact(cell, [[] for _ in range(7)], [wall])
     q = np.zeros((41, 7))
     q[:, 6] = np.linspace(-1000.0, 1000.0, 41)
-    found = arm.touches(q)
-    met = np.array([None if link == NONE else arm.links[link] for link in found.link])
-    # RAIL turns the track's X along the world's Y; the carriage's box is 454 long and begins 227 before its middle
+    contacts = arm.touches(q)
+    met = np.array([None if link == NONE else arm.links[link] for link in contacts.link])
+    # RAIL turns the track's X along the world's Y; the carriage's box is 454 mm long and starts 227
+    # mm before its middle
     inside = np.abs(q[:, 6] - 700.0) < 227.0
     assert set(met[inside]) == {"KUKA KL 100-2 e1"}
     assert (met[np.abs(q[:, 6] - 700.0) > 500.0] == None).all()  # noqa: E711 - elementwise

@@ -27,7 +27,7 @@ def test_margin_is_the_way_to_the_nearer_end(arm):
 
 
 def test_coupled_limit_counts(arm):
-    """Each axis within its own limits, and yet out of reach: J3 of the pendant at -200."""
+    """Each axis within its own limits, but J3 of the pendant at -200, beyond the coupled limit."""
     limits = arm.limits("maker")
     q = np.radians((0.0, 140.0, -60.0, 0.0, 90.0, 0.0))
     assert (limits.margin(q)[:6] > 0).all()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machine files: what they hold, and every way they can be wrong."""
+"""Machine files: their contents, and every kind of error in them."""
 
 import copy
 import json
@@ -19,9 +19,9 @@ GOOD = json.loads((machine.BUILT_IN / "fanuc-arcmate120ic.json").read_text(encod
 
 
 def test_all_built_in_machines_load():
-    known = machine.known()
-    assert len(known) == len(list(machine.BUILT_IN.glob("*.json"))) > 0
-    for name, title in known:
+    built_in = machine.known()
+    assert len(built_in) == len(list(machine.BUILT_IN.glob("*.json"))) > 0
+    for name, title in built_in:
         arm = machine.load(name)
         assert (arm.id, arm.title) == (name, title)
         assert (arm.arm is not None) == (arm.free > 0) and arm.sources and arm.controller_remark
@@ -32,7 +32,7 @@ def test_all_built_in_machines_load():
 
 
 def test_tables_have_the_kinematics_that_linuxcnc_gives_them():
-    # the running controller's inverse, checked at standstill: what is on the tip of the torch
+    # the running controller's inverse, checked at standstill: the point at the tip of the torch
     rng = np.random.default_rng(4)
     point, (tilt, turn) = rng.uniform(-200, 200, (50, 3)), rng.uniform(-2, 2, (2, 50))
     x, y = (
@@ -71,17 +71,17 @@ def test_the_arc_mate_is_that_of_the_data():
     assert np.degrees(arm.max_speed) == pytest.approx((195, 175, 180, 360, 360, 550))
     zero = arm.chain.forward(np.zeros(6))
     assert zero[:3, 3] == pytest.approx((1085.0, 0.0, 1565.0))
-    # the flange looks ahead, its X up
+    # the flange points ahead, its X up
     assert zero[:3, :3] == pytest.approx(np.array([[0, 0, 1], [0, -1, 0], [1, 0, 0]]), abs=1e-12)
 
 
 def test_the_pendant_s_third_axis_is_against_the_horizontal():
     arm = machine.load("fanuc-arcmate120ic")
     q = np.random.default_rng(3).uniform(-3, 3, (5, 7, 6))
-    shown = arm.to_controller(q)
-    assert shown[..., 2] == pytest.approx(q[..., 2] - q[..., 1])
-    assert np.array_equal(np.delete(shown, 2, axis=-1), np.delete(q, 2, axis=-1))
-    assert np.abs(arm.from_controller(shown) - q).max() < 1e-14
+    controller_values = arm.to_controller(q)
+    assert controller_values[..., 2] == pytest.approx(q[..., 2] - q[..., 1])
+    assert np.array_equal(np.delete(controller_values, 2, axis=-1), np.delete(q, 2, axis=-1))
+    assert np.abs(arm.from_controller(controller_values) - q).max() < 1e-14
 
 
 def test_other_machines_show_serial_angles_and_say_it_is_unverified():
@@ -92,19 +92,20 @@ def test_other_machines_show_serial_angles_and_say_it_is_unverified():
 
 
 def test_unknown_machine_names_its_neighbours(tmp_path):
+    """An unknown machine name gets suggestions: similar names, or examples of each manufacturer."""
     with pytest.raises(InputError) as info:
         machine.load("fanuc_arcmate120ic")
     assert info.value.code == "UNKNOWN_MACHINE"
     assert "fanuc-arcmate120ic" in info.value.message
     with pytest.raises(InputError) as info:
         machine.load("zzz")
-    said = info.value.message
-    (such_as,) = re.findall("such as (.*), or the path", said)
-    makers = {machine.load(one).id.partition("-")[0] for one in such_as.split(", ")}
+    message = info.value.message
+    (such_as,) = re.findall("such as (.*), or the path", message)
+    makers = {machine.load(example).id.partition("-")[0] for example in such_as.split(", ")}
     assert {"abb", "fanuc", "kuka", "staubli", "ur"} <= makers and len(makers) == such_as.count(
         ","
     ) + 1
-    assert len(said) < 500  # a note under a field
+    assert len(message) < 500  # a note below a field
     for path in (tmp_path / "none.json", tmp_path / "arm.urdf"):
         with pytest.raises(InputError) as info:
             machine.load(path)
@@ -134,12 +135,14 @@ def test_the_user_s_folder_goes_first(tmp_path):
 
 @pytest.mark.parametrize("text", ['{"id": "broken", ', "{}", "[1, 2]", '{"title": 3}', "caf\u00e9"])
 def test_a_file_that_is_no_machine_does_not_hide_the_others(tmp_path, text):
+    """An invalid file is listed with its error and does not hide the others."""
     (tmp_path / "broken.json").write_text(text, encoding="latin-1")
     (tmp_path / "mine.json").write_text(json.dumps(GOOD), encoding="utf-8")
-    known = dict(machine.known([tmp_path]))
-    assert known["broken"].startswith("BAD_MACHINE: ") and len(known["broken"]) > 20
+    titles = dict(machine.known([tmp_path]))
+    assert titles["broken"].startswith("BAD_MACHINE: ") and len(titles["broken"]) > 20
     assert (
-        known["mine"] == GOOD["title"] and known["kuka-kr16-2"] == machine.load("kuka-kr16-2").title
+        titles["mine"] == GOOD["title"]
+        and titles["kuka-kr16-2"] == machine.load("kuka-kr16-2").title
     )
     with pytest.raises(InputError) as info:
         machine.load("broken", [tmp_path])
@@ -317,6 +320,7 @@ def test_a_mark_of_byte_order_is_passed_over(tmp_path):
 
 
 def test_every_doubt_in_a_remark_has_a_warning():
+    """Every uncertainty in a remark has a warning."""
     doubts = {
         "base": "base frame is not known",
         "joint": "unverified for LS files",
@@ -326,9 +330,9 @@ def test_every_doubt_in_a_remark_has_a_warning():
     for path in sorted(machine.BUILT_IN.glob("*.json")):
         content = json.loads(path.read_text(encoding="utf-8"))
         words = " ".join([*content["remarks"], content["controller"]["remark"]])
-        has = {one["applies_to"] for one in content.get("warnings", [])}
+        has = {warning["applies_to"] for warning in content.get("warnings", [])}
         if path.stem == "abb-irb1600-6-12":
-            continue  # has what the other source gives
+            continue  # has the values of the other source
         assert {kind for kind, doubt in doubts.items() if doubt in words} <= has, path.name
 
 
@@ -361,14 +365,15 @@ print(repr(float(machine.load("staubli-tx2-60l").limits("maker").upper[1])))
 
 @pytest.mark.skipif(shutil.which("localedef") is None, reason="localedef is not installed")
 def test_decimal_commas_of_a_locale_change_nothing(tmp_path, root):
-    made = subprocess.run(
+    """A locale with decimal commas does not change how numbers are read."""
+    process = subprocess.run(
         ["localedef", "-i", "de_DE", "-f", "UTF-8", str(tmp_path / "de_DE.UTF-8")],
         capture_output=True,
         check=False,
     )
     if not (tmp_path / "de_DE.UTF-8" / "LC_NUMERIC").is_file():
         pytest.skip(
-            f"the sources of de_DE are not installed: {made.stderr.decode(errors='replace')}"
+            f"the sources of de_DE are not installed: {process.stderr.decode(errors='replace')}"
         )
     environment = {**os.environ, "LOCPATH": str(tmp_path), "PYTHONPATH": str(root)}
     run = subprocess.run(
@@ -394,8 +399,8 @@ def test_shapes_of_links_and_accelerations_are_read(tmp_path):
             "colour": [1, 0, 0.5],
         },
     }
-    for joint, most in zip(content["joints"], (10, 20, None, 40, 50, 60)):
-        joint["max_acceleration"], joint["max_jerk"] = most, None if most is None else 7 * most
+    for joint, limit in zip(content["joints"], (10, 20, None, 40, 50, 60)):
+        joint["max_acceleration"], joint["max_jerk"] = limit, None if limit is None else 7 * limit
     path = tmp_path / "mine.json"
     path.write_text(json.dumps(content), encoding="utf-8")
     loaded = machine.load(path)

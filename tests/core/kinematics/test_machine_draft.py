@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machines while they are made: poses as pendants write them, what is wrong with a machine, and the file that is made."""
+"""Drafts of machines: poses in the notation of controllers, errors in a machine, and the resulting
+file."""
 
 import dataclasses
 import json
@@ -26,8 +27,9 @@ FANUC = machine.load("fanuc-arcmate120ic")
 TRUE = Shown((1,) * 6, (0.0,) * 6, pendant.HORIZONTAL)
 
 
-def seen(arm=FANUC, count=4, seed=5, digits=2):
-    """Values as the controller of a shipped machine shows them, and its flange poses, rounded as on a display."""
+def displayed_poses(arm=FANUC, count=4, seed=5, digits=2):
+    """Values as the controller of a built-in machine shows them, and its flange poses, rounded as
+    on a display."""
     values = np.random.default_rng(seed).uniform(-80, 80, (count, 6)).round(2)
     values[0] = np.degrees(arm.controller_offset)
     poses = KdlArm(arm).forward(arm.from_controller(np.radians(values)))
@@ -40,6 +42,7 @@ def seen(arm=FANUC, count=4, seed=5, digits=2):
 
 @pytest.mark.parametrize("convention", machine_draft.CONVENTIONS)
 def test_poses_are_written_and_read_in_every_convention(convention):
+    """Poses are written and read in every convention."""
     rng = np.random.default_rng(2)
     figures = np.column_stack((rng.uniform(-900, 900, (60, 3)), rng.uniform(-179, 179, (60, 3))))
     turned = machine_draft.rotation(machine_draft.FANUC, figures[:, 3:])
@@ -47,15 +50,15 @@ def test_poses_are_written_and_read_in_every_convention(convention):
         np.diag(signs)
         for signs in ((1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1), (1, 1, 1), (1, -1, -1))
     ]
-    turned[6] = frames.about_y(np.pi / 2)  # where W and R, or A and C, are one
+    turned[6] = frames.about_y(np.pi / 2)  # where W and R, or A and C, coincide
     poses = frames.pose(turned, figures[:, :3])
     written = machine_draft.figures_of(convention, poses)
     base, tool = (
         frames.bryant((10.0, 20.0, 330.0, 0.1, 0.2, 0.3)),
         frames.bryant((1.0, 2.0, 3.0, -0.4, 0.5, 0.6)),
     )
-    read = machine_draft.flange_poses(convention, written, base, tool)
-    np.testing.assert_allclose(read @ tool, base @ poses, atol=1e-9)
+    restored = machine_draft.flange_poses(convention, written, base, tool)
+    np.testing.assert_allclose(restored @ tool, base @ poses, atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -94,65 +97,70 @@ def test_conventions_are_those_of_the_makers(convention, figures, turned):
 
 
 def test_a_machine_that_is_right_gives_its_poses_and_nothing_is_suspected():
-    values, poses = seen()
+    """A correct machine reproduces its poses and raises no suspicion."""
+    values, poses = displayed_poses()
     plain = FANUC.from_controller(np.radians(values))
     np.testing.assert_allclose(pendant.serial(TRUE, FANUC.chain, values), plain, atol=1e-12)
-    found = pendant.deviations(FANUC.chain, TRUE, values, poses)
-    assert max(one.position for one in found) < 0.01 and pendant.fits(found)
+    deviations = pendant.deviations(FANUC.chain, TRUE, values, poses)
+    assert max(deviation.position for deviation in deviations) < 0.01 and pendant.fits(deviations)
     assert pendant.suspects(FANUC.chain, TRUE, values, poses) == []
 
 
 @pytest.mark.parametrize("axis", range(6))
 def test_a_wrong_sign_is_found(axis):
-    values, poses = seen()
+    values, poses = displayed_poses()
     wrong = dataclasses.replace(TRUE, signs=tuple(-1 if index == axis else 1 for index in range(6)))
-    first = pendant.suspects(FANUC.chain, wrong, values, poses)[0]
-    assert (first.kind, first.axes, first.shown) == (pendant.SIGN, (axis,), TRUE)
+    suspect = pendant.suspects(FANUC.chain, wrong, values, poses)[0]
+    assert (suspect.kind, suspect.axes, suspect.shown) == (pendant.SIGN, (axis,), TRUE)
 
 
 @pytest.mark.parametrize("axis,off", [(1, 90.0), (2, -90.0), (4, 12.34), (3, 180.0), (2, -3.5)])
 def test_a_wrong_zero_is_found(axis, off):
-    values, poses = seen()
+    values, poses = displayed_poses()
     wrong = dataclasses.replace(
         TRUE, zeros=tuple(off if index == axis else 0.0 for index in range(6))
     )
-    first = pendant.suspects(FANUC.chain, wrong, values, poses)[0]
-    assert (first.kind, first.axes) == (pendant.ZERO, (axis,))
-    assert np.isclose(np.mod(np.array(first.shown.zeros) + 1.0, 360.0), 1.0, atol=0.011).all()
+    suspect = pendant.suspects(FANUC.chain, wrong, values, poses)[0]
+    assert (suspect.kind, suspect.axes) == (pendant.ZERO, (axis,))
+    assert np.isclose(np.mod(np.array(suspect.shown.zeros) + 1.0, 360.0), 1.0, atol=0.011).all()
 
 
 def test_two_signs_and_the_coupling_are_found():
-    values, poses = seen()
-    first = pendant.suspects(
+    values, poses = displayed_poses()
+    suspect = pendant.suspects(
         FANUC.chain, Shown((1, 1, 1, -1, 1, -1), TRUE.zeros, TRUE.coupling), values, poses
     )[0]
-    assert first.axes == (3, 5) and first.shown == TRUE
-    first = pendant.suspects(
+    assert suspect.axes == (3, 5) and suspect.shown == TRUE
+    suspect = pendant.suspects(
         FANUC.chain, dataclasses.replace(TRUE, coupling=pendant.NONE), values, poses
     )[0]
-    assert first.kind == pendant.COUPLED and first.shown == TRUE
+    assert suspect.kind == pendant.COUPLED and suspect.shown == TRUE
 
 
 @pytest.mark.parametrize("kind", [pendant.BASE, pendant.FLANGE])
 def test_another_base_or_flange_is_found_with_its_pose(kind):
-    values, poses = seen(digits=6)
+    values, poses = displayed_poses(digits=6)
     moved = frames.bryant((30.0, -20.0, 525.0, 0.3, 0.0, -0.2))
-    given = frames.inverse(moved) @ poses if kind == pendant.BASE else poses @ moved
-    found = [one for one in pendant.suspects(FANUC.chain, TRUE, values, given) if one.kind == kind]
-    np.testing.assert_allclose(found[0].pose, moved, atol=1e-4)
+    moved_poses = frames.inverse(moved) @ poses if kind == pendant.BASE else poses @ moved
+    suspects = [
+        suspect
+        for suspect in pendant.suspects(FANUC.chain, TRUE, values, moved_poses)
+        if suspect.kind == kind
+    ]
+    np.testing.assert_allclose(suspects[0].pose, moved, atol=1e-4)
 
 
 def test_a_sign_is_found_in_an_unknown_base():
-    values, poses = seen()
+    values, poses = displayed_poses()
     moved = frames.bryant((0.0, 0.0, 525.0, 0.0, 0.0, 0.0))
     wrong = dataclasses.replace(TRUE, signs=(1, 1, 1, 1, -1, 1))
-    first = pendant.suspects(FANUC.chain, wrong, values, frames.inverse(moved) @ poses)[0]
-    assert (first.kind, first.axes, first.shown) == (pendant.SIGN, (4,), TRUE)
-    np.testing.assert_allclose(first.pose, moved, atol=0.02)
+    suspect = pendant.suspects(FANUC.chain, wrong, values, frames.inverse(moved) @ poses)[0]
+    assert (suspect.kind, suspect.axes, suspect.shown) == (pendant.SIGN, (4,), TRUE)
+    np.testing.assert_allclose(suspect.pose, moved, atol=0.02)
 
 
 def test_a_slip_in_one_figure_is_not_explained_away():
-    values, poses = seen(count=6)
+    values, poses = displayed_poses(count=6)
     poses[2, 0, 3] += 40.0
     assert pendant.suspects(FANUC.chain, TRUE, values, poses) == []
 
@@ -161,67 +169,70 @@ def test_a_slip_in_one_figure_is_not_explained_away():
 
 
 def draft(tmp_path, name="fanuc-arcmate120ic", **changes):
-    """The draft of a shipped machine as the wizard makes it from its URDF."""
+    """The draft of a built-in machine as the wizard makes it from its URDF."""
     path = tmp_path / "arm.urdf"
     path.write_text(urdf_text.text(machine.load(name)), encoding="utf-8")
-    found = machine_draft.draft_of_description(
+    description = machine_draft.draft_of_description(
         urdf.Urdf(path).between("base_link", "tool0"), "URDF arm.urdf"
     )
-    values, poses = seen(machine.load(name))
+    values, poses = displayed_poses(machine.load(name))
     return dataclasses.replace(
-        found, id="mine", title="Mine", values=values, poses=poses, shown=TRUE, **changes
+        description, id="mine", title="Mine", values=values, poses=poses, shown=TRUE, **changes
     )
 
 
 def test_a_draft_makes_a_machine_file_that_loads(tmp_path):
     made_of = draft(tmp_path, horizontal=(-185.0, 273.0), posts=("fanuc",), remarks=("hall 3",))
     (tmp_path / "mine.json").write_text(machine_draft.text(made_of), encoding="utf-8")
-    made = machine.load("mine", [tmp_path])
+    machine_loaded = machine.load("mine", [tmp_path])
     q = np.random.default_rng(3).uniform(-3, 3, (30, 6))
-    np.testing.assert_allclose(made.chain.forward(q), KdlArm(FANUC).forward(q), atol=1e-9)
-    np.testing.assert_allclose(made.opw.forward(q), KdlArm(FANUC).forward(q), atol=1e-9)
-    np.testing.assert_allclose(made.to_controller(q), FANUC.to_controller(q), atol=1e-12)
-    ours, theirs = made.limits("maker"), FANUC.limits("maker")
+    np.testing.assert_allclose(machine_loaded.chain.forward(q), KdlArm(FANUC).forward(q), atol=1e-9)
+    np.testing.assert_allclose(machine_loaded.opw.forward(q), KdlArm(FANUC).forward(q), atol=1e-9)
+    np.testing.assert_allclose(machine_loaded.to_controller(q), FANUC.to_controller(q), atol=1e-12)
+    ours, theirs = machine_loaded.limits("maker"), FANUC.limits("maker")
     np.testing.assert_allclose(ours.lower, theirs.lower)
     np.testing.assert_allclose(ours.coefficients, theirs.coefficients)
     np.testing.assert_allclose(
         [ours.coupled_lower, ours.coupled_upper], [theirs.coupled_lower, theirs.coupled_upper]
     )
-    np.testing.assert_allclose(made.max_speed, FANUC.max_speed)
+    np.testing.assert_allclose(machine_loaded.max_speed, FANUC.max_speed)
     assert (
-        made.posts == ("fanuc",)
-        and made.remarks == ("hall 3",)
-        and made.sources[0] == "URDF arm.urdf"
+        machine_loaded.posts == ("fanuc",)
+        and machine_loaded.remarks == ("hall 3",)
+        and machine_loaded.sources[0] == "URDF arm.urdf"
     )
 
 
 @pytest.mark.parametrize("name", ["motoman-motopos-d500", "kuka-kl100-2"])
 def test_what_stands_beside_a_robot_gets_a_file_too(tmp_path, name):
-    """Of the URDF of a whole cell: one axis that slides, two that turn, their poses by PyKDL of the maker's figures."""
+    """From the URDF of a whole cell: one prismatic and two revolute axes, with poses by PyKDL from
+    the manufacturer's figures."""
     path = tmp_path / "cell.urdf"
     path.write_text(urdf_cells.whole_cell(), encoding="utf-8")
     prefix = "track" if name.startswith("kuka") else "positioner"
-    meant = next(
+    base_link = next(
         base
-        for one in urdf_cell.UrdfCell(path).external()
-        if (base := reference(one.machine).base).startswith(prefix)
+        for mechanism in urdf_cell.UrdfCell(path).external()
+        if (base := reference(mechanism.machine).base).startswith(prefix)
     )
     made_of = machine_draft.draft_of_description(
-        urdf.Urdf(path).between(meant, f"{prefix}_tool0"), "URDF cell.urdf"
+        urdf.Urdf(path).between(base_link, f"{prefix}_tool0"), "URDF cell.urdf"
     )
-    given = external.load(name)
-    count = given.chain.axes
+    original = external.load(name)
+    count = original.chain.axes
     values = np.random.default_rng(8).uniform(-60.0, 60.0, (4, count))
     values[0] = 0.0
-    poses = KdlArm(given).forward(values * given.unit_values)
+    poses = KdlArm(original).forward(values * original.unit_values)
     made_of = dataclasses.replace(made_of, id="mine", title="Mine", values=values, poses=poses)
     (tmp_path / "mine.json").write_text(machine_draft.text(made_of), encoding="utf-8")
-    made = external.load("mine", (str(tmp_path),))
+    copy_loaded = external.load("mine", (str(tmp_path),))
     q = np.random.default_rng(3).uniform(-2, 2, (30, count))
-    np.testing.assert_allclose(made.chain.forward(q), KdlArm(given).forward(q), atol=1e-9)
-    np.testing.assert_allclose(made.limits("maker").upper, given.limits("maker").upper, rtol=1e-9)
-    np.testing.assert_allclose(made.max_speed, given.max_speed, rtol=1e-9)
-    # the user's own goes before the built-in one of its name
+    np.testing.assert_allclose(copy_loaded.chain.forward(q), KdlArm(original).forward(q), atol=1e-9)
+    np.testing.assert_allclose(
+        copy_loaded.limits("maker").upper, original.limits("maker").upper, rtol=1e-9
+    )
+    np.testing.assert_allclose(copy_loaded.max_speed, original.max_speed, rtol=1e-9)
+    # the user's file takes precedence over the built-in one of the same name
     (tmp_path / f"{name}.json").write_text(
         machine_draft.text(dataclasses.replace(made_of, id=name)), encoding="utf-8"
     )
@@ -235,39 +246,41 @@ def test_what_stands_beside_a_robot_gets_a_file_too(tmp_path, name):
 def test_every_machine_can_be_copied(name, tmp_path):
     copy = machine_draft.draft_of_machine(name)
     (tmp_path / f"{copy.id}.json").write_text(machine_draft.text(copy), encoding="utf-8")
-    made, original = machine.load(copy.id, [tmp_path]), machine.load(name)
-    q = np.random.default_rng(3).uniform(-3, 3, (20, len(made.axes)))
-    np.testing.assert_allclose(made.chain.forward(q), original.chain.forward(q), atol=1e-9)
-    np.testing.assert_allclose(made.to_controller(q), original.to_controller(q), atol=1e-9)
-    np.testing.assert_allclose(made.base, original.base, atol=1e-12)
-    np.testing.assert_allclose(made.limits("maker").upper[:6], original.limits("maker").upper[:6])
-    assert made.axes == original.axes and made.posts == original.posts
+    copy_loaded, original = machine.load(copy.id, [tmp_path]), machine.load(name)
+    q = np.random.default_rng(3).uniform(-3, 3, (20, len(copy_loaded.axes)))
+    np.testing.assert_allclose(copy_loaded.chain.forward(q), original.chain.forward(q), atol=1e-9)
+    np.testing.assert_allclose(copy_loaded.to_controller(q), original.to_controller(q), atol=1e-9)
+    np.testing.assert_allclose(copy_loaded.base, original.base, atol=1e-12)
+    np.testing.assert_allclose(
+        copy_loaded.limits("maker").upper[:6], original.limits("maker").upper[:6]
+    )
+    assert copy_loaded.axes == original.axes and copy_loaded.posts == original.posts
 
 
 @pytest.mark.parametrize(
     "change,words",
     [
-        (lambda one: {"values": None}, "at least 3 joint vectors"),
+        (lambda made_draft: {"values": None}, "at least 3 joint vectors"),
         (
-            lambda one: {"values": one.values[:2], "poses": one.poses[:2]},
+            lambda made_draft: {"values": made_draft.values[:2], "poses": made_draft.poses[:2]},
             "at least 3 joint vectors",
         ),
         (
-            lambda one: {"values": one.values[1:], "poses": one.poses[1:]},
+            lambda made_draft: {"values": made_draft.values[1:], "poses": made_draft.poses[1:]},
             "the pose at all zeros is missing|at least 3",
         ),
         (
-            lambda one: {"shown": Shown((1, 1, 1, -1, 1, 1), TRUE.zeros, TRUE.coupling)},
+            lambda made_draft: {"shown": Shown((1, 1, 1, -1, 1, 1), TRUE.zeros, TRUE.coupling)},
             "correct the geometry or the pose",
         ),
-        (lambda one: {"id": "my robot"}, "cannot be the name"),
-        (lambda one: {"title": ""}, "give manufacturer and model"),
+        (lambda made_draft: {"id": "my robot"}, "cannot be the name"),
+        (lambda made_draft: {"title": ""}, "give manufacturer and model"),
     ],
 )
 def test_no_file_without_what_it_needs(tmp_path, change, words):
-    one = draft(tmp_path)
+    made_draft = draft(tmp_path)
     with pytest.raises(InputError, match=words):
-        machine_draft.text(dataclasses.replace(one, **change(one)))
+        machine_draft.text(dataclasses.replace(made_draft, **change(made_draft)))
 
 
 def test_rounded_poses_say_so_and_rounding_has_an_end(tmp_path):
@@ -310,14 +323,14 @@ def test_meshes_of_a_urdf_are_those_of_the_machine_file(tmp_path):
     )
     path = tmp_path / "arm.urdf"
     path.write_text(text, encoding="utf-8")
-    found = machine_draft.draft_of_description(
+    description = machine_draft.draft_of_description(
         urdf.Urdf(path).between("base_link", "tool0"), "URDF"
     )
-    values, poses = seen()
+    values, poses = displayed_poses()
     content = json.loads(
         machine_draft.text(
             dataclasses.replace(
-                found, id="mine", title="Mine", values=values, poses=poses, shown=TRUE
+                description, id="mine", title="Mine", values=values, poses=poses, shown=TRUE
             )
         )
     )
@@ -332,7 +345,7 @@ def test_meshes_of_a_urdf_are_those_of_the_machine_file(tmp_path):
 
 
 def test_figures_of_an_arm_give_a_draft_of_that_arm():
-    found = machine_draft.draft_of_chain(opw_recognition.chain_of(FANUC.opw), "figures")
-    arm = machine_draft.closed_form(found)
+    description = machine_draft.draft_of_chain(opw_recognition.chain_of(FANUC.opw), "figures")
+    arm = machine_draft.closed_form(description)
     assert (arm.a1, arm.a2, arm.c3, arm.signs) == (150.0, -250.0, 835.0, FANUC.opw.signs)
-    assert np.array_equal(found.base, np.eye(4)) and np.isinf(found.upper).all()
+    assert np.array_equal(description.base, np.eye(4)) and np.isinf(description.upper).all()

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every built-in robot: its file's figures by PyKDL alone, its inverse, sources, limits, speeds and names of axes."""
+"""Every built-in robot: the figures of its file by PyKDL only, its inverse, sources, limits, speeds
+and axis names."""
 
 import json
 import re
@@ -68,7 +69,7 @@ def segment(frame):
 
 
 def poses(file, rows):
-    """The flange (n, 3, 4) by PyKDL from the figures as they stand in the file, deg."""
+    """The flange (n, 3, 4) by PyKDL from the figures in the file, deg."""
     chain = kdl.Chain()
     for joint in file["joints"]:
         chain.addSegment(segment(joint))
@@ -78,36 +79,40 @@ def poses(file, rows):
         )
     chain.addSegment(segment(file["flange"]))
     solver, frame, angles = kdl.ChainFkSolverPos_recursive(chain), kdl.Frame(), kdl.JntArray(6)
-    found = []
+    transforms = []
     for row in rows:
         for index, value in enumerate(np.radians(row)):
             angles[index] = float(value)
         solver.JntToCart(angles, frame)
-        found.append([[*(frame.M[i, k] for k in range(3)), frame.p[i]] for i in range(3)])
-    return np.array(found)
+        transforms.append([[*(frame.M[i, k] for k in range(3)), frame.p[i]] for i in range(3)])
+    return np.array(transforms)
 
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_a_file_says_what_it_has_from_where_and_is_right(name):
+    """A file states its sources, its check poses are right, and its inverse restores random
+    poses."""
     file, arm = FILES[name], machine.load(name)
-    given = [np.column_stack([pose["rotation"], pose["origin"]]) for pose in file["check_poses"]]
+    check_poses = [
+        np.column_stack([pose["rotation"], pose["origin"]]) for pose in file["check_poses"]
+    ]
     np.testing.assert_allclose(
-        poses(file, [pose["q"] for pose in file["check_poses"]]), given, atol=1e-8, rtol=0
+        poses(file, [pose["q"] for pose in file["check_poses"]]), check_poses, atol=1e-8, rtol=0
     )
-    # any pose is given back by the inverse that was found, and the joints among the solutions
+    # the selected inverse restores any pose, and the joint angles are among the solutions
     q = np.random.default_rng(2).uniform(-170.0, 170.0, (2, 6))
-    wanted = poses(file, q)
-    found = arm.arm.inverse(
-        np.concatenate([wanted, np.tile([[[0.0, 0.0, 0.0, 1.0]]], (2, 1, 1))], axis=1)
+    expected = poses(file, q)
+    solutions = arm.arm.inverse(
+        np.concatenate([expected, np.tile([[[0.0, 0.0, 0.0, 1.0]]], (2, 1, 1))], axis=1)
     )
     assert (
         np.nanmin(
-            np.abs(np.exp(1j * found) - np.exp(1j * np.radians(q))).max(axis=-1), axis=0
+            np.abs(np.exp(1j * solutions) - np.exp(1j * np.radians(q))).max(axis=-1), axis=0
         ).max()
         < 1e-6
     )
-    first = found[np.isfinite(found[:, 0]).all(axis=1), 0]
-    assert np.abs(poses(file, np.degrees(first)) - wanted[0]).max() < 1e-6
+    solutions_of_pose = solutions[np.isfinite(solutions[:, 0]).all(axis=1), 0]
+    assert np.abs(poses(file, np.degrees(solutions_of_pose)) - expected[0]).max() < 1e-6
     assert all(PINNED.fullmatch(source) or "manual" in source for source in file["sources"])
     assert (arm.limits("maker").upper > arm.limits("maker").lower).all() and file["limits"][
         "maker"
@@ -121,7 +126,7 @@ def test_a_file_says_what_it_has_from_where_and_is_right(name):
         if maker in LABELS
         else True
     )
-    if maker == "fanuc":  # the pendant's J3 is against the horizontal
+    if maker == "fanuc":  # the pendant's J3 is relative to the horizontal
         assert file["controller"]["matrix"][2] == [0, -1, 1, 0, 0, 0]
 
 
@@ -130,7 +135,7 @@ def test_a_file_says_what_it_has_from_where_and_is_right(name):
     [name for name in ROBOTS if re.search(r"-r\d{3,4}", name) and name.startswith("kuka-kr")],
 )
 def test_the_reach_of_a_kuka_is_that_of_its_name(name):
-    """KUKA's name tells payload and reach; here reach comes out of joint frames and limits."""
+    """KUKA's name states payload and reach; here the reach follows from joint frames and limits."""
     file = FILES[name]
     assert file["reach"]["mm"] == pytest.approx(float(re.search(r"-r(\d+)", name)[1]), rel=0.04)
     if "payload" in file:
@@ -138,6 +143,7 @@ def test_the_reach_of_a_kuka_is_that_of_its_name(name):
 
 
 def test_the_catalogue_tells_what_files_tell_and_leaves_out_what_they_do_not(tmp_path):
+    """The catalogue shows the values of the files and skips missing ones."""
     content = {
         **FILES["fanuc-m710ic-50"],
         "id": "mine",
@@ -149,13 +155,13 @@ def test_the_catalogue_tells_what_files_tell_and_leaves_out_what_they_do_not(tmp
     }
     (tmp_path / "mine.json").write_text(json.dumps(content), encoding="utf-8")
     (tmp_path / "broken.json").write_text("{", encoding="utf-8")
-    known = machine.entries([tmp_path])
-    assert {entry.id for entry in known} == {*FILES, "mine"}
-    mine = next(entry for entry in known if entry.id == "mine")
-    assert (mine.reach, mine.payload, mine.posts) == (2050.0, 50.0, None)
-    assert mine in machine.select_machines(known, post="kuka", payload=50.0, reach=2050.0)
-    assert mine not in machine.select_machines(known, payload=50.1)
-    heavy = machine.select_machines(known, payload=1e-3)
+    entries = machine.entries([tmp_path])
+    assert {entry.id for entry in entries} == {*FILES, "mine"}
+    own_entry = next(entry for entry in entries if entry.id == "mine")
+    assert (own_entry.reach, own_entry.payload, own_entry.posts) == (2050.0, 50.0, None)
+    assert own_entry in machine.select_machines(entries, post="kuka", payload=50.0, reach=2050.0)
+    assert own_entry not in machine.select_machines(entries, payload=50.1)
+    heavy = machine.select_machines(entries, payload=1e-3)
     assert heavy and all(entry.payload is not None for entry in heavy)
     with pytest.raises(InputError, match="'Acme'"):
-        machine.select_machines(known, maker="Acme")
+        machine.select_machines(entries, maker="Acme")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Machines from URDF, tables and figures, and written so: every shipped machine there and back, random arms, mistakes."""
+"""Machines from and to URDF, DH tables and figures: every built-in machine both ways, random arms,
+and errors."""
 
 import dataclasses
 import itertools
@@ -38,27 +39,29 @@ def read(tmp_path, text, base="", tip=""):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_machine_as_urdf_is_the_same_machine(name, tmp_path):
-    given = machine.load(name)
-    found = read(tmp_path, urdf_text.text(given))
-    q = joints(40, len(given.axes))
-    # KDL's chain is of the machine file alone
-    np.testing.assert_allclose(found.chain.forward(q), KdlArm(given).forward(q), atol=1e-9, rtol=0)
-    limits, count = given.limits("maker"), len(given.axes)
-    np.testing.assert_allclose(found.lower, limits.lower[:count], rtol=1e-14)
-    np.testing.assert_allclose(found.upper, limits.upper[:count], rtol=1e-14)
-    np.testing.assert_allclose(found.max_speed, given.max_speed, rtol=1e-14)
+    original = machine.load(name)
+    restored = read(tmp_path, urdf_text.text(original))
+    q = joints(40, len(original.axes))
+    # KDL's chain comes from the machine file only
     np.testing.assert_allclose(
-        np.eye(4) if found.base is None else found.base, given.base, atol=1e-9
+        restored.chain.forward(q), KdlArm(original).forward(q), atol=1e-9, rtol=0
+    )
+    limits, count = original.limits("maker"), len(original.axes)
+    np.testing.assert_allclose(restored.lower, limits.lower[:count], rtol=1e-14)
+    np.testing.assert_allclose(restored.upper, limits.upper[:count], rtol=1e-14)
+    np.testing.assert_allclose(restored.max_speed, original.max_speed, rtol=1e-14)
+    np.testing.assert_allclose(
+        np.eye(4) if restored.base is None else restored.base, original.base, atol=1e-9
     )
 
 
 @pytest.mark.parametrize("name,modified", list(itertools.product(NAMES, (False, True))))
 def test_a_machine_as_table_is_the_same_machine(name, modified):
-    given = machine.load(name)
-    table = dh.table_of(given.chain, modified)
-    q = joints(40, len(given.axes))
+    original = machine.load(name)
+    table = dh.table_of(original.chain, modified)
+    q = joints(40, len(original.axes))
     np.testing.assert_allclose(
-        dh.chain_of(table).forward(q), KdlArm(given).forward(q), atol=1e-9, rtol=0
+        dh.chain_of(table).forward(q), KdlArm(original).forward(q), atol=1e-9, rtol=0
     )
     # a table's own formula, written out
     pose = table.before
@@ -79,7 +82,7 @@ def test_a_machine_as_table_is_the_same_machine(name, modified):
         ]
         pose = pose @ np.array(craig if modified else standard)
     np.testing.assert_allclose(
-        pose @ table.after, KdlArm(given).forward(q[:1])[0], atol=1e-9, rtol=0
+        pose @ table.after, KdlArm(original).forward(q[:1])[0], atol=1e-9, rtol=0
     )
 
 
@@ -100,18 +103,21 @@ def test_signs_of_a_table_turn_its_joints():
 
 @pytest.mark.parametrize("name", ROBOTS)
 def test_the_closed_form_of_a_chain_is_that_of_its_file(name):
-    given = machine.load(name)
+    """The closed form recognised from a chain has the parameters of its file."""
+    original = machine.load(name)
     for chain in (
-        given.chain,
-        dh.chain_of(dh.table_of(given.chain)),
-        opw_recognition.chain_of(given.opw),
+        original.chain,
+        dh.chain_of(dh.table_of(original.chain)),
+        opw_recognition.chain_of(original.opw),
     ):
-        found = opw_recognition.recognise(chain)
-        assert found.signs == given.opw.signs and np.allclose(
-            found.offsets, given.opw.offsets, atol=1e-12
+        parameters = opw_recognition.recognise(chain)
+        assert parameters.signs == original.opw.signs and np.allclose(
+            parameters.offsets, original.opw.offsets, atol=1e-12
         )
         for length in LENGTHS:
-            assert getattr(found, length) == pytest.approx(getattr(given.opw, length), abs=1e-9)
+            assert getattr(parameters, length) == pytest.approx(
+                getattr(original.opw, length), abs=1e-9
+            )
 
 
 def random_arm(rng, square):
@@ -136,19 +142,20 @@ def test_random_arms_are_recognised(square):
         arm = random_arm(rng, square)
         chain = opw_recognition.chain_of(arm)
         np.testing.assert_allclose(chain.forward(q), arm.forward(q), atol=1e-9)
-        found = opw_recognition.recognise(chain)
-        np.testing.assert_allclose(found.forward(q), arm.forward(q), atol=1e-8)
-        assert found.c2 > 0 and found.c3 > 0 and found.a1 >= 0
+        recognised = opw_recognition.recognise(chain)
+        np.testing.assert_allclose(recognised.forward(q), arm.forward(q), atol=1e-8)
+        assert recognised.c2 > 0 and recognised.c3 > 0 and recognised.a1 >= 0
 
 
-def turned_apart(first, second):
-    return np.abs((first - second + np.pi) % (2 * np.pi) - np.pi)
+def turned_apart(angles_a, angles_b):
+    return np.abs((angles_a - angles_b + np.pi) % (2 * np.pi) - np.pi)
 
 
 @pytest.mark.parametrize("bend", [90.0, -90.0, 30.0, 180.0, 0.0])
 def test_an_arm_whose_wrist_is_bent_at_zero_is_planned_as_any_other(bend):
-    given = machine.load("fanuc-arcmate120ic").chain
-    chain = changed(given, 4, shift(about=1, deg=bend))
+    """An arm whose wrist is bent at zero has the same solutions and configurations."""
+    straight_chain = machine.load("fanuc-arcmate120ic").chain
+    chain = changed(straight_chain, 4, shift(about=1, deg=bend))
     arm = opw_recognition.recognise(chain)
     q = np.random.default_rng(5).uniform(-np.pi, np.pi, (2000, 6))
     poses = chain.forward(q)
@@ -156,12 +163,14 @@ def test_an_arm_whose_wrist_is_bent_at_zero_is_planned_as_any_other(bend):
     assert np.nanmax(np.abs(solutions)) <= np.pi
     reached = ~np.isnan(solutions[..., 0])
     assert np.abs(chain.forward(solutions) - poses)[reached].max() < 1e-8
-    found = solutions[arm.branch_of(q), np.arange(len(q))]
-    clear = np.abs(np.sin(q[:, 4] + np.sign(given.directions[4, 1]) * np.radians(bend))) > 1e-3
-    assert clear.mean() > 0.9 and turned_apart(found, q)[clear].max() < 1e-7
+    own_solutions = solutions[arm.branch_of(q), np.arange(len(q))]
+    clear = (
+        np.abs(np.sin(q[:, 4] + np.sign(straight_chain.directions[4, 1]) * np.radians(bend))) > 1e-3
+    )
+    assert clear.mean() > 0.9 and turned_apart(own_solutions, q)[clear].max() < 1e-7
     branches = np.broadcast_to(np.arange(8)[:, None], reached.shape)
     assert np.array_equal(arm.branch_of(solutions)[reached], branches[reached])
-    # the same pose is the same branch as of the arm that is straight at zero
+    # a pose has the same configuration as with the arm that is straight at zero
     straight = machine.load("fanuc-arcmate120ic").opw
     q5 = turned_apart(straight.inverse(poses)[..., 4], solutions[..., 4])[reached]
     np.testing.assert_allclose(q5, abs(np.radians(bend)), atol=1e-6)
@@ -210,9 +219,9 @@ def shift(x=0.0, y=0.0, z=0.0, about=None, deg=0.0):
 )
 def test_what_is_no_such_arm_is_refused_with_the_reason(index, step, reason):
     chain = machine.load("fanuc-arcmate120ic").chain
-    with pytest.raises(InputError, match=reason) as found:
+    with pytest.raises(InputError, match=reason) as caught:
         opw_recognition.recognise(changed(chain, index, shift(**step)))
-    assert found.value.code == "NO_CLOSED_FORM"
+    assert caught.value.code == "NO_CLOSED_FORM"
 
 
 def test_flanges_and_counts_that_will_not_do():
@@ -263,34 +272,35 @@ ARM = """<?xml version="1.0"?>
 
 
 def test_a_urdf_is_read_with_fixed_joints_units_rounded_angles_and_meshes(tmp_path):
+    """A URDF with fixed joints, units, rounded angles and meshes is read."""
     folder = tmp_path / "two_support"
     (folder / "meshes").mkdir(parents=True)
     (folder / "urdf").mkdir()
     for name in ("base.stl", "arm.dae"):
         (folder / "meshes" / name).touch()
-    found = read(folder / "urdf", ARM, "base_link", "hand")
-    assert found.joints == ("turn", "spin") and found.name == "two"
-    # 1.5708 is a right angle; both limits are 170 deg, of which one is cut off
+    described = read(folder / "urdf", ARM, "base_link", "hand")
+    assert described.joints == ("turn", "spin") and described.name == "two"
+    # 1.5708 is a right angle; both limits are 170 deg, one of them rounded down
     np.testing.assert_allclose(
-        np.degrees([found.lower[0], found.upper[0], found.max_speed[0]]),
+        np.degrees([described.lower[0], described.upper[0], described.max_speed[0]]),
         [-170, 170, 195],
         atol=1e-12,
     )
-    assert np.isinf([found.lower[1], found.upper[1], found.max_speed[1]]).all()
-    place = found.chain.forward([np.radians(90.0), 0.0])
-    np.testing.assert_allclose(place[:3, 3], [0, 0, 800], atol=1e-9)  # both links up
-    np.testing.assert_allclose(found.chain.directions, [[0, 0, 1], [1, 0, 0]])
-    looks = found.shapes[0]
+    assert np.isinf([described.lower[1], described.upper[1], described.max_speed[1]]).all()
+    tip_pose = described.chain.forward([np.radians(90.0), 0.0])
+    np.testing.assert_allclose(tip_pose[:3, 3], [0, 0, 800], atol=1e-9)  # both links up
+    np.testing.assert_allclose(described.chain.directions, [[0, 0, 1], [1, 0, 0]])
+    shape = described.shapes[0]
     assert (
-        looks.path == folder / "meshes" / "base.stl"
-        and looks.scale == 1.0
-        and looks.colour == (1.0, 0.5, 0.0)
+        shape.path == folder / "meshes" / "base.stl"
+        and shape.scale == 1.0
+        and shape.colour == (1.0, 0.5, 0.0)
     )
     np.testing.assert_allclose(
-        looks.pose, [[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 10], [0, 0, 0, 1]], atol=1e-12
+        shape.pose, [[0, -1, 0, 0], [1, 0, 0, 0], [0, 0, 1, 10], [0, 0, 0, 1]], atol=1e-12
     )
-    assert found.shapes[1:] == (None, None) and any(
-        "arm.dae cannot be drawn" in note for note in found.notes
+    assert described.shapes[1:] == (None, None) and any(
+        "arm.dae cannot be drawn" in note for note in described.notes
     )
 
 
@@ -304,16 +314,17 @@ def test_a_urdf_is_read_with_fixed_joints_units_rounded_angles_and_meshes(tmp_pa
     ],
 )
 def test_meshes_that_are_mirrored_or_stretched_are_told_and_not_drawn(tmp_path, scale, words):
+    """Mirrored or stretched meshes are reported and not drawn."""
     folder = tmp_path / "two_support" / "meshes"
     folder.mkdir(parents=True)
     (folder / "base.stl").touch()
-    found = read(
+    described = read(
         folder, ARM.replace('scale="0.001 0.001 0.001"', f'scale="{scale}"'), "base_link", "hand"
     )
-    assert found.shapes[0] is None
+    assert described.shapes[0] is None
     assert any(
         note.startswith(f"line 6: {words}") and "base_link is drawn plain" in note
-        for note in found.notes
+        for note in described.notes
     )
 
 
@@ -326,8 +337,9 @@ def test_links_to_choose_from(tmp_path):
     assert robot.tips("world")[0] == "finger"
 
 
-def with_links(text, **poses):
-    """The URDF of a machine with tool0 under other names: links fixed to the last one, each turned against it by rpy."""
+def add_links(text, **poses):
+    """The URDF of a machine with tool0 under other names: links fixed to the last one, each rotated
+    by rpy."""
     text = text.replace("tool0", "plate")
     for link, (rpy, xyz) in poses.items():
         text = text.replace(
@@ -338,42 +350,44 @@ def with_links(text, **poses):
     return text
 
 
-OUT, UP, BACK = "0 0 0", "0 -1.5707963267948966 0", "3.141592653589793 0 0"
+Z_OUT, X_OUT, BACK = "0 0 0", "0 -1.5707963267948966 0", "3.141592653589793 0 0"
 
 
 @pytest.mark.parametrize(
     "poses,tip",
     [
-        # those of FANUC: X out of `flange`, Z out of fanuc_flange
-        ({"flange": (UP, "0 0 0"), "fanuc_flange": (OUT, "0 0 0")}, "fanuc_flange"),
+        # FANUC's links: X out of `flange`, Z out of fanuc_flange
+        ({"flange": (X_OUT, "0 0 0"), "fanuc_flange": (Z_OUT, "0 0 0")}, "fanuc_flange"),
         (
-            {"flange": (BACK, "0 0 0"), "fanuc_flange": (OUT, "0 0 0")},
+            {"flange": (BACK, "0 0 0"), "fanuc_flange": (Z_OUT, "0 0 0")},
             "fanuc_flange",
         ),  # R-2000: Z into the wrist
-        ({"tool0": (OUT, "0 0 0"), "flange": (UP, "0 0 0")}, "tool0"),
-        ({"flange": (OUT, "0 0 0"), "ee_link": (OUT, "0 0 0.1")}, "flange"),
+        ({"tool0": (Z_OUT, "0 0 0"), "flange": (X_OUT, "0 0 0")}, "tool0"),
+        ({"flange": (Z_OUT, "0 0 0"), "ee_link": (Z_OUT, "0 0 0.1")}, "flange"),
     ],
 )
 def test_the_tip_whose_z_points_out_along_the_last_axis_is_proposed(poses, tip, tmp_path):
-    given = machine.load("fanuc-arcmate120ic")
+    """The proposed tip is the link whose Z points out along the last axis."""
+    original = machine.load("fanuc-arcmate120ic")
     path = tmp_path / "arm.urdf"
-    path.write_text(with_links(urdf_text.text(given), **poses), encoding="utf-8")
+    path.write_text(add_links(urdf_text.text(original), **poses), encoding="utf-8")
     robot = urdf.Urdf(path)
     # "plate", where the machine file has its flange, and which comes first in the file, is as good by its Z
     assert robot.tips("base_link")[0] == tip
     np.testing.assert_allclose(
-        robot.between("base_link", tip).chain.forward(Q6), given.chain.forward(Q6), atol=1e-9
+        robot.between("base_link", tip).chain.forward(Q6), original.chain.forward(Q6), atol=1e-9
     )
 
 
 def test_an_x_that_points_out_is_turned_to_be_the_z_and_told(tmp_path):
-    given = machine.load("fanuc-arcmate120ic")
+    """An X that points out of the flange is turned into the Z, with a note."""
+    original = machine.load("fanuc-arcmate120ic")
     (tmp_path / "arm.urdf").write_text(
-        with_links(urdf_text.text(given), flange=(UP, "0 0 0")), encoding="utf-8"
+        add_links(urdf_text.text(original), flange=(X_OUT, "0 0 0")), encoding="utf-8"
     )
-    found = urdf.Urdf(tmp_path / "arm.urdf").between("base_link", "flange")
-    np.testing.assert_allclose(found.chain.forward(Q6), given.chain.forward(Q6), atol=1e-9)
-    assert any("X of flange points out of the flange" in note for note in found.notes)
+    described = urdf.Urdf(tmp_path / "arm.urdf").between("base_link", "flange")
+    np.testing.assert_allclose(described.chain.forward(Q6), original.chain.forward(Q6), atol=1e-9)
+    assert any("X of flange points out of the flange" in note for note in described.notes)
 
 
 def test_what_xacro_wrote_is_read_and_xacro_itself_refused(tmp_path):
@@ -386,18 +400,21 @@ def test_what_xacro_wrote_is_read_and_xacro_itself_refused(tmp_path):
 
 
 def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
-    given = machine.load("abb-irb2400-12-155")
+    """A URDF is loaded as a machine, and its missing information is stated."""
+    original = machine.load("abb-irb2400-12-155")
     path = tmp_path / "arm.urdf"
-    path.write_text(urdf_text.text(given), encoding="utf-8")
+    path.write_text(urdf_text.text(original), encoding="utf-8")
     for name in (str(path), f"{path} base=base_link tip=tool0"):
-        found = machine.load(name)
-        np.testing.assert_allclose(found.chain.forward(Q6), KdlArm(given).forward(Q6), atol=1e-9)
-        np.testing.assert_allclose(found.base, given.base, atol=1e-9)
+        loaded = machine.load(name)
         np.testing.assert_allclose(
-            found.limits("maker").lower, given.limits("maker").lower[:6], rtol=1e-14
+            loaded.chain.forward(Q6), KdlArm(original).forward(Q6), atol=1e-9
         )
-        assert found.axes == given.axes and found.posts == () and found.free
-        assert "does not say what the controller shows" in found.controller_remark
+        np.testing.assert_allclose(loaded.base, original.base, atol=1e-9)
+        np.testing.assert_allclose(
+            loaded.limits("maker").lower, original.limits("maker").lower[:6], rtol=1e-14
+        )
+        assert loaded.axes == original.axes and loaded.posts == () and loaded.free
+        assert "does not say what the controller shows" in loaded.controller_remark
     for name, words in (
         (f"{path} tip=hand", "arm.urdf has no link 'hand'; name one of base_link"),
         (f"{path} base=tool0", "moves relative to"),
@@ -449,10 +466,10 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
 )
 def test_mistakes_in_a_urdf_are_told_with_their_line(tmp_path, old, new, line, words):
     assert old in ARM
-    with pytest.raises(InputError) as found:
+    with pytest.raises(InputError) as caught:
         read(tmp_path, ARM.replace(old, new, 1), "base_link", "hand")
-    assert found.value.code == "BAD_URDF"
-    assert found.value.where == f"arm.urdf: line {line}" and words in found.value.message
+    assert caught.value.code == "BAD_URDF"
+    assert caught.value.where == f"arm.urdf: line {line}" and words in caught.value.message
 
 
 def test_chains_that_cannot_be_are_refused(tmp_path):
@@ -476,6 +493,7 @@ def test_chains_that_cannot_be_are_refused(tmp_path):
 @pytest.mark.parametrize("name", ["abb-irb2400-12-155", "ur-ur10e", "kuka-kr16-2"])
 @pytest.mark.parametrize("off_deg", [1e-6, 4e-4, 0.01])
 def test_a_table_with_angles_that_are_nearly_right_is_solved_as_it_is(name, off_deg):
+    """A table with almost right angles is solved with its exact angles."""
     table = dh.table_of(machine.load(name).chain)
     rows = tuple(
         dataclasses.replace(row, alpha=row.alpha + np.radians(off_deg) * (1.0 + 0.1 * k))
@@ -486,8 +504,8 @@ def test_a_table_with_angles_that_are_nearly_right_is_solved_as_it_is(name, off_
     q = np.random.default_rng(0).uniform(-2.5, 2.5, (100, 6))
     poses = arm.chain.forward(q)
     solutions = arm.inverse(poses)
-    there = arm.chain.forward(np.nan_to_num(solutions))
-    known = np.isfinite(solutions[..., 0])
-    assert np.abs(there - poses)[known].max() < 1e-6
+    forward_poses = arm.chain.forward(np.nan_to_num(solutions))
+    is_solution = np.isfinite(solutions[..., 0])
+    assert np.abs(forward_poses - poses)[is_solution].max() < 1e-6
     off = np.abs((solutions - q + np.pi) % (2.0 * np.pi) - np.pi).max(axis=2)
-    assert (np.nanmin(np.where(known, off, np.inf), axis=0) < 1e-6).mean() > 0.95
+    assert (np.nanmin(np.where(is_solution, off, np.inf), axis=0) < 1e-6).mean() > 0.95

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The closed form of every machine against its joint frames: round trips, branches, singularities."""
+"""The closed form of every machine against its joint frames: round trips, configurations,
+singularities."""
 
 import numpy as np
 import pytest
@@ -16,13 +17,13 @@ def arm(request):
     return machine.load(request.param)
 
 
-def turned_apart(first, second):
-    """The difference of angles without whole turns."""
-    return np.abs((first - second + np.pi) % (2 * np.pi) - np.pi)
+def turned_apart(angles_a, angles_b):
+    """The difference of angles modulo whole turns."""
+    return np.abs((angles_a - angles_b + np.pi) % (2 * np.pi) - np.pi)
 
 
 def random_joints(arm, count, seed=11):
-    """Joint vectors over the whole circle, a third within the maker's limits."""
+    """Joint vectors over full turns, a third within the manufacturer's limits."""
     rng = np.random.default_rng(seed)
     q = rng.uniform(-np.pi, np.pi, (count, 6))
     limits = arm.limits("maker")
@@ -55,11 +56,11 @@ def test_inverse_finds_the_joints_and_every_branch_gives_the_pose(arm):
     off = np.abs(back - poses)[reached]
     assert off[:, :3, 3].max() < 1e-8
     assert off[:, :3, :3].max() < 1e-10
-    # the joints it was made of are the solution of their own branch
-    found = solutions[arm.opw.branch_of(q), np.arange(len(q))]
+    # the original joint angles are the solution of their own configuration
+    own_solutions = solutions[arm.opw.branch_of(q), np.arange(len(q))]
     clear = np.abs(np.sin(q[:, 4])) > 1e-3
-    assert turned_apart(found, q)[clear].max() < 1e-7
-    # and the branches are eight different ones
+    assert turned_apart(own_solutions, q)[clear].max() < 1e-7
+    # and the eight configurations are distinct
     branches = np.broadcast_to(np.arange(8)[:, None], reached.shape)
     assert np.array_equal(arm.opw.branch_of(solutions)[reached], branches[reached])
 
@@ -74,10 +75,11 @@ def test_one_branch_is_the_same_as_in_all(arm):
 
 
 def test_pieces_do_not_show(arm):
+    """Splitting poses into chunks changes nothing."""
     q = random_joints(arm, spherical_wrist.CHUNK + 3)
     poses = arm.chain.forward(q)
-    parts = np.concatenate([arm.opw.inverse(poses[:100]), arm.opw.inverse(poses[100:])], axis=1)
-    assert np.array_equal(arm.opw.inverse(poses), parts, equal_nan=True)
+    joined = np.concatenate([arm.opw.inverse(poses[:100]), arm.opw.inverse(poses[100:])], axis=1)
+    assert np.array_equal(arm.opw.inverse(poses), joined, equal_nan=True)
     assert arm.opw.inverse(poses[:0]).shape == (8, 0, 6)
 
 
@@ -87,11 +89,11 @@ def test_a_straight_wrist_keeps_its_pose(arm, bend):
     q[:, 4] = bend * np.sign(q[:, 4])
     poses = arm.chain.forward(q)
     solutions = arm.opw.inverse(poses)
-    # through the pose's own branch and its flip alike
+    # both through the pose's configuration and its flip
     for flip in (0, 1):
-        found = solutions[(arm.opw.branch_of(q) & 6) + flip, np.arange(len(q))]
-        assert np.isfinite(found).all()
-        off = np.abs(arm.chain.forward(found) - poses)
+        solutions_of_flip = solutions[(arm.opw.branch_of(q) & 6) + flip, np.arange(len(q))]
+        assert np.isfinite(solutions_of_flip).all()
+        off = np.abs(arm.chain.forward(solutions_of_flip) - poses)
         assert off[:, :3, 3].max() < 1e-8
         assert off[:, :3, :3].max() < 1e-10
 
@@ -101,18 +103,23 @@ def test_a_straight_wrist_turns_axis_6_alone(arm):
     q[:, 3:5] = 0.0
     poses = arm.opw.forward(q)
     # exactly straight: the tool along the forearm
-    found = arm.opw.inverse(poses)[arm.opw.branch_of(q), np.arange(len(q))]
+    own_solutions = arm.opw.inverse(poses)[arm.opw.branch_of(q), np.arange(len(q))]
     sign = arm.opw.signs[3] * arm.opw.signs[5]
-    assert turned_apart(found[:, 3] + sign * found[:, 5], q[:, 3] + sign * q[:, 5]).max() < 1e-9
+    assert (
+        turned_apart(
+            own_solutions[:, 3] + sign * own_solutions[:, 5], q[:, 3] + sign * q[:, 5]
+        ).max()
+        < 1e-9
+    )
 
 
 def test_wrist_centre_on_axis_1_and_stretched_arm(arm):
-    """The singularities of shoulder and elbow give a pose back too."""
+    """At the singularities of shoulder and elbow the solutions give the pose too."""
     rng = np.random.default_rng(5)
     straight = -np.arctan2(arm.opw.a2, arm.opw.c3)
     opw_q = rng.uniform(-2, 2, (50, 6))
     opw_q[:25, 2] = straight
-    # turn axis 2 until the wrist centre lies on the axis
+    # turn axis 2 until the wrist centre is on the axis
     bend = opw_q[25:, 2] - straight
     up, out = arm.opw.c2 + arm.opw.forearm * np.cos(bend), arm.opw.forearm * np.sin(bend)
     assert (np.hypot(up, out) > abs(arm.opw.a1)).all()
@@ -131,12 +138,15 @@ def test_out_of_reach_is_nan_in_all_six_and_leaves_the_others_alone(arm):
     poses[7] = np.nan
     solutions = arm.opw.inverse(poses)
     assert np.isnan(solutions[:, [3, 7]]).all()
-    others = [i for i in range(20) if i not in (3, 7)]
-    assert np.array_equal(solutions[:, others], arm.opw.inverse(poses[others]), equal_nan=True)
+    reachable = [i for i in range(20) if i not in (3, 7)]
+    assert np.array_equal(
+        solutions[:, reachable], arm.opw.inverse(poses[reachable]), equal_nan=True
+    )
 
 
 def test_an_arm_folded_on_its_shoulder_is_not_reached():
-    """Where upper arm and forearm are alike the wrist centre can lie on axis 2, and axis 2 is free."""
+    """Where upper arm and forearm are equally long the wrist centre can be on axis 2, and axis 2 is
+    free."""
     arm = machine.load("staubli-rx60bl")
     q = np.zeros((1, 6))
     q[0, 2] = np.pi
@@ -155,7 +165,7 @@ def test_words_of_a_branch():
 
 
 def test_branches_mean_what_the_words_say(arm):
-    """From the joint frames alone: where wrist centre and elbow are, and the sign of q5."""
+    """From the joint frames only: positions of wrist centre and elbow, and the sign of q5."""
     q = random_joints(arm, 3000, seed=3)
     poses = arm.chain.forward(q)
     solutions = arm.opw.inverse(poses)
@@ -165,7 +175,7 @@ def test_branches_mean_what_the_words_say(arm):
         joints = joints[np.isfinite(joints[:, 0])]
         frames = arm.chain.frames(joints)
         centre = meeting_point(frames, 4, 5)
-        # the way the arm's plane points: at q1 = 0 along base_link's X for every machine here
+        # direction of the arm's plane: at q1 = 0 along base_link's X for every machine here
         z = np.array([0.0, 0.0, 1.0])
         angle = joints[:, 0] * arm.chain.directions[0, 2] * np.sign(arm.chain.origins[0, 2, 2])
         ahead = np.stack((np.cos(angle), np.sin(angle), np.zeros_like(angle)), axis=-1)
@@ -182,7 +192,7 @@ def test_branches_mean_what_the_words_say(arm):
         left_of_line = line_right * bow_up - line_up * bow_right
         clear = np.abs(left_of_line) > 1e-3
         assert ((left_of_line > 0) == (elbow == "up"))[clear].all()
-        # which is plainly above it, wherever the line does not lean backwards
+        # clearly above the line wherever it does not lean backwards
         leaning = line_right > 1.0
         height = bow_up - line_up / np.where(leaning, line_right, 1.0) * bow_right
         clear = leaning & (np.abs(height) > 1e-3)
@@ -192,24 +202,24 @@ def test_branches_mean_what_the_words_say(arm):
         assert ((joints[:, 4] < 0) == (wrist == "flip"))[clear].all()
 
 
-def meeting_point(frames, first, second):
-    """Where two axes meet (n, 3), which they must."""
-    d1, d2 = frames.directions[:, first], frames.directions[:, second]
-    o1, o2 = frames.origins[:, first], frames.origins[:, second]
+def meeting_point(frames, axis_a, axis_b):
+    """Intersection (n, 3) of two axes, which must intersect."""
+    d1, d2 = frames.directions[:, axis_a], frames.directions[:, axis_b]
+    o1, o2 = frames.origins[:, axis_a], frames.origins[:, axis_b]
     normal = np.cross(d1, d2)
     squared = (normal**2).sum(axis=-1)
     along = (np.cross(o2 - o1, d2) * normal).sum(axis=-1) / np.where(
         squared > 1e-12, squared, np.nan
     )
     point = o1 + along[:, None] * d1
-    # axes 5 and 6 meet wherever q5 is; their meeting point also lies on axis 6
+    # axes 5 and 6 intersect for every q5; their intersection is also on axis 6
     gap = np.cross(point - o2, d2)
     assert np.abs(gap).max() < 1e-6
     return point
 
 
-def axis_point(frames, axis, near):
-    """The point (n, 3) of an axis nearest to the points `near`: the elbow, in the plane of the shoulder."""
+def axis_point(frames, axis, references):
+    """Points (n, 3) of an axis closest to `references`: the elbow, in the plane of the shoulder."""
     direction, origin = frames.directions[:, axis], frames.origins[:, axis]
-    along = ((near - origin) * direction).sum(axis=-1)
+    along = ((references - origin) * direction).sum(axis=-1)
     return origin + along[:, None] * direction

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Where a robot is told to deposit, it can: looked at by its chain, on other poses than were tried."""
+"""The proposed position of a robot works, checked by its chain on poses other than the tested
+ones."""
 
 import numpy as np
 import pytest
@@ -21,7 +22,8 @@ OF_EACH_MAKER = {name.partition("-")[0]: name for name in ROBOTS}.values()
 @pytest.mark.parametrize("name", ROBOTS)
 @pytest.mark.always(*OF_EACH_MAKER)
 def test_every_robot_holds_a_dome_there_within_its_limits(name):
-    """Any point of the dome, leaning any way: some rotation suits, told by the chain's poses and the limits of the file."""
+    """For any point of the dome and any lean some rotation is feasible, by the chain's poses and
+    the limits of the file."""
     parameters = proposed(CellParameters(machine=name))
     assert cell_of(name) == parameters
     cell = resolve(parameters, np.eye(4))
@@ -47,7 +49,8 @@ def test_every_robot_holds_a_dome_there_within_its_limits(name):
 @pytest.mark.always(*OF_EACH_MAKER)
 @pytest.mark.parametrize("name", ROBOTS)
 def test_every_robot_deposits_round_a_dome_on_the_platform_that_is_proposed(name):
-    """With a torch of 45 deg it reaches a dome of 50 mm from all sides, leaning by up to 28 deg."""
+    """With a torch at 45 deg the robot reaches a dome of 50 mm from all sides, leaning by up to 28
+    deg."""
     tool = (80.0, 0.0, 250.0, 0.0, np.radians(45.0), 0.0)
     parameters = cell_of(name, setup="tool-on-robot", tool=tool)
     assert (
@@ -99,21 +102,25 @@ def test_what_is_kept_for_the_usual_cell_is_what_is_found():
 
 
 def test_a_branch_of_ones_own_is_kept():
-    own = CellParameters(branch=("front", "up", "flip"))
-    assert proposed(own, own_branch=True).branch == own.branch
-    assert proposed(own, own_branch=True).deposition_point != proposed(own).deposition_point
+    """A configuration chosen by the user is kept."""
+    custom = CellParameters(branch=("front", "up", "flip"))
+    assert proposed(custom, own_branch=True).branch == custom.branch
+    assert proposed(custom, own_branch=True).deposition_point != proposed(custom).deposition_point
 
 
 def inside_hulls(points, hulls):
-    """(n,) whether points (n, 3) are within one of the hulls, each told by the planes of its facets."""
-    return np.any([(points @ one[:, :3].T + one[:, 3] <= 0.0).all(axis=1) for one in hulls], axis=0)
+    """Whether points (n, 3) are within one of the hulls, by the planes of its facets."""
+    return np.any(
+        [(points @ planes[:, :3].T + planes[:, 3] <= 0.0).all(axis=1) for planes in hulls], axis=0
+    )
 
 
 @pytest.mark.parametrize("name", ROBOTS)
 @pytest.mark.always(*OF_EACH_MAKER)
 def test_links_as_drawn_need_not_touch_the_platform_that_is_carried(name):
-    """Points all over a platform 10 mm wider all round and hulls of what is drawn: at any lean a rotation within the limits
-    has none inside. Where the papers have their point, an upright tool has no such rotation with the default robot."""
+    """Points on a platform 10 mm larger on all sides, and hulls of the drawn links: at any lean a
+    rotation within the limits keeps all points outside. At the papers' point an upright tool has no
+    such rotation with the default robot."""
     parameters = proposed(CellParameters(machine=name))
     assert all(clear_rotations(parameters, tilt).any() for tilt in np.radians([0.0, 45.0, 85.0]))
     if name == CellParameters().machine:
@@ -121,11 +128,12 @@ def test_links_as_drawn_need_not_touch_the_platform_that_is_carried(name):
 
 
 def clear_rotations(parameters, tilt):
-    """(k,) whether rotations keep an axis leaning by `tilt` within the limits and the platform out of links 0 to 4."""
+    """Whether rotations (k,) keep an axis leaning by `tilt` within the limits and the platform out
+    of links 0 to 4."""
     cell = resolve(parameters, np.eye(4))
     chain = cell.machine.chain
     hulls = [
-        [ConvexHull(one.points).equations for one in link] for link in robot_links.solids(chain)
+        [ConvexHull(solid.points).equations for solid in link] for link in robot_links.solids(chain)
     ]
     axis = np.array([[np.sin(tilt), 0.0, np.cos(tilt)]])
     poses = cell.pose_frames(BALL * axis, axis).flange_poses(
@@ -144,8 +152,11 @@ def clear_rotations(parameters, tilt):
     for k in np.flatnonzero(good):
         links = chain.links(joints[k])
         platform = disc @ (links[-1] @ chain.flange @ cell.poses.carried).T
-        seen = [(platform @ frames.inverse(links[number]).T)[:, :3] for number in range(5)]
+        platform_in_links = [
+            (platform @ frames.inverse(links[number]).T)[:, :3] for number in range(5)
+        ]
         good[k] = not any(
-            hulls[number] and inside_hulls(seen[number], hulls[number]).any() for number in range(5)
+            hulls[number] and inside_hulls(platform_in_links[number], hulls[number]).any()
+            for number in range(5)
         )
     return good

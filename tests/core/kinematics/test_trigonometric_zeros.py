@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Zeros of trigonometric polynomials that are parted: each alone in its step, none left out."""
+"""Isolated zeros of trigonometric polynomials: one per interval, none missing."""
 
 import numpy as np
 import pytest
@@ -7,8 +7,9 @@ import pytest
 from freecad_am.core.kinematics.inverse import trigonometric_zeros as trigonometric
 
 
-def _with_zeros(zeros, positive):
-    """Coefficients (2 degree + 1, n): the product of sines of half the angle from zeros (2 k, n) and of positive factors."""
+def _coefficients_of(zeros, positive):
+    """Coefficients (2 degree + 1, n): the product of sines of half the angle from zeros (2 k, n)
+    and of positive factors."""
     count = len(zeros) + 2 * len(positive)
     nodes = trigonometric.angles(count + 2)[:, None]
     value = np.prod(np.sin(0.5 * (nodes - zeros[:, None])), axis=0)
@@ -23,18 +24,19 @@ def test_each_zero_is_in_a_step_of_its_own(degree):
     rng = np.random.default_rng(21)
     for real in range(0, 2 * degree + 1, 2):
         zeros = rng.uniform(0.0, 2.0 * np.pi, (real, 400))
-        if real:  # pairs at all distances, down to where rounding parts them no more
+        if real:  # pairs at all distances, down to where rounding no longer separates them
             zeros[1] = (zeros[0] + 10.0 ** rng.uniform(-9.0, 0.0, 400)) % (2.0 * np.pi)
-        found = trigonometric.isolate_zeros(
-            _with_zeros(zeros, rng.uniform(0.0, 2.0 * np.pi, (degree - real // 2, 400)))
+        isolated = trigonometric.isolate_zeros(
+            _coefficients_of(zeros, rng.uniform(0.0, 2.0 * np.pi, (degree - real // 2, 400)))
         )
-        assert (~found.close).sum() > 150
-        for number in np.flatnonzero(~found.close):
-            low, high, near = (
-                column[found.number == number] for column in (found.low, found.high, found.guess)
+        assert (~isolated.close).sum() > 150
+        for number in np.flatnonzero(~isolated.close):
+            low, high, guess = (
+                column[isolated.number == number]
+                for column in (isolated.low, isolated.high, isolated.guess)
             )
-            assert len(low) == real and (low <= near).all() and (near <= high).all()
-            # rounding of the coefficients moves zeros of near pairs
+            assert len(low) == real and (low <= guess).all() and (guess <= high).all()
+            # rounding of the coefficients moves the zeros of close pairs
             inside = (zeros[:, number] >= low[:, None] - 1e-6) & (
                 zeros[:, number] <= high[:, None] + 1e-6
             )

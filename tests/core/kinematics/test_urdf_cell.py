@@ -1,4 +1,4 @@
-"""Robot, track and positioner told apart in the URDF of a whole cell."""
+"""Robot, track and positioner recognised in the URDF of a whole cell."""
 
 import dataclasses
 
@@ -12,7 +12,7 @@ from freecad_am.core.kinematics.urdf.cell import UrdfCell, cell_values
 from freecad_am.core.kinematics.urdf.reference import Reference, reference
 from freecad_am.core.parameters.cell import CellParameters
 from freecad_am.core.parameters.cell_records import EXTERNAL
-from tests.core.kinematics.urdf_cells import FINGERS, fixed, placed, whole_cell, with_prefix
+from tests.core.kinematics.urdf_cells import FINGERS, add_prefix, fixed, link_poses, whole_cell
 
 SEVENTH = """\
 <link name="more"/><joint name="seventh" type="revolute"><parent link="robot_tool0"/><child link="more"/><axis xyz="1 0 0"/>
@@ -20,7 +20,7 @@ SEVENTH = """\
 """
 
 
-def written(tmp_path, text):
+def write_urdf(tmp_path, text):
     path = tmp_path / "cell.urdf"
     path.write_text(text, encoding="utf-8")
     return path
@@ -31,11 +31,12 @@ def written(tmp_path, text):
 @pytest.mark.parametrize("more", ["", FINGERS])
 @pytest.mark.always
 def test_tool_part_and_base_are_where_the_tree_has_them(tmp_path, track, positioner, more):
+    """Tool, part and base have the poses of the URDF tree."""
     text = whole_cell(track, positioner, more)
-    machine, beside = cell_values(Reference(str(written(tmp_path, text))))
+    machine, beside = cell_values(Reference(str(write_urdf(tmp_path, text))))
     assert (reference(machine).base, reference(machine).tip) == ("robot_base_link", "robot_tool0")
     named = EXTERNAL.read(beside)
-    assert [one.carries for one in named] == ["robot"] * track + ["part"] * positioner
+    assert [mechanism.carries for mechanism in named] == ["robot"] * track + ["part"] * positioner
     cell = cells.resolve(
         CellParameters(machine=machine, setup="tool-on-robot", external=beside, platform=0.0),
         np.eye(4),
@@ -55,13 +56,13 @@ def test_tool_part_and_base_are_where_the_tree_has_them(tmp_path, track, positio
             name: value * (0.001 if name.startswith("track") else 1.0)
             for name, value in zip(names, row, strict=True)
         }
-        at = placed(text, {"left": 0.0, "right": 0.0, **values})
-        # seen from where the machine's chain begins: the face, or the world, the robot's base with the track at zero
-        # what stands for it where there are no external axes is base_link
-        still = placed(text, {"left": 0.0, "right": 0.0, **values, "track_E1": 0.0})
-        start = at["positioner_tool0"] if positioner else still["robot_base_link"]
+        poses_of_links = link_poses(text, {"left": 0.0, "right": 0.0, **values})
+        # seen from the start of the machine's chain: the face plate, or the world, i.e. the robot's
+        # base with the track at zero
+        still = link_poses(text, {"left": 0.0, "right": 0.0, **values, "track_E1": 0.0})
+        start = poses_of_links["positioner_tool0"] if positioner else still["robot_base_link"]
         start = start @ cell.robot.base if track and not positioner else start
-        expected = np.linalg.inv(start) @ at["robot_tool0"]
+        expected = np.linalg.inv(start) @ poses_of_links["robot_tool0"]
         np.testing.assert_allclose(cell.machine.chain.forward(row[None])[0], expected, atol=1e-7)
 
 
@@ -71,7 +72,7 @@ def test_tool_part_and_base_are_where_the_tree_has_them(tmp_path, track, positio
         (whole_cell(more=SEVENTH), "the file has no robot: no chain has six revolute axes"),
         (
             whole_cell(
-                more=with_prefix(external.load("motoman-motopos-d500"), "second_")
+                more=add_prefix(external.load("motoman-motopos-d500"), "second_")
                 + fixed("world", "second_base_link")
             ),
             "the file has 2 chains .positioner_E1 - positioner_E2, second_E1 - second_E2",
@@ -93,24 +94,24 @@ def test_tool_part_and_base_are_where_the_tree_has_them(tmp_path, track, positio
     ],
 )
 def test_what_cannot_be_told_apart_is_refused(tmp_path, text, words):
-    with pytest.raises(InputError, match=words) as found:
-        UrdfCell(written(tmp_path, text))
-    assert found.value.code == "BAD_URDF"
+    with pytest.raises(InputError, match=words) as caught:
+        UrdfCell(write_urdf(tmp_path, text))
+    assert caught.value.code == "BAD_URDF"
 
 
 def test_two_robots_are_named(tmp_path):
     text = whole_cell(track=False)
-    second = with_prefix(external.load("kuka-kr8-r2100-2-arc-hw"), "other_") + fixed(
+    second = add_prefix(external.load("kuka-kr8-r2100-2-arc-hw"), "other_") + fixed(
         "world", "other_base_link", "0 3 0"
     )
     with pytest.raises(
         InputError, match=r"the file has 2 robots, with the last axes other_.*, robot_"
     ):
-        UrdfCell(written(tmp_path, text.replace("</robot>", second + "</robot>")))
+        UrdfCell(write_urdf(tmp_path, text.replace("</robot>", second + "</robot>")))
 
 
 def test_links_of_a_mechanism_are_not_named_as_well(tmp_path):
-    path = written(tmp_path, whole_cell())
+    path = write_urdf(tmp_path, whole_cell())
     with pytest.raises(InputError, match="remove base and tip"):
         cell_values(Reference(str(path), "robot_base_link"))
     with pytest.raises(InputError, match="does not exist"):
@@ -118,18 +119,21 @@ def test_links_of_a_mechanism_are_not_named_as_well(tmp_path):
 
 
 def test_a_mechanism_of_a_urdf_needs_no_cell_of_its_own(tmp_path):
-    path = written(tmp_path, whole_cell(track=False))
+    """A mechanism of a URDF can be loaded without the cell."""
+    path = write_urdf(tmp_path, whole_cell(track=False))
     alone = external.load(f"{path} base=positioner_base_link tip=positioner_tool0")
-    given = external.load("motoman-motopos-d500")
+    original = external.load("motoman-motopos-d500")
     q = np.random.default_rng(3).uniform(-2.0, 2.0, (50, 2))
-    np.testing.assert_allclose(alone.chain.forward(q), given.chain.forward(q), atol=1e-9)
-    np.testing.assert_allclose(alone.limits("maker").upper, given.limits("maker").upper, rtol=1e-12)
-    np.testing.assert_allclose(alone.max_speed, given.max_speed, rtol=1e-12)
+    np.testing.assert_allclose(alone.chain.forward(q), original.chain.forward(q), atol=1e-9)
+    np.testing.assert_allclose(
+        alone.limits("maker").upper, original.limits("maker").upper, rtol=1e-12
+    )
+    np.testing.assert_allclose(alone.max_speed, original.max_speed, rtol=1e-12)
     with pytest.raises(InputError, match="no link 'face'"):
         external.load(f"{path} base=positioner_base_link tip=face")
     refused = dataclasses.replace(
         CellParameters(), machine=f"{path} base=positioner_base_link tip=positioner_tool0"
     )
-    with pytest.raises(InputError, match="it has 2 axes, 0 prismatic") as found:
+    with pytest.raises(InputError, match="it has 2 axes, 0 prismatic") as caught:
         cells.resolve(refused, np.eye(4))
-    assert found.value.code == "NO_CLOSED_FORM"
+    assert caught.value.code == "NO_CLOSED_FORM"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""`cell.touched`: where a part stands by points touched, against scipy's own fit of rotations, and what is refused."""
+"""`cell.touched`: the part's pose from touched points, against scipy's fit of rotations; and
+rejected inputs."""
 
 import dataclasses
 
@@ -18,38 +19,48 @@ from tests.kdl_links import KdlLinks
 POINTS = np.array([[0.0, 0.0, 0.0], [120.0, 0.0, 5.0], [0.0, 80.0, 0.0], [110.0, 90.0, -3.0]])
 
 
-def pairs(part, robot):
+def pairs(part_points, robot_points):
     return tuple(
-        TouchedPoint(tuple(one), tuple(other))
-        for one, other in zip(part.tolist(), robot.tolist(), strict=True)
+        TouchedPoint(tuple(part_point), tuple(robot_point))
+        for part_point, robot_point in zip(part_points.tolist(), robot_points.tolist(), strict=True)
     )
 
 
 @pytest.mark.parametrize("seed", range(8))
 def test_the_best_rigid_motion_and_what_is_left(seed):
+    """The best rigid motion and its residuals agree with scipy."""
     rng = np.random.default_rng(seed)
-    part = rng.normal(scale=100.0, size=(3 + seed, 3))
+    part_points = rng.normal(scale=100.0, size=(3 + seed, 3))
     turn, move = Rotation.random(random_state=seed), rng.normal(scale=800.0, size=3)
-    robot = turn.apply(part) + move + rng.normal(scale=0.1, size=part.shape)
-    found = work_offset(pairs(part, robot), 5.0)
-    best, _ = Rotation.align_vectors(robot - robot.mean(axis=0), part - part.mean(axis=0))
-    assert np.abs(found.pose[:3, :3] - best.as_matrix()).max() < 1e-9
+    robot_points = turn.apply(part_points) + move + rng.normal(scale=0.1, size=part_points.shape)
+    offset = work_offset(pairs(part_points, robot_points), 5.0)
+    best, _ = Rotation.align_vectors(
+        robot_points - robot_points.mean(axis=0), part_points - part_points.mean(axis=0)
+    )
+    assert np.abs(offset.pose[:3, :3] - best.as_matrix()).max() < 1e-9
     assert (
-        np.abs(found.pose[:3, 3] - (robot.mean(axis=0) - best.apply(part.mean(axis=0)))).max()
+        np.abs(
+            offset.pose[:3, 3] - (robot_points.mean(axis=0) - best.apply(part_points.mean(axis=0)))
+        ).max()
         < 1e-7
     )
-    left = np.linalg.norm(best.apply(part - part.mean(axis=0)) + robot.mean(axis=0) - robot, axis=1)
-    assert np.allclose(found.residual, left, atol=1e-9)
-    assert np.linalg.det(found.pose[:3, :3]) == pytest.approx(1.0)
-    six = found.six()
-    assert np.abs(frames.bryant((*six[:3], *np.radians(six[3:]))) - found.pose).max() < 1e-9
+    residuals = np.linalg.norm(
+        best.apply(part_points - part_points.mean(axis=0))
+        + robot_points.mean(axis=0)
+        - robot_points,
+        axis=1,
+    )
+    assert np.allclose(offset.residual, residuals, atol=1e-9)
+    assert np.linalg.det(offset.pose[:3, :3]) == pytest.approx(1.0)
+    six = offset.six()
+    assert np.abs(frames.bryant((*six[:3], *np.radians(six[3:]))) - offset.pose).max() < 1e-9
 
 
 def test_plane_points_are_not_mirrored():
     flat = POINTS * [1.0, 1.0, 0.0]
     turn = Rotation.from_euler("xyz", [10.0, -5.0, 170.0], degrees=True)
-    found = work_offset(pairs(flat, turn.apply(flat) + 500.0), 0.1)
-    assert np.abs(found.pose[:3, :3] - turn.as_matrix()).max() < 1e-9
+    offset = work_offset(pairs(flat, turn.apply(flat) + 500.0), 0.1)
+    assert np.abs(offset.pose[:3, :3] - turn.as_matrix()).max() < 1e-9
 
 
 @pytest.mark.parametrize(
@@ -81,13 +92,13 @@ def test_what_is_refused(part, robot, says):
 
 
 def test_points_of_the_toolpath_are_met_where_they_were_touched():
-    """By PyKDL: with the joints of a point the tip is where the touched points say."""
+    """By PyKDL: with the joint values of a point the tip is at the touched position."""
     turn = Rotation.from_euler("xyz", [2.0, -3.0, 25.0], degrees=True)
     move = np.array([880.0, 60.0, -120.0])
     text = "; ".join(map(str, pairs(POINTS, turn.apply(POINTS) + move)))
     assert TOUCHED.read(text) == pairs(
         *(
-            np.array([getattr(one, side) for one in TOUCHED.read(text)])
+            np.array([getattr(touched_point, side) for touched_point in TOUCHED.read(text)])
             for side in ("part", "robot")
         )
     )
@@ -96,10 +107,10 @@ def test_points_of_the_toolpath_are_met_where_they_were_touched():
     position, tool = POINTS + [0.0, 0.0, 20.0], np.tile([0.0, 0.0, 1.0], (4, 1))
     flange = cell.pose_frames(position, tool).flange_poses(np.zeros(4))
     arm = KdlLinks(cell.machine)
-    wanted = turn.apply(position) + move
+    expected = turn.apply(position) + move
     joints = cell.machine.arm.inverse_branch(flange, cell.branch)
     assert np.isfinite(joints).all()
-    for q, point in zip(joints, wanted, strict=True):
+    for q, point in zip(joints, expected, strict=True):
         pose = np.linalg.inv(cell.machine.base) @ arm.frame(q) @ cell.poses.carried
         assert np.abs(pose[:3, 3] - point).max() < 1e-6
 

@@ -1,4 +1,4 @@
-"""URDFs of whole cells, and where their links are by a walk of our own."""
+"""URDFs of whole cells, and the poses of their links by an independent traversal."""
 
 import math
 import re
@@ -21,14 +21,14 @@ FINGERS = """\
 """
 
 
-def with_prefix(one, prefix):
+def add_prefix(robot, prefix):
     """The links and joints of a machine, each with a prefix."""
-    text = re.sub(r'<\?xml.*?\?>\n<robot name="[^"]*">\n', "", urdf_text.text(one)).replace(
+    text = re.sub(r'<\?xml.*?\?>\n<robot name="[^"]*">\n', "", urdf_text.text(robot)).replace(
         "</robot>\n", ""
     )
     return re.sub(
         r'(link|joint name|link name)="([^"]+)"',
-        lambda found: f'{found[1]}="{prefix}{found[2]}"',
+        lambda match: f'{match[1]}="{prefix}{match[2]}"',
         text,
     )
 
@@ -40,26 +40,26 @@ def fixed(parent, child, xyz="0 0 0", rpy="0 0 0"):
     )
 
 
-def whole_cell(track=True, positioner=True, more=""):
-    """A robot on a track, or on the floor, and a positioner, all on a link `world`."""
-    text = '<link name="world"/>\n' + with_prefix(machine.load(ROBOT), "robot_")
+def whole_cell(track=True, positioner=True, extra=""):
+    """A robot on a track or on the floor, and a positioner, all on a link `world`."""
+    text = '<link name="world"/>\n' + add_prefix(machine.load(ROBOT), "robot_")
     if track:
-        text += with_prefix(external.load(TRACK), "track_") + fixed(
+        text += add_prefix(external.load(TRACK), "track_") + fixed(
             "world", "track_base_link", *WHERE_TRACK
         )
         text += fixed("track_tool0", "robot_base_link", "0 0 0", f"0 0 {-math.pi / 2!r}")
     else:
         text += fixed("world", "robot_base_link", "0.1 0 0.5", "0 0 0.2")
     if positioner:
-        text += with_prefix(external.load(POSITIONER), "positioner_")
+        text += add_prefix(external.load(POSITIONER), "positioner_")
         text += fixed("world", "positioner_base_link", *WHERE_POSITIONER)
-    return f'<robot name="cell">{text}{more}</robot>\n'
+    return f'<robot name="cell">{text}{extra}</robot>\n'
 
 
-def placed(text, values):
-    """(4, 4) mm of each link of a URDF, with values of its joints by name, rad and m."""
+def link_poses(text, values):
+    """(4, 4) mm of each link of a URDF for joint values by name, rad and m."""
     top = ElementTree.fromstring(text)
-    # others, of transmissions, are deeper in
+    # other joint elements, of transmissions, are nested deeper
     above = {joint.find("child").get("link"): joint for joint in top.findall("joint")}
 
     def numbers(element, key, default):
@@ -70,7 +70,7 @@ def placed(text, values):
             ]
         )
 
-    def turned(axis, angle):
+    def rotation_about(axis, angle):
         x, y, z = axis
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         return np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
@@ -79,16 +79,20 @@ def placed(text, values):
         joint = above.get(link)
         if joint is None:
             return np.eye(4)
-        own, moved = np.eye(4), np.eye(4)
+        origin, moved = np.eye(4), np.eye(4)
         roll, pitch, yaw = numbers(joint.find("origin"), "rpy", "0 0 0")
-        own[:3, :3] = turned((0, 0, 1), yaw) @ turned((0, 1, 0), pitch) @ turned((1, 0, 0), roll)
-        own[:3, 3] = 1000.0 * numbers(joint.find("origin"), "xyz", "0 0 0")
+        origin[:3, :3] = (
+            rotation_about((0, 0, 1), yaw)
+            @ rotation_about((0, 1, 0), pitch)
+            @ rotation_about((1, 0, 0), roll)
+        )
+        origin[:3, 3] = 1000.0 * numbers(joint.find("origin"), "xyz", "0 0 0")
         if joint.get("type") != "fixed":
             axis, value = numbers(joint.find("axis"), "xyz", "1 0 0"), values[joint.get("name")]
             if joint.get("type") == "prismatic":
                 moved[:3, 3] = 1000.0 * value * axis
             else:
-                moved[:3, :3] = turned(axis, value)
-        return pose(joint.find("parent").get("link")) @ own @ moved
+                moved[:3, :3] = rotation_about(axis, value)
+        return pose(joint.find("parent").get("link")) @ origin @ moved
 
     return {link.get("name"): pose(link.get("name")) for link in top.iter("link")}

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Trees of URDFs by a reading of our own: what moves in one, where a machine of it ends, whether a refusal is so."""
+"""Trees of URDFs by an independent reader: moving joints, the end of a machine, and whether a
+rejection is justified."""
 
 import collections
 import math
@@ -8,50 +9,55 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 
-from tests.core.kinematics.urdf_cells import placed
+from tests.core.kinematics.urdf_cells import link_poses
 
 TURNS = ("revolute", "continuous")
-EXACT, STRAIGHT = 1e-6, 1e-6  # mm, rad: files have six digits and more
+EXACT, PARALLEL_TOLERANCE = 1e-6, 1e-6  # mm, rad: files have at least six digits
 BACK = 1e-6  # rad
-SQUARE = 2e-3  # rad: what is written for a right angle is nearer to it
+SQUARE = 2e-3  # rad: maximum deviation of a written right angle
 
 
 def joints_of(text):
-    """The joints of a tree: others, of transmissions, are named deeper in."""
+    """The joints of a tree: other joint elements, of transmissions, are nested deeper."""
     return ElementTree.fromstring(text).findall("joint")
 
 
 def moving(text):
-    """The joints that move on the way from the ground to the link that most of them move."""
+    """The moving joints on the path from the ground to the link with the most of them."""
     above = {joint.find("child").get("link"): joint for joint in joints_of(text)}
     longest = []
     for link in above:
-        way = []
-        while link in above and above[link] not in way:
-            way.append(above[link])
+        chain = []
+        while link in above and above[link] not in chain:
+            chain.append(above[link])
             link = above[link].find("parent").get("link")
         longest = max(
-            longest, [joint for joint in way[::-1] if joint.get("type") != "fixed"], key=len
+            longest, [joint for joint in chain[::-1] if joint.get("type") != "fixed"], key=len
         )
     return longest
 
 
 def is_six_axis_arm(axes):
-    """Whether what moves in a file are six joints that turn."""
+    """Return whether the moving joints of a file are six revolute ones."""
     return len(axes) == 6 and all(
         joint.get("type") in TURNS and joint.find("mimic") is None for joint in axes
     )
 
 
-def assert_pose(text, robot, found, arm):
-    """Joints at random: the chain's end is where the tip is in the file, its Z out of axis 6, and the inverse leads back."""
+def assert_pose(text, robot, described, arm):
+    """For random joints: the end of the chain is at the tip of the file, its Z along axis 6, and
+    the inverse restores the joints."""
     base = robot.bases()[0]
     tip = robot.tips(base)[0]
     random = np.random.default_rng(1)
-    joints = random.uniform(np.maximum(found.lower, -2.5), np.minimum(found.upper, 2.5), (3, 6))
+    joints = random.uniform(
+        np.maximum(described.lower, -2.5), np.minimum(described.upper, 2.5), (3, 6)
+    )
     text = squared(text)
     joint_of = {joint.find("child").get("link"): joint for joint in joints_of(text)}
-    last = next(joint for joint in joint_of.values() if joint.get("name") == found.joints[-1])
+    last_joint = next(
+        joint for joint in joint_of.values() if joint.get("name") == described.joints[-1]
+    )
     makers = joint_of.get("base") if base != "base" else None
     makers = (
         makers is not None
@@ -59,29 +65,31 @@ def assert_pose(text, robot, found, arm):
         and makers.find("parent").get("link") == base
     )
     for row in joints:
-        links = placed(text, collections.defaultdict(float, zip(found.joints, row)))
-        # the chain begins where axis 1 is the Z; `found.base` is the maker's base, or that of the file, from there
-        begins = links["base" if makers else base] @ np.linalg.inv(found.base)
-        axis = links[last.find("child").get("link")][:3, :3] @ np.array(
-            last.find("axis").get("xyz").split(), float
+        links = link_poses(text, collections.defaultdict(float, zip(described.joints, row)))
+        # the chain starts where axis 1 is the Z; `described.base` is the manufacturer's base, or
+        # that of the file, from there
+        begins = links["base" if makers else base] @ np.linalg.inv(described.base)
+        axis = links[last_joint.find("child").get("link")][:3, :3] @ np.array(
+            last_joint.find("axis").get("xyz").split(), float
         )
         z, x = links[tip][:3, 2], links[tip][:3, 0]
-        out = z if np.linalg.norm(np.cross(z, axis)) < STRAIGHT else x
-        assert np.linalg.norm(np.cross(out, axis)) < STRAIGHT
-        pose = begins @ found.chain.forward(row)
+        out = z if np.linalg.norm(np.cross(z, axis)) < PARALLEL_TOLERANCE else x
+        assert np.linalg.norm(np.cross(out, axis)) < PARALLEL_TOLERANCE
+        pose = begins @ described.chain.forward(row)
         assert np.abs(pose[:3, 3] - links[tip][:3, 3]).max() < EXACT
-        assert np.abs(np.cross(pose[:3, 2], axis)).max() < STRAIGHT
-        assert out is x or np.abs(pose[:3, :3] - links[tip][:3, :3]).max() < STRAIGHT
-        back = arm.inverse(found.chain.forward(row)[None])[:, 0]
+        assert np.abs(np.cross(pose[:3, 2], axis)).max() < PARALLEL_TOLERANCE
+        assert out is x or np.abs(pose[:3, :3] - links[tip][:3, :3]).max() < PARALLEL_TOLERANCE
+        back = arm.inverse(described.chain.forward(row)[None])[:, 0]
         off = (back - row + math.pi) % (2.0 * math.pi) - math.pi
         assert np.nanmin(np.abs(off).max(axis=1)) < BACK
 
 
 def squared(text):
-    """The file with its right angles whole: 1.571 and 1.57079 are written for one, and 2e-4 rad are a tenth of a mm."""
+    """The file with exact right angles: files have 1.571 and 1.57079, and 2e-4 rad are a tenth of a
+    mm."""
 
-    def whole(found):
-        words = [str(float(word)) for word in found[2].split()]
+    def exact_angles(match):
+        words = [str(float(word)) for word in match[2].split()]
         turns = [round(float(word) / (0.5 * math.pi)) for word in words]
         exact = [
             0.5 * math.pi * turn
@@ -89,13 +97,13 @@ def squared(text):
             else float(word)
             for word, turn in zip(words, turns)
         ]
-        return f'{found[1]}{" ".join(map(repr, exact))}"'
+        return f'{match[1]}{" ".join(map(repr, exact))}"'
 
-    return re.sub(r'(\brpy=")([^"]+)"', whole, text)
+    return re.sub(r'(\brpy=")([^"]+)"', exact_angles, text)
 
 
 def is_so(text, axes, message):
-    """Whether what a file is refused for is what the tree of it shows."""
+    """Return whether the tree of a file justifies the reason of its rejection."""
     if any(joint.find("mimic") is not None for joint in axes):
         return "mimics another joint" in message
     children = [joint.find("child").get("link") for joint in joints_of(text)]
@@ -105,15 +113,15 @@ def is_so(text, axes, message):
     slide = sum(joint.get("type") == "prismatic" for joint in axes)
     if len(axes) != 6 or slide:
         return f"it has {len(axes)} axes, {slide} prismatic" in message
-    # six that turn: the end that is named lies beside axis 6
+    # six revolute joints: the named end is off axis 6
     name = re.search(r"from \S+ to (\S+):", message)
-    told = name is not None and "the flange origin is not on axis 6" in message
-    return told and beside(text, axes[-1], name[1]) > 0.01
+    is_off_axis = name is not None and "the flange origin is not on axis 6" in message
+    return is_off_axis and beside(text, axes[-1], name[1]) > 0.01
 
 
-def beside(text, last, tip):
-    """mm from a link's origin to the line of a joint."""
-    links = placed(text, collections.defaultdict(float))
-    joint = links[last.find("child").get("link")]
-    axis = joint[:3, :3] @ np.array(last.find("axis").get("xyz").split(), float)
+def beside(text, last_axis, tip):
+    """Distance (mm) from a link's origin to the line of a joint."""
+    links = link_poses(text, collections.defaultdict(float))
+    joint = links[last_axis.find("child").get("link")]
+    axis = joint[:3, :3] @ np.array(last_axis.find("axis").get("xyz").split(), float)
     return float(np.linalg.norm(np.cross(links[tip][:3, 3] - joint[:3, 3], axis)))

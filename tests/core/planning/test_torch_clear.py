@@ -14,7 +14,7 @@ from freecad_am.core.issues import has_errors
 from freecad_am.core.kinematics import cell as cells
 from freecad_am.core.kinematics import torch
 from freecad_am.core.parameters.cell import CellParameters
-from tests.core.kinematics.test_torch import at, put, samples
+from tests.core.kinematics.test_torch import box_at, put, samples
 from tests.core.planning.test_arm_clearance import CELL, CLEARANCE, DOWN, dome, planned
 from tests.core.planning.test_obstacles import nearest
 
@@ -23,7 +23,9 @@ __all__ = ["dome"]  # a fixture
 POST = np.array([30.0, 30.0, 500.0])
 NOZZLE = dataclasses.replace(CELL["nozzle"], diameter=20.0)
 # in the file's coordinates: Z out of the nozzle
-TORCH = put(at((12.0, 12.0, 85.0), 0.0, 0.0, -57.5), at((160.0, 30.0, 25.0), 74.0, 0.0, -87.5))
+TORCH = put(
+    box_at((12.0, 12.0, 85.0), 0.0, 0.0, -57.5), box_at((160.0, 30.0, 25.0), 74.0, 0.0, -87.5)
+)
 
 
 @pytest.fixture(scope="module")
