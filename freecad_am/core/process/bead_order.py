@@ -14,10 +14,14 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from ..parameters.process import ProcessParameters
 from ..toolpath import Bead, Layer
-from ..types import Array
+from ..types import Array, Index
+
+NEAREST = 8  # number of neighbours looked up first
+SURELY_NEARER = 1.0 - 1e-12  # ratio of distances beyond rounding errors
 
 
 class RankedBead(NamedTuple):
@@ -77,29 +81,80 @@ class IslandOrder:
     def order_islands(self, beads: Sequence[Bead], islands: Sequence[Sequence[int]]) -> list[Bead]:
         """Return the beads of a layer in print order; `islands` are the bead indices of each island, from inside out."""
         if self.as_below and islands:
-            middle = [
-                np.vstack([beads[number].points for number in sorted(island)]).mean(axis=0)
-                for island in islands
-            ]
-            order = list(range(len(islands)))
-            if (below := self.below) is not None:
-                order.sort(
-                    key=lambda number: int(
-                        np.argmin(np.linalg.norm(below - middle[number], axis=1))
-                    )
-                )
-            self.below = np.array([middle[number] for number in order])
-            return [beads[number] for island in order for number in islands[island]]
-        islands, order = list(islands), []
-        while islands:
-            points = np.array([beads[island[0]].points[0] for island in islands])
-            order += islands.pop(
-                0
-                if self.point is None
-                else int(np.argmin(np.linalg.norm(points - self.point, axis=1)))
+            middle = np.array(
+                [
+                    np.vstack([beads[number].points for number in sorted(island)]).mean(axis=0)
+                    for island in islands
+                ]
             )
-            self.point = beads[order[-1]].points[-1]
-        return [beads[number] for number in order]
+            order = list(range(len(islands)))
+            if self.below is not None:
+                order = np.argsort(_nearest(self.below, middle), kind="stable").tolist()
+            self.below = middle[order]
+            return [beads[number] for island in order for number in islands[island]]
+        if not islands:
+            return []
+        starts = StartPoints(np.array([beads[island[0]].points[0] for island in islands]))
+        ordered: list[Bead] = []
+        for _ in islands:
+            island = islands[starts.take(self.point)]
+            ordered += [beads[number] for number in island]
+            self.point = ordered[-1].points[-1]
+        return ordered
+
+
+def _nearest(points: Array, places: Array) -> Index:
+    """Return for each place (n, 3) the index of the nearest point (k, 3), mm; of equally near ones the first."""
+    found = cKDTree(points).query(places, min(NEAREST, len(points)))[1].reshape(len(places), -1)
+    found = np.sort(found, axis=1)
+    distances = np.linalg.norm(points[found] - places[:, None], axis=2)
+    return np.asarray(found[np.arange(len(places)), np.argmin(distances, axis=1)])
+
+
+class StartPoints:
+    """Points taken one by one, without comparing all pairs."""
+
+    def __init__(self, points: Array) -> None:
+        """Create from points (n, 3), mm."""
+        self._points = points
+        self._is_left = np.ones(len(points), dtype=bool)
+        self._left = np.arange(len(points))  # points of the tree, some of them taken
+        self._tree = cKDTree(points)
+        self._count = len(points)
+
+    def take(self, place: Array | None) -> int:
+        """Take the point nearest to a place (3,), mm, of equally near ones the first; None: the first point.
+
+        Parameters
+        ----------
+        place : (3,) array or None
+            Position of the torch, mm.
+
+        Returns
+        -------
+        int
+            Index of the point.
+        """
+        number = int(np.argmax(self._is_left)) if place is None else self._find(place)
+        self._is_left[number] = False
+        self._count -= 1
+        return number
+
+    def _find(self, place: Array) -> int:
+        """Return the nearest point that is left."""
+        if 2 * self._count < len(self._left):
+            self._left = np.flatnonzero(self._is_left)
+            self._tree = cKDTree(self._points[self._left])
+        wanted = NEAREST
+        while True:
+            distances, found = self._tree.query(place, min(wanted, len(self._left)))
+            numbers = self._left[np.atleast_1d(found)]
+            numbers = np.sort(numbers[self._is_left[numbers]])
+            away = np.linalg.norm(self._points[numbers] - place, axis=1)
+            all_known = wanted >= len(self._left)
+            if all_known or (len(away) and away.min() < SURELY_NEARER * np.max(distances)):
+                return int(numbers[np.argmin(away)])
+            wanted *= 4
 
 
 def order_beads(beads: Sequence[RankedBead], order: str) -> Course:
