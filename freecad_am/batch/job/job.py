@@ -41,6 +41,7 @@ SECTIONS = (
     "cell",
     "joints",
     "process",
+    "settings",
     "program",
     "place",
 )
