@@ -359,8 +359,8 @@ def test_collision_bodies_of_a_urdf_go_with_their_links(tmp_path):
         [[0.0] * 6 + [values[name] * (1000.0 if name == "track_E1" else 1.0) for name in order]]
     )
     zero = dict.fromkeys(re.findall(r'joint name="(robot_[^"]+)" type="rev', text_), 0.0)
-    link_poses = urdf_cells.placed(text_, {**zero, **values})
-    still = urdf_cells.placed(text_, {**zero, **values, "track_E1": 0.0})
+    link_poses = urdf_cells.link_poses(text_, {**zero, **values})
+    still = urdf_cells.link_poses(text_, {**zero, **values, "track_E1": 0.0})
     to_world = np.linalg.inv(still["robot_base_link"] @ cell.robot.base)
     frames_in_world = np.linalg.inv(cell.world(joints))[0] @ cell.external_link_frames(joints)[0]
     for external_link, frame in zip(cell.shapes.external_links, frames_in_world):
@@ -438,7 +438,7 @@ def test_a_machine_file_made_of_a_urdf_has_its_bodies(tmp_path):
         assert np.isclose(
             radius, 60.0 / np.cos(np.pi / 40)
         ).any()  # the polygon contains the cylinder
-    zero = urdf_cells.placed(
+    zero = urdf_cells.link_poses(
         text_, dict.fromkeys(re.findall(r'joint name="([^"]+)" type="(?:rev|pris|con)', text_), 0.0)
     )
     plate_pose = np.linalg.inv(zero["positioner_link_2"]) @ zero["plate"]

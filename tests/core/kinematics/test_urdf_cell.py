@@ -69,10 +69,10 @@ def test_tool_part_and_base_are_where_the_tree_has_them(tmp_path, track, positio
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        (whole_cell(more=SEVENTH), "the file has no robot: no chain has six revolute axes"),
+        (whole_cell(extra=SEVENTH), "the file has no robot: no chain has six revolute axes"),
         (
             whole_cell(
-                more=add_prefix(external.load("motoman-motopos-d500"), "second_")
+                extra=add_prefix(external.load("motoman-motopos-d500"), "second_")
                 + fixed("world", "second_base_link")
             ),
             "the file has 2 chains .positioner_E1 - positioner_E2, second_E1 - second_E2",
