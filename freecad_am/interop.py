@@ -353,7 +353,7 @@ def write_waypoints(obj: Any, path: str) -> str:
 
     def write(unfinished: str) -> None:
         with open(unfinished, "w", encoding="ascii", newline="") as stream:
-            stream.writelines(waypoints.text(motion, columns, units, bool(motion.settings.any())))
+            stream.writelines(waypoints.text(motion, columns, units))
 
     return _write_whole(path, write)
 

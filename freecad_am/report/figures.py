@@ -7,7 +7,7 @@ import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -37,7 +37,24 @@ from ..core.types import Array
 
 if TYPE_CHECKING:  # slow to import and not needed for jobs without a cell
     from freecad_am.core.preflight.promise import Promise
+    from freecad_am.core.strategies.walls.comparison import Compared, Refused
     from freecad_am.objects.joint_path import Planned
+
+
+class OfFeature(NamedTuple):
+    """Data of a feature.
+
+    name: empty if the job has one feature. spacing: distances (points,) from each layer to the
+    surface below, mm. band: tolerance of the distances as a fraction of the layer height. compared,
+    rows: spacing comparison of a wall.
+    """
+
+    name: str
+    toolpath: Toolpath
+    spacing: Sequence[Array]
+    band: float | None = None
+    compared: Sequence[Compared | Refused] = ()
+    rows: Sequence[dict[str, Any]] = ()
 
 
 @dataclass(frozen=True)

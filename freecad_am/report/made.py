@@ -19,8 +19,7 @@ from ..core.toolpath import Toolpath
 from ..core.types import Array
 from ..objects.families.registry import planner_for
 from . import figures
-from .figures import Job, Results
-from .of_feature import OfFeature
+from .figures import Job, OfFeature, Results
 
 Timed = Callable[[str], AbstractContextManager[None]]
 Tell = Callable[[str], None]

@@ -15,7 +15,7 @@ from ..core.toolpath import Toolpath
 from ..plots.source import Source
 from . import places, predicted_figures, scan_figures, units
 from .charts import deposit_chart, distance_charts, layer_charts, path_charts, step_chart
-from .of_feature import OfFeature
+from .figures import OfFeature
 from .pictures import FULL_WIDTH, HALF, MISSING, TALLEST, Pictures, draw_charts, plotting_modules
 from .tables import (
     axis_names,

@@ -15,7 +15,7 @@ from ..plots.chart import PAGE, Chart, convert_chart, fit, together
 from ..plots.pictures import Rows, rows
 from ..plots.source import Source
 from . import units
-from .of_feature import OfFeature
+from .figures import OfFeature
 
 HALF, FULL_WIDTH, TALL, MAP, TALLEST = 460, 940, 230, 330, 620  # pixels
 MISSING = "The plots are left out, because matplotlib is not installed here; install python3-matplotlib and plan again."

@@ -54,6 +54,11 @@
         <translation>Tableaux du résultat.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Beads by strategy.fill, or one helix around faces of revolution that close around their axis.</source>
+        <translation>Cordons selon strategy.fill, ou une hélice autour de faces de révolution fermées autour de leur axe.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Change of objective and coefficients at which the optimiser stops.</source>
         <translation>Variation de l&apos;objectif et des coefficients à laquelle l&apos;optimiseur s&apos;arrête.</translation>
@@ -72,11 +77,6 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Closed beads layer by layer, or one continuous spiral.</source>
         <translation>Cordons fermés couche par couche, ou une spirale continue.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>Closed solids and meshes in which settings by place apply.</source>
-        <translation>Solides et maillages fermés dans lesquels des réglages par lieu s&apos;appliquent.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -922,11 +922,6 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Set of joint limits of the machine file to use.</source>
         <translation>Quel jeu de limites articulaires du fichier machine vaut.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Settings by place; later ones win, and all win over bead classes, such as: layers 0 to 4: travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.</source>
-        <translation>Réglages par lieu ; les suivants l&apos;emportent, et tous l&apos;emportent sur les classes de cordons, comme : layers 0 to 4 : travel_speed 4, schedule 3 ; inside Zone : travel_speed 5 ; ou none.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -1982,6 +1977,11 @@
         <translation>Largeur de cordon</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Beads by strategy.fill, or one helix around faces of revolution that close around their axis.</source>
+        <translation>Cordons selon strategy.fill, ou une hélice autour de faces de révolution fermées autour de leur axe.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
         <source>Before</source>
         <translation>Avant</translation>
@@ -2290,11 +2290,6 @@
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
         <source>Closed form (mm): {}</source>
         <translation>Forme explicite (mm) : {}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>Closed solids and meshes in which settings by place apply.</source>
-        <translation>Solides et maillages fermés dans lesquels des réglages par lieu s&apos;appliquent.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program_window.py"/>
@@ -4772,6 +4767,11 @@
         <translation>Trajectoire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Pattern</source>
+        <translation>Motif</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
         <source>Payload is set and the monitor speed is 100 %</source>
         <translation>La charge est réglée et la vitesse moniteur est de 100 %</translation>
@@ -5495,16 +5495,6 @@
         <location filename="../../freecad_am/core/parameters/cell.py"/>
         <source>Set of joint limits of the machine file to use.</source>
         <translation>Quel jeu de limites articulaires du fichier machine vaut.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Settings</source>
-        <translation>Réglages</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Settings by place; later ones win, and all win over bead classes, such as: layers 0 to 4: travel_speed 4, schedule 3; inside Zone: travel_speed 5; or none.</source>
-        <translation>Réglages par lieu ; les suivants l&apos;emportent, et tous l&apos;emportent sur les classes de cordons, comme : layers 0 to 4 : travel_speed 4, schedule 3 ; inside Zone : travel_speed 5 ; ou none.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -7222,11 +7212,6 @@
         <translation>Zéro</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>Zones</source>
-        <translation>Zones</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/plots/view.py"/>
         <source>Zoom into a rectangle; the wheel zooms too, with Ctrl the vertical axis</source>
         <translation>Agrandir un rectangle ; la molette agrandit aussi, avec Ctrl l&apos;axe vertical</translation>
@@ -7352,6 +7337,11 @@
         <translation>une hauteur sans rayon ne définit pas un cône ; donnez aussi le rayon du cercle de base, ou base: auto</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/helix.py"/>
+        <source>a helix is one dense bead along the normals; remove strategy.{0}, or use pattern: fill</source>
+        <translation>une hélice est un seul cordon dense suivant les normales ; retirez strategy.{0}, ou utilisez pattern : fill</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/sections/tree.py"/>
         <source>a key must be a word (line {0}); write one before the colon</source>
         <translation>une clé doit être un mot (ligne {0}) ; écrivez-en un devant les deux-points</translation>
@@ -7360,6 +7350,11 @@
         <location filename="../../freecad_am/core/slicing/tubes/iso_parameter.py"/>
         <source>a layer height of {0} mm is too large for the bend of the wall; lower it</source>
         <translation>une hauteur de couche de {0} mm est plus que ne permet le coude de la paroi ; réduisez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/helix.py"/>
+        <source>a layer {0} mm above {1} would pass the centre of a bore or hollow; deposit fewer layers</source>
+        <translation>une couche à {0} mm au-dessus de {1} dépasserait le centre d’un alésage ou d’un creux ; déposez moins de couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
@@ -8178,8 +8173,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>beads change their schedule on the way, but this controller appears to set outputs before the motion reaches them; change only the speed at start and end and by place, or use another controller</source>
-        <translation>des cordons changent de programme de soudage en route, mais cette commande semble régler les sorties avant que le mouvement ne les atteigne ; ne changez que la vitesse dans start, end et settings, ou utilisez une autre commande</translation>
+        <source>beads change their schedule, but this controller appears to set outputs before the motion reaches them; change only the speed at start and end, or use another controller</source>
+        <translation>les cordons changent de programme de soudage, mais cette commande semble régler les sorties avant que le mouvement ne les atteigne ; ne changez que la vitesse dans start et end, ou utilisez une autre commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/void_and_double.py"/>
@@ -8762,6 +8757,11 @@
         <translation>marche à vide, rien n&apos;est déposé</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/helix.py"/>
+        <source>each helix begins and ends beside a whole turn, where about {0} cm3 are deposited twice in total</source>
+        <translation>chaque hélice commence et finit contre un tour complet, où environ {0} cm3 au total sont déposés deux fois</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>earlier deposit, at its actual width, or an existing part below each short piece of a bead, against the build direction</source>
         <translation>dépôt antérieur, à sa largeur réelle, ou pièce existante sous chaque court morceau de cordon, contre la direction de dépôt</translation>
@@ -8842,11 +8842,6 @@
         <translation>des axes externes bougeraient alors que l&apos;instruction ne déplace pas le robot</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>faces and within belong together; give both, such as faces: [Face7], within: 8 mm</source>
-        <translation>faces et within vont ensemble ; donnez les deux, comme faces : [Face7], within : 8 mm</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>faces of the solid do not meet along their edges</source>
         <translation>des faces du solide ne se joignent pas le long de leurs arêtes</translation>
@@ -8875,6 +8870,11 @@
         <location filename="../../freecad_am/sections/cell.py"/>
         <source>file {0} does not exist; check the path, which is relative to the file that names it</source>
         <translation>il n&apos;y a pas de fichier {0} ; vérifiez le chemin, relatif au fichier qui le contient</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>fill</source>
+        <translation>remplissage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -9130,6 +9130,11 @@
         <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>height of each point above the nearest point of the layer below, along the build direction there</source>
         <translation>hauteur de chaque point au-dessus du point le plus proche de la couche inférieure, selon la direction de dépôt à cet endroit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>helix</source>
+        <translation>hélice</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -9447,11 +9452,6 @@
         <translation>il a 1 ligne ; mesurez au moins {0} cordons</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>it has a box and a solid; give one of them, and cut the solid if both are meant</source>
-        <translation>il y a une boîte et un solide ; donnez l&apos;un des deux, et coupez le solide si les deux sont voulus</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>it has a corner of {0} deg at {1}, where layers would have zero height on the inside; round it with a radius, or choose guide: auto</source>
         <translation>il a un angle vif de {0} deg en {1}, où les couches n&apos;auraient pas de hauteur à l&apos;intérieur ; arrondissez-le par un rayon, ou choisissez guide: auto</translation>
@@ -9505,11 +9505,6 @@
         <location filename="../../freecad_am/brep/walls/wall.py"/>
         <source>it has no closed direction; choose a tube that is closed around</source>
         <translation>elle n&apos;a pas de direction fermée ; choisissez un tube fermé sur son tour</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>it has no condition; give layers, height, inside or faces</source>
-        <translation>il n&apos;y a pas de condition ; donnez layers, height, inside ou faces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
@@ -10120,11 +10115,6 @@
         <location filename="../../freecad_am/posts/nc_read.py"/>
         <source>it sets a second analogue output</source>
         <translation>il règle une seconde sortie analogique</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>it sets nothing; give one of {0}</source>
-        <translation>rien n&apos;est réglé ; donnez un de {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -11413,8 +11403,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program_beads.py"/>
-        <source>only an output can change the schedule within a bead: calls stop the machine, and arc instructions may stop it too; use output, or remove the schedules of start, end and settings</source>
-        <translation>seule une sortie peut changer le programme de soudage au sein d&apos;un cordon : les appels arrêtent la machine, et les instructions d&apos;arc peuvent l&apos;arrêter aussi ; utilisez output, ou retirez les programmes de start, end et settings</translation>
+        <source>only an output can change the schedule within a bead: calls stop the machine, and arc instructions may stop it too; use output, or remove the schedules of start and end</source>
+        <translation>seule une sortie peut changer le programme de soudage au sein d&apos;un cordon : les appels arrêtent la machine, et les instructions d&apos;arc peuvent l&apos;arrêter aussi ; utilisez output, ou retirez les programmes de start et end</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/pictures.py"/>
@@ -12017,21 +12007,6 @@
         <translation>réglez strategy.layer_height à {0} mm, ou apportez moins de fil</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>settings by place are for one feature yet; remove them, or put each feature in its own job</source>
-        <translation>les réglages par lieu ne valent encore que pour un seul élément ; supprimez-les, ou mettez chaque élément dans sa propre tâche</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>settings by place that change the travel speed cannot be combined with it yet; use strategy.min_layer_time or process.between_layers.wait</source>
-        <translation>des réglages par lieu qui changent la vitesse d&apos;avance ne peuvent pas encore s&apos;y combiner ; utilisez strategy.min_layer_time ou process.between_layers.wait</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/by_place.py"/>
-        <source>settings[{0}] has no effect, because no bead meets its place ({1}); move or enlarge the place, or remove the entry</source>
-        <translation>settings[{0}] n&apos;a pas d&apos;effet, car aucun cordon ne rencontre son lieu ({1}) ; déplacez ou agrandissez le lieu, ou supprimez l&apos;entrée</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>several columns are called {0}: {1}; keep the measured one</source>
         <translation>plusieurs colonnes sont {0} : {1} ; gardez celle qui a été mesurée</translation>
@@ -12552,7 +12527,7 @@
         <translation>le compresseur fusionnerait des blocs qui indiquent chacun une durée, et seule la dernière compterait</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/work/progress.py"/>
+        <location filename="../../freecad_am/objects/work/faults.py"/>
         <source>the computation needs more memory than available; use larger steps, such as layer height and chord error, or a smaller part</source>
         <translation>la mémoire ne suffit pas pour le calculer ; donnez des pas plus grands, comme la hauteur de couche et l&apos;erreur de corde, ou une pièce plus petite</translation>
     </message>
@@ -12662,9 +12637,19 @@
         <translation>la face se replie et se coupe en {0} ; {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/helix.py"/>
+        <source>the faces end in rims that are not circles about one axis</source>
+        <translation>les bords des faces ne sont pas des cercles autour d’un même axe</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/walls/checks.py"/>
         <source>the faces form {0} separate pieces: {1} and {2} are {3} mm apart at {4}; choose connected faces, edges meeting within {5} mm</source>
         <translation>les faces forment {0} morceaux séparés : {1} et {2} sont à {3} mm l&apos;une de l&apos;autre en {4} ; choisissez des faces jointes, dont les arêtes se rencontrent à {5} mm près</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/helix.py"/>
+        <source>the faces have {0} border loop(s), but faces that close around an axis have two</source>
+        <translation>les faces ont {0} contour(s), mais des faces fermées autour d’un axe en ont deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
@@ -13247,6 +13232,11 @@
         <translation>le nom de sa station, par exemple ST1</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/strategies/helix.py"/>
+        <source>the normals of the faces do not point to or from one axis</source>
+        <translation>les normales des faces ne passent pas par un même axe</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the nozzle</source>
         <translation>la buse</translation>
@@ -13505,6 +13495,11 @@
         <location filename="../../freecad_am/posts/refusals.py"/>
         <source>the post {0} writes {1} axes; use another post</source>
         <translation>le post-processeur {0} écrit {1} axes ; utilisez un autre post-processeur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/helix.py"/>
+        <source>the profile of the faces does not lead from rim to rim</source>
+        <translation>le profil des faces ne mène pas d’un bord à l’autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>
@@ -14842,11 +14837,6 @@
         <translation>écrivez-le comme dans `contour: travel_speed 8, schedule 3; fill: lead 5`</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>write it as in: layers 0 to 4: travel_speed 4, schedule 3; height 20 to 35 and inside Zone: lead_on 0.5; box 0 0 0 10 20 30: weave 2; faces Face7 Face8 within 8: travel_speed 5</source>
-        <translation>écrivez-le comme dans : layers 0 to 4 : travel_speed 4, schedule 3 ; height 20 to 35 and inside Zone : lead_on 0.5 ; box 0 0 0 10 20 30 : weave 2 ; faces Face7 Face8 within 8 : travel_speed 5</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>write it as in: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</source>
         <translation>écrivez-le comme dans : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</translation>
@@ -15072,11 +15062,6 @@
         <translation>{0} ne peut pas être calculé : l&apos;extension qui l&apos;a créé manque ; installez-la, ou retirez la valeur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>{0} cannot be named, because it has a colon, a semicolon or the word and; rename the object</source>
-        <translation>{0} ne peut pas être nommé, car il contient deux-points, un point-virgule ou le mot and ; renommez l&apos;objet</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/arrangement.py"/>
         <source>{0} cannot be planned yet; use {1} or {2}</source>
         <translation>{0} ne peut pas encore être planifié ; utilisez {1} ou {2}</translation>
@@ -15100,11 +15085,6 @@
         <location filename="../../freecad_am/posts/nc_numbers.py"/>
         <source>{0} cannot switch both on and off; give two different words</source>
         <translation>{0} ne peut pas à la fois mettre en marche et arrêter ; donnez deux mots différents</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>{0} cannot vary by place; use one of {1}</source>
-        <translation>{0} ne peut pas varier par lieu ; utilisez un de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
@@ -15247,11 +15227,6 @@
         <translation>{0} arêtes de plus de deux triangles ont été dédoublées, par exemple en {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>{0} entries are too many; use at most {1}, for instance wider ranges of layers</source>
-        <translation>{0} entrées sont trop nombreuses ; utilisez-en au plus {1}, par exemple de plus larges plages de couches</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} exceeds the rounding of a display; give 0 to {1}</source>
         <translation>{0} est plus que ce que laisse l&apos;arrondi d&apos;un affichage ; donnez de 0 à {1}</translation>
@@ -15357,11 +15332,6 @@
         <translation>{0} a une virgule ; écrivez les décimales avec un point, comme {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>{0} has a condition twice; give it once</source>
-        <translation>{0} a une condition deux fois ; donnez-la une fois</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
         <source>{0} has a decimal comma; use a decimal point</source>
         <translation>{0} a une virgule décimale ; écrivez les nombres avec un point</translation>
@@ -15427,11 +15397,6 @@
         <translation>{0} n&apos;a pas de nombre ; donnez-en un</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>{0} has no number; {1}</source>
-        <translation>{0} n&apos;a pas de nombre ; {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>{0} has no set of limits {1}; use {2}</source>
         <translation>{0} n&apos;a pas de limites {1} ; utilisez {2}</translation>
@@ -15440,11 +15405,6 @@
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>{0} has no spherical wrist, and the configuration names of its controller are unknown for Cartesian positions; use joint</source>
         <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>{0} has no {1}; it has Face1 to Face{2}</source>
-        <translation>{0} n&apos;a pas de {1} ; il a Face1 à Face{2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
@@ -15555,11 +15515,6 @@
         <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0} is a mesh, to be filled</source>
         <translation>{0} est un maillage, qui est rempli</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>{0} is a mesh, which has no faces; use a solid, a box or heights</source>
-        <translation>{0} est un maillage, qui n&apos;a pas de faces ; utilisez un solide, une boîte ou des hauteurs</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -15782,11 +15737,6 @@
         <translation>{0} n&apos;est pas le coude d&apos;un tore, son plan de symétrie n&apos;est donc pas connu ; donnez sa normale comme build_direction.plane, ou utilisez local, layer ou fixed</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>{0} is not a box; give [x0, y0, z0, x1, y1, z1] in mm, the lower corner first</source>
-        <translation>{0} n&apos;est pas une boîte ; donnez [x0, y0, z0, x1, y1, z1] en mm, le coin inférieur d&apos;abord</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/sections/cell.py"/>
         <source>{0} is not a box; give its edges along x, y and z such as [1200, 800, 30]</source>
         <translation>{0} n&apos;est pas un pavé ; donnez ses arêtes selon x, y et z comme [1200, 800, 30]</translation>
@@ -15805,11 +15755,6 @@
         <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
         <source>{0} is not a colour; use red, green and blue from 0 to 1</source>
         <translation>{0} n&apos;est pas une couleur ; donnez rouge, vert et bleu de 0 à 1</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>{0} is not a condition; {1}</source>
-        <translation>{0} n&apos;est pas une condition ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -16032,19 +15977,9 @@
         <translation>{0} n&apos;est pas une section ; écrivez des clés sous {1} :</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>{0} is not a setting by place; {1}</source>
-        <translation>{0} n&apos;est pas un réglage par lieu ; {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
         <source>{0} is not a sign; use 1 or -1</source>
         <translation>{0} n&apos;est pas un signe ; utilisez 1 ou -1</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>{0} is not a solid, so it has no inside; use a closed solid, a closed mesh or a box</source>
-        <translation>{0} n&apos;est pas un solide et n&apos;a donc pas d&apos;intérieur ; utilisez un solide fermé, un maillage fermé ou une boîte</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -16130,11 +16065,6 @@
         <location filename="../../freecad_am/objects/stage.py"/>
         <source>{0} is not a {1}; choose one</source>
         <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>{0} is not among the zones of the toolpath ({1}); add the object to its property Zones, or name another</source>
-        <translation>{0} n&apos;est pas parmi les zones de la trajectoire d&apos;outil ({1}) ; ajoutez l&apos;objet à sa propriété Zones, ou nommez-en un autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/vectors.py"/>
@@ -16275,11 +16205,6 @@
         <location filename="../../freecad_am/objects/families/developable.py"/>
         <source>{0} is on a cylinder or cone of {1}</source>
         <translation>{0} est sur un cylindre ou cône de {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/by_place.py"/>
-        <source>{0} is open, so it has no inside; close it, or use a closed solid or a box</source>
-        <translation>{0} est ouvert et n&apos;a donc pas d&apos;intérieur ; fermez-le, ou utilisez un solide fermé ou une boîte</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/properties.py"/>
@@ -16942,11 +16867,6 @@
         <translation>{0} à {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/settings.py"/>
-        <source>{0} to {1} is not a range; give the lower end first</source>
-        <translation>{0} à {1} n&apos;est pas une plage ; donnez d&apos;abord la borne inférieure</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>{0} touched points put the part at [{1}] mm and deg in the robot base; residuals at the points: {2} mm, {3} mm root mean square</source>
         <translation>d&apos;après {0} points palpés, le repère de la pièce est en [{1}] mm et deg dans la base du robot ; écarts aux points : {2} mm, {3} mm en moyenne quadratique</translation>
@@ -17365,6 +17285,11 @@
         <location filename="../../freecad_am/macro/scan.py"/>
         <source>{0}; choose a writable folder</source>
         <translation>{0} ; choisissez un dossier où vous pouvez écrire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/helix.py"/>
+        <source>{0}; choose faces of revolution that close around their axis, or use pattern: fill</source>
+        <translation>{0} ; choisissez des faces de révolution fermées autour de leur axe, ou utilisez pattern : fill</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>

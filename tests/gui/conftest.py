@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A person at the window, who sees buttons, fields and pictures, clicks and types. Unexpected
-dialogs are recorded."""
+"""A person at the window: sees buttons, fields and pictures, clicks and types; whatever pops up unasked is noted."""
 
 import importlib
 import os
@@ -15,24 +14,24 @@ from freecad_am.macro import features
 from tests import plans
 from tests.gui.hand import Hand
 
-DIALOG_TIMEOUT_S = 2.0  # s that a dialog may stay open before it counts as unexpected
+PATIENCE = 2.0  # s a dialog may stand there before it counts as stray
 
 
 def pytest_collection_modifyitems(items):
-    gui_folder = Path(__file__).parent
+    here = Path(__file__).parent
     for item in items:
-        if gui_folder in Path(str(item.fspath)).parents:
+        if here in Path(str(item.fspath)).parents:
             item.add_marker(pytest.mark.gui)
 
 
 class ModalWatch:
-    """Record and dismiss unexpected message boxes, which would block the run."""
+    """Notes and dismisses message boxes that nobody expects: they would hang the run."""
 
     def __init__(self, qt_core, qt_gui):
         self.application = qt_gui.QApplication
         self.label = qt_gui.QLabel
         self.texts = []
-        self.awaited = ()  # kinds of dialogs that the person expects
+        self.awaited = ()  # kinds of dialogs that the person has asked for
         self.first_seen = None
         self.timer = qt_core.QTimer()
         self.timer.setInterval(200)
@@ -41,7 +40,7 @@ class ModalWatch:
 
     def look(self):
         dialog = self.application.activeModalWidget()
-        # the dialog of long work is expected
+        # that of long work comes as it should
         if (
             dialog is None
             or dialog.objectName() == "RoboticAM_Progress"
@@ -51,7 +50,7 @@ class ModalWatch:
             return
         if self.first_seen is None:
             self.first_seen = time.monotonic()
-        if time.monotonic() - self.first_seen > DIALOG_TIMEOUT_S:
+        if time.monotonic() - self.first_seen > PATIENCE:
             words = [label.text() for label in dialog.findChildren(self.label) if label.text()]
             self.texts.append(" ".join([dialog.windowTitle(), *words]))
             self.first_seen = None
@@ -59,7 +58,7 @@ class ModalWatch:
 
 
 class Person:
-    """The actions of a person; each fails if its widget is not visible."""
+    """What a person does; every step fails when the thing is not there to be seen."""
 
     def __init__(self, folder):
         import FreeCADGui
@@ -80,14 +79,13 @@ class Person:
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             self.widgets.QApplication.processEvents(self.core.QEventLoop.AllEvents, 20)
-            # to Qt a test is one event, and deferred deletions happen between events
+            # a test is one event to Qt, which deletes between two what is to be deleted later
             self.core.QCoreApplication.sendPostedEvents(None, self.deferred)
             time.sleep(0.008)
         self.give_focus_back()
 
     def give_focus_back(self):
-        """Give the focus to the main window after a dialog closes, such as that of long work: there
-        is no window manager to do it."""
+        """To the main window once a dialog is closed, such as that of long work: there is no window manager that would."""
         application = self.widgets.QApplication
         if not (
             application.activeWindow()
@@ -99,22 +97,22 @@ class Person:
     def until(self, condition, what, seconds=20):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
-            value = condition()
-            if value:
-                return value
+            found = condition()
+            if found:
+                return found
             self.idle(0.05)
-        value = condition()  # the window's own work since then may have taken all of the time
-        if value:
-            return value
+        found = condition()  # what the window did meanwhile may have taken all of the time
+        if found:
+            return found
         raise AssertionError(f"waited {seconds} s for {what}")
 
-    # ---- widgets
+    # ---- what is there
 
     def present(self, kind, *name, below=None):
-        """Return widgets of a kind below another one or the main window. Widgets that PySide takes
-        for deleted ones at the same address are left out (docs/versions.md)."""
-        widgets = (self.window if below is None else below).findChildren(kind, *name)
-        return [widget for widget in widgets if self.qt.isValid(widget)]
+        """Widgets of a kind below another, the main window; without those that PySide takes for deleted ones, which were at
+        their place in memory before (docs/versions.md)."""
+        found = (self.window if below is None else below).findChildren(kind, *name)
+        return [one for one in found if self.qt.isValid(one)]
 
     # ---- toolbar, panels, tree
 
@@ -135,8 +133,7 @@ class Person:
         raise AssertionError(f"no button {command} is to be seen")
 
     def click(self, command):
-        """Click the tool's button, or its menu entry if the window is too narrow for all
-        buttons."""
+        """The tool's button; in a window too narrow for all of them the entry of the menu."""
         try:
             button = self.button(command)
         except AssertionError:
@@ -146,7 +143,7 @@ class Person:
         self.idle()
 
     def entry(self, command):
-        """Return the entry of a tool in the menu of the workbench."""
+        """The entry of a tool in the menu of the workbench."""
         for menu in self.window.menuBar().findChildren(self.widgets.QMenu):
             for action in menu.actions():
                 if command in (action.objectName(), action.data()):
@@ -162,11 +159,11 @@ class Person:
         return self.until(visible, f"the panel {name}", 5)[0]
 
     def field(self, panel, name):
-        fields = panel.findChildren(
+        found = panel.findChildren(
             self.widgets.QWidget, name
-        )  # the others may be boxes that `press` has released
-        assert len(fields) == 1, f"{len(fields)} fields are called {name}"
-        return fields[0]
+        )  # of the others some may be boxes that `press` let go of
+        assert len(found) == 1, f"{len(found)} fields are called {name}"
+        return found[0]
 
     def type(self, panel, name, text):
         widget = self.field(panel, name)
@@ -180,58 +177,58 @@ class Person:
 
     def choose(self, panel, name, text):
         box = self.field(panel, name)
-        index = max(box.findText(text), box.findData(text))  # the shown text, or its key
+        index = max(
+            box.findText(text), box.findData(text)
+        )  # what is shown, or the key it stands for
         assert index >= 0, f"{name} does not offer {text}"
         box.setCurrentIndex(index)
         self.idle(0.05)
 
     def as_revolution(self, panel=None):
-        """Choose parts of revolution in New Job, whatever it proposes: one bead in place of a
-        filled solid."""
+        """Choose parts of revolution in New Job, whatever it proposes: one bead in place of a filled solid."""
         panel = panel or self.panel("RoboticAM_NewJob")
         box = self.field(panel, "Kind")
-        index = box.findText("Part of revolution")
-        box.setCurrentIndex(index)  # a later proposal would overwrite the choice
-        box.activated.emit(index)
+        at = box.findText("Part of revolution")
+        box.setCurrentIndex(at)  # a proposal that comes in before it is told would take its place
+        box.activated.emit(at)
         self.idle(0.05)
 
     def press(self, standard_button):
-        button_kind = getattr(self.widgets.QDialogButtonBox, standard_button)
+        wanted = getattr(self.widgets.QDialogButtonBox, standard_button)
         boxes = self.present(self.widgets.QDialogButtonBox)
         try:
             for box in boxes:
-                # a box found earlier may be deleted, with another one at its address
-                if self.qt.isValid(box) and box.isVisible() and box.button(button_kind) is not None:
-                    box.button(button_kind).click()
+                # one found earlier may be gone, and another one be at its place
+                if self.qt.isValid(box) and box.isVisible() and box.button(wanted) is not None:
+                    box.button(wanted).click()
                     self.idle()
                     return
         finally:
-            # Python keeps wrappers of found widgets, and would use them for later widgets at the
-            # same address
+            # Python keeps what the window has found, and would take for it whatever comes to be at its place later
             for box in boxes:
                 self.qt.invalidate(box)
         raise AssertionError(f"no button {standard_button} is to be seen")
 
     def will_answer(self, standard_button):
-        """Answer the question of the next step; the returned list then holds the question."""
-        questions, end = [], time.monotonic() + DIALOG_TIMEOUT_S
+        """Answer the question that the next step brings up; returns a list that then holds the question."""
+        asked, end = [], time.monotonic() + PATIENCE
 
         def answer():
             dialog = self.widgets.QApplication.activeModalWidget()
             if isinstance(dialog, self.widgets.QMessageBox):
-                questions.append(dialog.text())
+                asked.append(dialog.text())
                 dialog.button(getattr(self.widgets.QMessageBox, standard_button)).click()
-            elif time.monotonic() < end:  # on a busy machine the question takes its time
+            elif time.monotonic() < end:  # a busy machine takes its time to ask
                 self.core.QTimer.singleShot(100, answer)
 
         self.core.QTimer.singleShot(500, answer)
-        return questions
+        return asked
 
     def panel_closed(self):
         self.until(lambda: not self.gui.Control.activeDialog(), "the panel to close")
 
     def panel_error(self, panel):
-        """Return the errors at the top of the panel and under its fields."""
+        """What is wrong: at the top of the panel, and under its fields."""
         labels = [self.field(panel, "error"), *panel.findChildren(self.widgets.QLabel)]
         notes = [
             label
@@ -260,10 +257,10 @@ class Person:
         return view
 
     def picture(self, width=600, height=450):
-        """Return the 3D view as (pixels, 3) colours 0..255."""
+        """The 3D view as (pixels, 3) colours 0..255."""
         import numpy as np
 
-        path = str(self.folder / "view.bmp")  # packing a PNG takes longer than drawing
+        path = str(self.folder / "view.bmp")  # a PNG takes longer to pack than to draw
         self.look().saveImage(path, width, height, "White")
         image = self.widgets.QImage(path).convertToFormat(self.widgets.QImage.Format_RGB32)
         rows = np.frombuffer(bytes(image.constBits()), dtype=np.uint8).reshape(
@@ -272,16 +269,14 @@ class Person:
         return rows[:, : image.width(), 2::-1].reshape(-1, 3).astype(int)
 
     def path_pixels(self):
-        """Return how many pixels have the colours of the first layers (blue) and of the last
-        (yellow)."""
+        """How many pixels have the colours of the first layers (blue) and of the last (yellow)."""
         red, green, blue = self.picture().T
         return int(((blue > red + 60) & (blue > green + 30)).sum()), int(
             ((red > blue + 60) & (green > blue + 60)).sum()
         )
 
     def path_is_seen(self):
-        """Wait until the first and the last layers are visible, which takes time on a busy
-        machine."""
+        """Wait until the first and the last layers are in the picture, which a busy machine draws late."""
 
         def both():
             counts.append(self.path_pixels())
@@ -291,7 +286,7 @@ class Person:
         self.until(both, "a path in blue and yellow", 10)
 
     def screenshot(self, name):
-        """Save the whole screen in the folder ROBOTIC_AM_PICTURES; do nothing if it is not set."""
+        """The whole screen, kept where ROBOTIC_AM_PICTURES says; nothing where it says nothing, as nobody looks at it."""
         folder = os.environ.get("ROBOTIC_AM_PICTURES")
         self.idle(0.3)
         if folder:
@@ -304,7 +299,7 @@ class Person:
             assert grabbed.save(os.path.join(folder, name + ".png"))
 
     def screen_pixels(self, colour, within=24):
-        """Return how many pixels of the 3D view, as the screen shows it, have a colour 0..255."""
+        """How many pixels of the 3D view, as the screen shows it, have a colour 0..255."""
         import numpy as np
 
         self.idle(0.15)
@@ -326,7 +321,7 @@ class Person:
         )
 
     def console(self):
-        """Return the text of the report view."""
+        """The text of the report view."""
         view = self.window.findChild(self.widgets.QTextEdit, "Report view")
         assert view is not None, "there is no report view to watch"
         return view.toPlainText()
@@ -334,7 +329,7 @@ class Person:
 
 @pytest.fixture(autouse=True)
 def planned_once(request):
-    """Plan jobs that several tests use once, except in tests of the planning itself."""
+    """Jobs that several tests make are planned for the first of them, but where a test looks at the planning itself."""
     if request.node.get_closest_marker("planned_anew"):
         yield
     else:
@@ -349,20 +344,19 @@ def hand(person):
 
 @pytest.fixture
 def hemisphere():
-    """Return a new document with a hemisphere of 45 mm radius, whose label has a blank and
-    accents."""
+    """A new document with a hemisphere of 45 mm radius, its label with a blank and accents."""
     document = App.newDocument("Window")
-    sphere = document.addObject("Part::Sphere", "Sphere")
-    sphere.Label = "Hémisphère n° 1"
-    sphere.Radius, sphere.Angle1, sphere.Angle2 = 45, 0, 90
+    part = document.addObject("Part::Sphere", "Sphere")
+    part.Label = "Hémisphère n° 1"
+    part.Radius, part.Angle1, part.Angle2 = 45, 0, 90
     document.recompute()
-    return sphere
+    return part
 
 
 @pytest.fixture
 def coarse(monkeypatch):
-    """Give features layers of 5 mm, and walls 10 mm without clearance, unless the test sets other
-    values: a new job then takes a fifth of the time."""
+    """Features get layers of 5 mm, walls of 10 mm that nothing is kept clear of, where nothing else is said: a new job is
+    planned in a fifth of the time."""
     make, low = api.make_feature_of, {"layer_height": 5.0, "chord_error": 0.1}
     of_kind = {
         "revolution": low,
@@ -371,19 +365,16 @@ def coarse(monkeypatch):
         "solid": low,
     }
 
-    def make_coarse(doc, kind, *arguments, values=None, **named):
-        return make(
-            doc, kind, *arguments, values={**of_kind.get(kind, {}), **(values or {})}, **named
-        )
+    def made(doc, kind, *others, values=None, **named):
+        return make(doc, kind, *others, values={**of_kind.get(kind, {}), **(values or {})}, **named)
 
-    monkeypatch.setattr(api, "make_feature_of", make_coarse)
-    monkeypatch.setattr(features, "make_feature_of", make_coarse)
+    monkeypatch.setattr(api, "make_feature_of", made)
+    monkeypatch.setattr(features, "make_feature_of", made)
 
 
 @pytest.fixture
 def rough_map(monkeypatch):
-    """Check the arm in only one of six rows of the redundancy map, if there are neighbours on both
-    sides."""
+    """Of the map of the free rotation one row of six is looked at for the arm, and no more, where others stand beside it."""
     from freecad_am.gui.redundancy_map import dock as cells
 
     monkeypatch.setattr(cells, "FINE_STRIDE", cells.ROUGH_STRIDE)
@@ -391,20 +382,20 @@ def rough_map(monkeypatch):
 
 @pytest.fixture
 def joint_path(person, hemisphere):
-    """Return a joint path of the hemisphere with only its beads visible."""
+    """A joint path of the hemisphere, its beads alone to be seen."""
     document = hemisphere.Document
     cell = api.make_cell(document)
     toolpath = api.make_toolpath(
         document, api.make_feature(document, hemisphere, layer_height=5), cell
     )
-    path = api.make_joint_path(document, toolpath, cell)
+    made = api.make_joint_path(document, toolpath, cell)
     cell.ViewObject.Visibility = document.Feature.ViewObject.Visibility = False
     person.idle()
-    return path
+    return made
 
 
 def _forget_places(window):
-    """Forget the positions of our docks, as in a new session."""
+    """Docks of ours come in the next test as they come in a new session."""
     from freecad_am.gui import dock_area
 
     for dock in dock_area._docks.values():
@@ -417,7 +408,7 @@ def person(tmp_path, capfd, request):
     someone = Person(tmp_path)
     watch = someone.watch = ModalWatch(someone.core, someone.widgets)
     someone.open_workbench()
-    geometry, layout = someone.window.geometry(), someone.window.saveState()
+    place, layout = someone.window.geometry(), someone.window.saveState()
     mark = f"watching {request.node.name}"
     App.Console.PrintError(mark + "\n")
     someone.until(lambda: mark in someone.console(), "the report view to show errors", 5)
@@ -430,17 +421,17 @@ def person(tmp_path, capfd, request):
     for name in list(App.listDocuments()):
         App.closeDocument(name)
     for page in someone.present(someone.widgets.QDialog, "RoboticAM_Help"):
-        page.hide()  # the window for help covers the 3D view
-    for dock in someone.present(someone.widgets.QDockWidget):  # an open dock keeps observing
+        page.hide()  # the window for help lies over the 3D view
+    for dock in someone.present(someone.widgets.QDockWidget):  # one that stays open goes on looking
         if dock.objectName().startswith("RoboticAM"):
             if dock.isFloating():
-                dock.show()  # in Qt 6, a dock that is redocked while hidden stays a separate window
+                dock.show()  # Qt 6 takes one that is put back while it is hidden for a window of its own ever after
                 dock.setFloating(False)
             dock.close()
     someone.idle()
     someone.window.setGeometry(
-        geometry
-    )  # docks that needed more room have made the window wider, and panels and tree lower
+        place
+    )  # docks that needed more room have made it wider, and panels and tree lower
     someone.window.restoreState(layout)
     _forget_places(someone.window)
     someone.idle(0.1)

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a cell shows machine, platform and nozzle while they are entered, and proposes
-values for a machine."""
+"""The panel of a cell shows machine, platform and nozzle as they are entered, and proposes what suits a machine."""
 
 import threading
 import time
@@ -30,8 +29,8 @@ POINT = "DepositionPoint"
 
 
 def previewed(person):
-    """Return the poses (n, 4, 4) that previews draw: platform, nozzle, then the links of the
-    machine, base first; None without a preview."""
+    """The poses (n, 4, 4) of what previews draw: platform, nozzle, then the links of the machine, base first; None without
+    a preview."""
     nodes = drawn_by_previews(person, "SoMatrixTransform")
     if nodes is None:
         return None
@@ -39,7 +38,7 @@ def previewed(person):
     return np.array(poses).reshape(-1, 4, 4).transpose(0, 2, 1)
 
 
-def wait_for_message(person, panel, words, seconds=10):
+def told(person, panel, words, seconds=10):
     state = person.field(panel, "preview")
     person.until(
         lambda: state.isVisible() and words in state.text(),
@@ -53,8 +52,7 @@ def entered_point(person, panel):
 
 
 def stands_as(person, parameters, toolpath):
-    """Return whether the preview shows the machine at PyKDL's pose, and the part at its position in
-    the document."""
+    """Whether the previewed machine stands as PyKDL puts it, the part where it is in the document."""
     drawn = previewed(person)
     cell = cells.resolve(parameters, np.eye(4) if toolpath is None else toolpath.frame)
     joints = at_rest(cell, resting_point(toolpath, cell.poses.mount))
@@ -64,16 +62,15 @@ def stands_as(person, parameters, toolpath):
     if cell.setup == "tool-on-robot":
         tip = (drawn[2] @ flange @ cell.poses.carried)[:3, 3]
         return np.abs(tip - resting_point(toolpath, cell.poses.mount)).max() < 2e-3
-    part_frame = drawn[2] @ flange @ cell.poses.carried @ frames.inverse(cell.poses.mount)
+    part = drawn[2] @ flange @ cell.poses.carried @ frames.inverse(cell.poses.mount)
     return (
-        np.abs(part_frame - np.eye(4)).max() < 2e-3
-        and np.abs(drawn[0] - cell.poses.mount).max() < 1e-5
+        np.abs(part - np.eye(4)).max() < 2e-3 and np.abs(drawn[0] - cell.poses.mount).max() < 1e-5
     )
 
 
 @pytest.fixture
 def planned(person, hemisphere):
-    """Return a cell with a toolpath planned for it."""
+    """A cell with the toolpath that is cut for it."""
     document = hemisphere.Document
     cell = api.make_cell(document)
     toolpath = api.make_toolpath(
@@ -89,14 +86,14 @@ def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_
     cell, toolpath = planned
     document, steps, path = cell.Document, cell.Document.UndoCount, api.result(toolpath)
     switch = cell.ViewObject.Proxy.switch
-    switch_state, picture = (
+    which, before = (
         switch.whichChild.getValue(),
         cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue(),
     )
     person.look()
     person.double_click(cell)
     panel = person.panel(PANEL)
-    wait_for_message(person, panel, "with the nozzle upright: q")
+    told(person, panel, "with the nozzle upright: q")
     assert switch.whichChild.getValue() == -1
     assert stands_as(person, CellParameters(), path)
     person.look()
@@ -107,17 +104,17 @@ def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_
     hand.enter(panel, "Platform", "30 mm")
     person.until(lambda: stands_as(person, moved, path), "the machine to stand elsewhere", 10)
     hand.enter(panel, f"{POINT}X", "5 m")
-    wait_for_message(person, panel, "does not reach the part")
+    told(person, panel, "does not reach the part")
     hand.enter(panel, "PlatformDiameter", "1 km")
-    wait_for_message(person, panel, "see the marked field")
+    told(person, panel, "see the marked field")
     assert (
         "out of range" in person.field(panel, "PlatformDiameterNote").text()
         and len(previewed(person)) == 0
     )
     person.press("Cancel")
     person.panel_closed()
-    assert previewed(person) is None and switch.whichChild.getValue() == switch_state
-    assert cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue() == picture
+    assert previewed(person) is None and switch.whichChild.getValue() == which
+    assert cell.ViewObject.Proxy.nodes.nozzle.getChild(0).matrix.getValue().getValue() == before
     assert (document.UndoCount, cell.Status, api.result(cell)) == (
         steps,
         "up to date",
@@ -126,26 +123,25 @@ def test_the_machine_moves_as_the_deposition_point_is_typed_and_cancel_puts_the_
 
 
 def test_a_new_cell_is_seen_at_the_toolpath_that_waits_for_one(person, hemisphere):
-    """The preview uses the document's only toolpath, or the selected one of two, or the platform if
-    none is selected."""
+    """That of a document with one toolpath; of two the selected one, and the platform where neither is."""
     document = hemisphere.Document
     small = api.make_toolpath(document, api.make_feature(document, hemisphere, layer_height=15))
     panel_of = {"": api.result(small)}
-    for selection in ("", "large", "neither"):
-        if selection == "large":
+    for chosen in ("", "large", "neither"):
+        if chosen == "large":
             large = api.make_toolpath(
                 document, api.make_feature(document, hemisphere, layer_height=4)
             )
             panel_of.update(large=api.result(large), neither=None)
         person.gui.Selection.clearSelection()
-        if selection == "large":
+        if chosen == "large":
             person.gui.Selection.addSelection(large)
         person.click("RoboticAM_Cell")
         panel = person.panel(PANEL)
-        wait_for_message(person, panel, "with the nozzle upright: q")
+        told(person, panel, "with the nozzle upright: q")
         person.until(
-            lambda toolpath_=panel_of[selection]: stands_as(person, cell_of(""), toolpath_),
-            f"the machine, {selection}",
+            lambda of=panel_of[chosen]: stands_as(person, cell_of(""), of),
+            f"the machine, {chosen}",
             10,
         )
         person.press("Cancel")
@@ -154,33 +150,33 @@ def test_a_new_cell_is_seen_at_the_toolpath_that_waits_for_one(person, hemispher
 
 def test_a_toolpath_that_is_made_anew_beside_the_panel_moves_the_machine(person, planned):
     cell, toolpath = planned
-    old_result = api.result(toolpath)
+    before = api.result(toolpath)
     person.double_click(cell)
     panel = person.panel(PANEL)
-    wait_for_message(person, panel, "with the nozzle upright: q")
-    assert stands_as(person, CellParameters(), old_result)
+    told(person, panel, "with the nozzle upright: q")
+    assert stands_as(person, CellParameters(), before)
     cell.Document.Feature.LayerHeight = "20 mm"
     cell.Document.recompute()
-    new_result = api.result(toolpath)
+    after = api.result(toolpath)
     person.until(
-        lambda: stands_as(person, CellParameters(), new_result),
+        lambda: stands_as(person, CellParameters(), after),
         "the machine to stand at the new toolpath",
         10,
     )
-    assert not stands_as(person, CellParameters(), old_result)
+    assert not stands_as(person, CellParameters(), before)
     person.press("Cancel")
     person.panel_closed()
 
 
 def test_without_its_machine_the_nozzle_is_where_the_deposit_ends(person, hand, planned):
     cell, toolpath = planned
-    last_bead = api.result(toolpath).layers[-1].beads[-1]
+    last = api.result(toolpath).layers[-1].beads[-1]
     person.double_click(cell)
     panel = person.panel(PANEL)
-    wait_for_message(person, panel, "with the nozzle upright: ")
+    told(person, panel, "with the nozzle upright: ")
     hand.click(person.field(panel, "PreviewMachine"))
     person.until(lambda: len(previewed(person)) == 2, "the machine to go", 5)
-    np.testing.assert_allclose(previewed(person)[1, :3, 3], last_bead.points[-1], atol=1e-4)
+    np.testing.assert_allclose(previewed(person)[1, :3, 3], last.points[-1], atol=1e-4)
     hand.enter(panel, "PlatformDiameter", "100 mm")
     person.press("Apply")
     assert (
@@ -197,58 +193,50 @@ def test_another_machine_proposes_its_deposition_point_and_branch(person, hand, 
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)
     note = person.field(panel, f"{POINT}Note")
-    wait_for_message(person, panel, "FANUC")
+    told(person, panel, "FANUC")
     person.until(lambda: stands_as(person, cell_of(""), None), "the default robot at its point", 10)
     assert note.isVisible() and note.text().startswith("Proposed for FANUC")
     hand.enter(panel, "Machine", "kuka-kr16-2")
-    expected = cell_of("kuka-kr16-2")
+    wanted = cell_of("kuka-kr16-2")
     person.until(
-        lambda: entered_point(person, panel) == list(expected.deposition_point[:3]),
+        lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]),
         "what is proposed",
         10,
     )
     assert note.isVisible() and note.text().startswith("Proposed for KUKA KR 16-2")
-    assert person.field(panel, "Branch").currentText() == " ".join(expected.branch)
-    wait_for_message(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
-    person.until(lambda: stands_as(person, expected, None), "the robot at its point", 10)
+    assert person.field(panel, "Branch").currentText() == " ".join(wanted.branch)
+    told(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
+    person.until(lambda: stands_as(person, wanted, None), "the robot at its point", 10)
     person.look()
     person.screenshot("cell_proposed")
     hand.enter(panel, f"{POINT}Z", "1.5 m")
     person.until(lambda: not note.isVisible(), "the note to go with what it was about", 5)
     hand.enter(panel, "Machine", "motoman-ar1440")
-    other_cell = cell_of("motoman-ar1440")
+    other = cell_of("motoman-ar1440")
     person.until(
         lambda: note.isVisible() and note.text().startswith("Kept as entered"),
         "what is kept",
         10,
     )
-    assert f"{other_cell.deposition_point[0]:g} 0 {other_cell.deposition_point[2]:g}" in note.text()
-    assert entered_point(person, panel) == [expected.deposition_point[0], 0.0, 1500.0]
+    assert f"{other.deposition_point[0]:g} 0 {other.deposition_point[2]:g}" in note.text()
+    assert entered_point(person, panel) == [wanted.deposition_point[0], 0.0, 1500.0]
     assert person.field(panel, "Branch").currentText() == " ".join(
-        other_cell.branch
-    )  # the user has typed no other one
+        other.branch
+    )  # nobody has typed another one
     person.press("Ok")
     person.panel_closed()
-    cell_result = api.result(document.Cell)
-    assert cell_result.deposition_point == (
-        expected.deposition_point[0],
-        0.0,
-        1500.0,
-        0.0,
-        0.0,
-        0.0,
-    )
-    assert (cell_result.machine, cell_result.branch, document.UndoCount) == (
+    made = api.result(document.Cell)
+    assert made.deposition_point == (wanted.deposition_point[0], 0.0, 1500.0, 0.0, 0.0, 0.0)
+    assert (made.machine, made.branch, document.UndoCount) == (
         "motoman-ar1440",
-        other_cell.branch,
+        other.branch,
         steps + 1,
     )
 
 
 @pytest.fixture
 def leaning(person, hemisphere):
-    """Return a toolpath whose beads may lean by 10 deg from the vertical, which needs a positioner
-    under a torch."""
+    """A toolpath whose beads may lean by 10 deg from the vertical, which takes a positioner under a torch."""
     document = hemisphere.Document
     feature = api.make_feature(
         document, hemisphere, layer_height=15, chord_error=0.5, max_from_vertical=10
@@ -267,8 +255,7 @@ def choose_torch(person, hand, panel):
 
 @pytest.mark.long
 def test_the_job_at_hand_is_done_in_the_cell_that_is_proposed_for_a_robot(person, hand, leaning):
-    """With its toolpath in the document, the panel proposes a positioner; without one, a platform
-    position that suits a ball."""
+    """With its toolpath in the document, a positioner; before, the platform was put where a ball could be laid."""
     document, steps = leaning.Document, leaning.Document.UndoCount
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)
@@ -277,23 +264,23 @@ def test_the_job_at_hand_is_done_in_the_cell_that_is_proposed_for_a_robot(person
     person.until(lambda: "carries part" in external.text(), "a positioner", 30)
     assert note.isVisible() and note.text().startswith(f"Proposed for the job of {leaning.Label}; ")
     assert person.field(panel, "Branch").currentText() == "auto"
-    wait_for_message(person, panel, "with the nozzle upright: ")
+    told(person, panel, "with the nozzle upright: ")
     person.look()
     person.screenshot("cell_for_job")
-    console_length = len(person.console())
+    before = len(person.console())
     person.press("Ok")
     person.panel_closed()
     cell = document.Cell
     assert (
-        document.UndoCount == steps + 1 and "is now" not in person.console()[console_length:]
-    )  # all is visible
+        document.UndoCount == steps + 1 and "is now" not in person.console()[before:]
+    )  # all was seen
     (positioner,) = EXTERNAL.read(cell.External)
     assert positioner.carries == "part"
     path = api.make_joint_path(document, leaning, cell)
     assert path.Status == "up to date", api.issues(path)
     plain = api.make_cell(
         document, machine=cell.Machine, setup="tool-on-robot"
-    )  # the proposal for the robot alone
+    )  # what suits the robot alone
     assert api.make_joint_path(document, leaning, plain).Status == "infeasible"
 
 
@@ -304,12 +291,12 @@ POSITIONER = "motoman-motopos-d500 at 1615 0 0 0 0 0 carries part"
 def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(
     person, hand, planned, monkeypatch, branch
 ):
-    """Nothing is entered if the user has typed into one of the fields, because a positioner with
-    another configuration would be a third cell. The proposal disappears with its robot."""
-    requests = []
+    """Nothing of it where one of its fields holds something of the user's: a positioner with another branch would be a third
+    cell. It goes with the robot that it was proposed for."""
+    asked = []
 
     def suited(settings):
-        requests.append(settings)
+        asked.append(settings)
         torch = settings.setup == "tool-on-robot"
         return replace(settings, external=POSITIONER, branch="auto") if torch else settings
 
@@ -322,18 +309,18 @@ def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(
     choose_torch(person, hand, panel)
     external = person.field(panel, "External")
     notes = [person.field(panel, f"{name}Note") for name in ("External", "Branch")]
-    kept_message = f"Kept as entered; the job of {label} is feasible with "
-    words = kept_message if branch else f"Proposed for the job of {label}; "
+    left = f"Kept as entered; the job of {label} is feasible with "
+    words = left if branch else f"Proposed for the job of {label}; "
     person.until(
         lambda: all(note.isVisible() and note.text().startswith(words) for note in notes),
         "what it needs",
         60,
     )
-    expected = cell_of("kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot")
-    last_request = requests[-1]
-    assert (last_request.setup, last_request.deposition_point, last_request.external) == (
+    wanted = cell_of("kuka-kr8-r2100-2-arc-hw", setup="tool-on-robot")
+    last = asked[-1]
+    assert (last.setup, last.deposition_point, last.external) == (
         "tool-on-robot",
-        expected.deposition_point,
+        wanted.deposition_point,
         (),
     )
     if branch:
@@ -356,35 +343,34 @@ def test_what_the_job_at_hand_would_need_is_entered_whole_or_told(
 
 @pytest.mark.long
 def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisphere):
-    """The proposal considers the entered torch; the earlier proposal disappears, and typed values
-    stay."""
+    """With the torch as it is entered; what was proposed for the one before goes, what was typed stays."""
     document = hemisphere.Document
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)
     note = person.field(panel, f"{POINT}Note")
     hand.enter(panel, "Machine", "kuka-kr16-2")
-    first_cell = cell_of("kuka-kr16-2")
+    first = cell_of("kuka-kr16-2")
     person.until(
-        lambda: entered_point(person, panel) == list(first_cell.deposition_point[:3]),
+        lambda: entered_point(person, panel) == list(first.deposition_point[:3]),
         "what is proposed",
         10,
     )
     person.choose(panel, "Setup", "tool-on-robot")
-    expected = cell_of("kuka-kr16-2", setup="tool-on-robot")
+    wanted = cell_of("kuka-kr16-2", setup="tool-on-robot")
     person.until(
-        lambda: entered_point(person, panel) == list(expected.deposition_point[:3]),
+        lambda: entered_point(person, panel) == list(wanted.deposition_point[:3]),
         "the platform",
         10,
     )
     assert note.isVisible() and note.text().startswith("Proposed for KUKA KR 16-2")
-    assert person.field(panel, "Branch").currentText() == " ".join(expected.branch)
-    wait_for_message(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
-    person.until(lambda: stands_as(person, expected, None), "the robot over its platform", 10)
+    assert person.field(panel, "Branch").currentText() == " ".join(wanted.branch)
+    told(person, panel, "KUKA KR 16-2 with the nozzle upright: ")
+    person.until(lambda: stands_as(person, wanted, None), "the robot over its platform", 10)
     person.look()
     person.screenshot("cell_tool_on_robot")
     person.choose(panel, "Setup", "part-on-robot")
     person.until(
-        lambda: entered_point(person, panel) == list(first_cell.deposition_point[:3]),
+        lambda: entered_point(person, panel) == list(first.deposition_point[:3]),
         "the first again",
         10,
     )
@@ -398,10 +384,10 @@ def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisph
     assert entered_point(person, panel)[2] == 900.0
     person.press("Ok")
     person.panel_closed()
-    cell_result = api.result(document.Cell)
-    assert (cell_result.setup, cell_result.branch, cell_result.deposition_point[2]) == (
+    made = api.result(document.Cell)
+    assert (made.setup, made.branch, made.deposition_point[2]) == (
         "tool-on-robot",
-        expected.branch,
+        wanted.branch,
         900.0,
     )
 
@@ -409,32 +395,32 @@ def test_another_set_up_proposes_where_the_platform_stands(person, hand, hemisph
 def test_a_cell_that_is_changed_keeps_what_was_entered_and_ok_waits_for_the_proposal(
     person, planned, monkeypatch
 ):
-    def slowly(*request):
+    def slowly(*asked):
         time.sleep(1.0)
-        return cell_of(*request)
+        return cell_of(*asked)
 
     cell = planned[0]
-    monkeypatch.setattr(cell_panel, "cell_of", slowly)  # it continues when OK is pressed
+    monkeypatch.setattr(cell_panel, "cell_of", slowly)  # it goes on when OK is pressed
     api.change(cell, deposition_point=(1000, 0, 700, 0, 0, 0))
     person.double_click(cell)
     panel = person.panel(PANEL)
     person.type(panel, "Machine", "kuka-kr16-2")
-    console_length = len(person.console())
-    person.press("Ok")  # before the panel has updated its proposal
+    before = len(person.console())
+    person.press("Ok")  # before anything has followed by itself
     person.panel_closed()
     line = f"{cell.Label}: Branch is now {' '.join(cell_of('kuka-kr16-2').branch)}. Proposed for KUKA KR 16-2; enter the values"
-    person.until(lambda: line in person.console()[console_length:], "what nobody saw to be told", 5)
-    assert "Deposition point is now" not in person.console()[console_length:]
-    proposed, cell_result = cell_of("kuka-kr16-2"), api.result(cell)
-    assert cell_result == replace(proposed, deposition_point=(1000.0, 0.0, 700.0, 0.0, 0.0, 0.0))
+    person.until(lambda: line in person.console()[before:], "what nobody saw to be told", 5)
+    assert "Deposition point is now" not in person.console()[before:]
+    proposed, made = cell_of("kuka-kr16-2"), api.result(cell)
+    assert made == replace(proposed, deposition_point=(1000.0, 0.0, 700.0, 0.0, 0.0, 0.0))
     person.double_click(cell)
     panel = person.panel(PANEL)
-    wait_for_message(person, panel, "KUKA")
-    assert not person.field(panel, f"{POINT}Note").isVisible()  # the user chose no other machine
+    told(person, panel, "KUKA")
+    assert not person.field(panel, f"{POINT}Note").isVisible()  # no other machine was chosen
     person.press("Cancel")
     person.panel_closed()
     person.until(
-        lambda: not [thread for thread in threading.enumerate() if thread.name == "Robotic AM"],
+        lambda: not [one for one in threading.enumerate() if one.name == "Robotic AM"],
         "the threads to end",
         10,
     )
@@ -455,16 +441,15 @@ def test_an_expression_in_a_coordinate_is_left_and_told(person, hand, hemisphere
 
 @pytest.mark.parametrize("ends", ["cancelled", "fails"])
 def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monkeypatch, ends):
-    """The user cancels while OK waits for the proposal, or the work ends with an unexpected
-    error."""
+    """The user cancels while OK waits for it, or the work ends in an error of nobody's making."""
     document = hemisphere.Document
 
-    def proposing(*request):
+    def proposing(*asked):
         raise RuntimeError("broken")
 
-    def slowly(*request):
+    def slowly(*asked):
         time.sleep(1.0)
-        return cell_of(*request)
+        return cell_of(*asked)
 
     def cancelled(work, title):
         raise Cancelled
@@ -472,7 +457,7 @@ def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monke
     if ends == "fails":
         monkeypatch.setattr(cell_panel, "cell_of", proposing)
     else:
-        monkeypatch.setattr(cell_panel, "cell_of", slowly)  # it continues when OK is pressed
+        monkeypatch.setattr(cell_panel, "cell_of", slowly)  # it goes on when OK is pressed
         monkeypatch.setattr(cell_panel, "carry_out", cancelled)
     person.click("RoboticAM_Cell")
     panel = person.panel(PANEL)
@@ -494,8 +479,7 @@ def test_a_proposal_that_is_cancelled_or_fails_is_told(person, hemisphere, monke
 
 
 def test_urdf_as_external_axes_takes_the_whole_cell_of_a_file(person, hand, planned, tmp_path):
-    """Robot, track and positioner of one file are entered with one word, and their bodies are
-    visible."""
+    """Robot, track and positioner of one file: typed as one word, and its bodies are seen."""
     cell, _ = planned
     text = urdf_cells.whole_cell()
     for link, size in (
@@ -509,7 +493,7 @@ def test_urdf_as_external_axes_takes_the_whole_cell_of_a_file(person, hand, plan
     path.write_text(text, encoding="utf-8")
     person.double_click(cell)
     panel = person.panel(PANEL)
-    wait_for_message(person, panel, "with the nozzle upright: q")
+    told(person, panel, "with the nozzle upright: q")
     hand.enter(panel, "Machine", str(path))
     setup = person.field(panel, "Setup")
     setup.setCurrentIndex(setup.findData("tool-on-robot"))
@@ -517,14 +501,14 @@ def test_urdf_as_external_axes_takes_the_whole_cell_of_a_file(person, hand, plan
     person.until(field.isEnabled, "external axes to be asked for", 5)
     field.setText("urdf")
     machine, mechanisms = cell_values(Reference(str(path)))
-    expected = machine, EXTERNAL.text(mechanisms)
+    wanted = machine, EXTERNAL.text(mechanisms)
     person.until(
-        lambda: person.field(panel, "External").text() == expected[1],
+        lambda: person.field(panel, "External").text() == wanted[1],
         "track and positioner to be entered",
         10,
     )
-    assert person.field(panel, "Machine").currentText() == expected[0]
-    assert "track" in expected[1] and "positioner" in expected[1]
+    assert person.field(panel, "Machine").currentText() == wanted[0]
+    assert "track" in wanted[1] and "positioner" in wanted[1]
     person.until(
         lambda: (drawn := previewed(person)) is not None and len(drawn) == 9 + 3,
         "their bodies to be seen",

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The panel of a feature reports faces and edges that FreeCAD has renumbered, and OK confirms
-them."""
+"""Faces and edges that FreeCAD numbers anew: the panel of their feature tells it, and OK confirms them."""
 
 import random
 
@@ -35,7 +34,7 @@ def curves(doc):
     return feature, "Repeat", "2"
 
 
-def make_revolution(doc):
+def turned(doc):
     block, feature, _, name, _ = axis_case(doc, None)
     block.Shape = in_another_order(block.Shape, name, random.Random(2))[0]
     return feature, "LayerHeight", "8 mm"
@@ -46,7 +45,7 @@ def make_revolution(doc):
     [
         (cladding, "CladdingFeature", "face"),
         (curves, "CurvesFeature", "edge"),
-        (make_revolution, "RevolutionFeature", "edge"),
+        (turned, "RevolutionFeature", "edge"),
     ],
 )
 def test_what_is_numbered_anew_is_confirmed_by_ok(person, made, panel, what):
@@ -60,18 +59,18 @@ def test_what_is_numbered_anew_is_confirmed_by_ok(person, made, panel, what):
 
     assert warned() and feature.Status == "up to date"
     person.double_click(feature)
-    panel_shown = person.panel(f"RoboticAM_{panel}")
+    shown = person.panel(f"RoboticAM_{panel}")
     person.until(
-        lambda: f"is not the selected {what}" in person.field(panel_shown, "findings").text(),
+        lambda: f"is not the selected {what}" in person.field(shown, "findings").text(),
         "the warning",
     )
     person.screenshot(f"{panel}_changed")
-    person.type(panel_shown, name, value)
+    person.type(shown, name, value)
     person.press("Ok")
     person.panel_closed()
     assert (
         getattr(feature, name) == App.Units.Quantity(value) and warned()
-    )  # the user changed another value
+    )  # something else was changed
     person.double_click(feature)
     person.panel(f"RoboticAM_{panel}")
     person.press("Ok")

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""If a deferred action of a panel finds that a field is deleted, it does nothing; other errors are
-raised."""
+"""What a panel does later: that a field of it is gone by then is passed over, and no other error."""
 
 import pytest
 
@@ -14,8 +13,8 @@ def form(person):
     widget.deleteLater()
 
 
-def deleted_field(person):
-    """Return a field that Qt has deleted and Python still holds."""
+def gone(person):
+    """A field that Qt has deleted and Python still has."""
     outer = person.widgets.QWidget()
     inner = person.widgets.QLabel("text", outer)
     outer.deleteLater()
@@ -24,9 +23,9 @@ def deleted_field(person):
 
 
 def failing(person, kind):
-    """Return a function that raises an error of a kind."""
+    """What ends with an error of a kind."""
     if kind == "deleted field":
-        return deleted_field(person).text
+        return gone(person).text
     error = {
         "of FreeCAD": RuntimeError("Recompute failed"),
         "of Python": RuntimeError("dictionary changed size"),
@@ -38,7 +37,7 @@ def failing(person, kind):
     return fail
 
 
-def show_result(person, form, kind):
+def shown(person, form, kind):
     """Show the result of work in a panel, which fails."""
     background, fail = Background(form), failing(person, kind)
     background.start(lambda: 1, lambda _: fail())
@@ -56,17 +55,17 @@ class Panel:
         self.fail()
 
 
-def run_now(person, form, kind):
-    """Run the requested action of a panel at once, which fails."""
+def asked(person, form, kind):
+    """Do at once what a panel was asked for, which fails."""
     panel = Panel(form, failing(person, kind))
     panel.later.ask()
     panel.later.at_once()
 
 
-@pytest.mark.parametrize("act", [show_result, run_now])
+@pytest.mark.parametrize("act", [shown, asked])
 def test_a_field_that_is_gone_is_passed_over_and_nothing_else(person, form, act):
     with pytest.raises(RuntimeError, match="deleted"):
-        deleted_field(person).text()
+        gone(person).text()
     act(person, form, "deleted field")
     for kind, text in (
         ("of FreeCAD", "Recompute failed"),

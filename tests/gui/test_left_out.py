@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A click on one face selects the part, and the panel states which regions of it would not be
-deposited."""
+"""A click on one face means the part, and what of a part would not be deposited is told before anything is made."""
 
 import FreeCAD as App
 import Part
@@ -11,13 +10,13 @@ from freecad_am import api
 
 @pytest.fixture
 def rod(person):
-    """Return a solid cylinder, of which a bead would print only a skin."""
+    """A solid cylinder, of which a bead lays a skin."""
     doc = App.newDocument("Rod")
-    rod_object = doc.addObject("Part::Feature", "Rod")
-    rod_object.Shape = Part.makeCylinder(30, 40)
+    part = doc.addObject("Part::Feature", "Rod")
+    part.Shape = Part.makeCylinder(30, 40)
     doc.recompute()
     person.gui.Selection.clearSelection()
-    yield rod_object
+    yield part
     App.closeDocument(doc.Name)
 
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""New Job has fields for layer height, width or spacing of beads and the platform, with units and
-expressions."""
+"""Layer height, width or spacing of beads and the platform are entered in New Job, with units and expressions."""
 
 import math
 
@@ -16,8 +15,8 @@ def rough(monkeypatch):
     monkeypatch.setattr(
         api,
         "make_feature_of",
-        lambda *arguments, values, **named: make(
-            *arguments, values={"chord_error": 0.3, **values}, **named
+        lambda *given, values, **named: make(
+            *given, values={"chord_error": 0.3, **values}, **named
         ),
     )
 
@@ -57,10 +56,10 @@ def test_sizes_of_a_wall_are_entered_with_units_and_follow_expressions(person, h
 
 
 def test_solids_have_a_spacing_and_a_platform_left_empty_is_sized_from_the_part(person, doc, rough):
-    box = doc.addObject("Part::Box", "Block")
-    box.Length, box.Width, box.Height = 150, 40, 16
+    part = doc.addObject("Part::Box", "Block")
+    part.Length, part.Width, part.Height = 150, 40, 16
     doc.recompute()
-    person.select(box)
+    person.select(part)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     spacing, width = person.field(panel, "BeadSpacing"), person.field(panel, "BeadWidth")
@@ -74,18 +73,18 @@ def test_solids_have_a_spacing_and_a_platform_left_empty_is_sized_from_the_part(
     cell, feature, toolpath = api.stages_of(doc)[:3]
     assert math.isclose(feature.LayerHeight.Value, 8.0)
     assert math.isclose(feature.BeadSpacing.Value, 8.0)
-    first_layer = np.vstack([bead.points for bead in api.result(toolpath).layers[0].beads])
-    across = np.hypot(*np.ptp(first_layer[:, :2], axis=0))  # from corner to corner
+    first = np.vstack([bead.points for bead in api.result(toolpath).layers[0].beads])
+    across = np.hypot(*np.ptp(first[:, :2], axis=0))  # from corner to corner
     assert 140.0 < across < cell.PlatformDiameter.Value < across + 20.0
 
 
 def test_a_width_that_is_entered_is_what_the_kind_is_proposed_by(person, doc):
-    cup = doc.addObject("Part::Feature", "Cup")
+    part = doc.addObject("Part::Feature", "Cup")
     import Part
 
-    cup.Shape = Part.makeCylinder(40, 30).cut(Part.makeCylinder(36, 30))
+    part.Shape = Part.makeCylinder(40, 30).cut(Part.makeCylinder(36, 30))
     doc.recompute()
-    person.select(cup)
+    person.select(part)
     person.click("RoboticAM_NewJob")
     panel = person.panel("RoboticAM_NewJob")
     left_out = person.field(panel, "left_out")

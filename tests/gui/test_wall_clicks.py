@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A bend on a pipe by mouse: selected in the 3D view and the tree, previewed, created, undone,
-saved in its file."""
+"""A bend on a pipe by the mouse: picked in the 3D view and the tree, previewed, made, undone, kept in its file."""
 
 import FreeCAD as App
 import numpy as np
@@ -10,31 +9,31 @@ from freecad_am import api
 from freecad_am.gui import worker
 from freecad_am.gui.views import preview
 
-ORANGE = (245, 120, 0)  # the colour of first layers
+ORANGE = (245, 120, 0)  # of first layers
 PANEL = "RoboticAM_SurfaceFeature"
 
 
 @pytest.fixture
 def bend(person, root):
-    """Return a document with a bend and its pipe, with both in view."""
+    """A document with a bend and the pipe it stands on, seen from where both are in sight."""
     document = App.newDocument("Bend")
     pipe = document.addObject("Part::Cylinder", "Pipe")
     pipe.Radius, pipe.Height = 32, 160
     pipe.Placement = App.Placement(App.Vector(0, -80, 0), App.Rotation(App.Vector(1, 0, 0), -90))
     document.recompute()
-    wall_and_pipe = [
+    parts = [
         api.open_part(document, str(root / "resources" / "examples" / "tube-on-pipe.step")),
         pipe,
     ]
-    for obj, label in zip(wall_and_pipe, ("Bend on it", "Old pipe"), strict=True):
-        obj.Label = label
+    for part, label in zip(parts, ("Bend on it", "Old pipe"), strict=True):
+        part.Label = label
     for dock in person.present(person.widgets.QDockWidget):
         if dock.objectName() in ("Combo View", "Model", "Tree view"):
             dock.show()
     person.idle(0.4)
     person.look()
     person.gui.Selection.clearSelection()
-    return wall_and_pipe
+    return parts
 
 
 def outside(pipe):
@@ -42,8 +41,8 @@ def outside(pipe):
     return f"Face{areas.index(max(areas)) + 1}"
 
 
-def preview_count(person):
-    """Return how many previews are in the scene."""
+def previews(person):
+    """How many previews are in the scene."""
     scene = person.gui.activeDocument().activeView().getSceneGraph()
     return sum(
         str(scene.getChild(index).getName()) == preview.NAME
@@ -59,25 +58,23 @@ def previewed(person, panel):
     return person.until(text, "the preview", 60)
 
 
-def press_button(person, hand, name="Ok"):
-    button_kind = getattr(person.widgets.QDialogButtonBox, name)
+def ok(person, hand, name="Ok"):
+    wanted = getattr(person.widgets.QDialogButtonBox, name)
     boxes = [box for box in person.present(person.widgets.QDialogButtonBox) if box.isVisible()]
-    hand.click(
-        next(box.button(button_kind) for box in boxes if box.button(button_kind) is not None)
-    )
+    hand.click(next(box.button(wanted) for box in boxes if box.button(wanted) is not None))
     person.panel_closed()
 
 
 def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
-    wall, pipe = bend
-    document, steps = wall.Document, wall.Document.UndoCount
+    part, pipe = bend
+    document, steps = part.Document, part.Document.UndoCount
     console = person.window.findChild(person.widgets.QPlainTextEdit, "Python console")
-    earlier_calls = console.toPlainText().count("make_surface_feature")  # calls of earlier tests
+    before = console.toPlainText().count("make_surface_feature")  # of tests before
     assert person.screen_pixels(ORANGE) == 0
-    hand.click_face(wall, "Face1")
+    hand.click_face(part, "Face1")
     assert [
         (entry.Object, entry.SubElementNames) for entry in person.gui.Selection.getSelectionEx()
-    ] == [(wall, ("Face1",))]
+    ] == [(part, ("Face1",))]
     hand.click_tree("Old pipe", "ctrl")
     hand.click(person.button("RoboticAM_WallOnPart"))
     panel = person.panel(PANEL)
@@ -87,25 +84,25 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
     ]
     assert "closed, 97.4 mm" in previewed(person, panel)
     assert person.screen_pixels(ORANGE) > 150
-    assert (set(document.Objects), document.UndoCount, preview_count(person)) == (
+    assert (set(document.Objects), document.UndoCount, previews(person)) == (
         set(bend),
         steps,
         1,
-    )  # nothing exists yet
+    )  # nothing is made yet
     hand.enter(panel, "LayerHeight", "5 mm")
     previewed(person, panel)
     person.screenshot("panel_wall_on_part")
-    console_text = console.toPlainText()
-    press_button(person, hand)
-    assert preview_count(person) == 0
+    said = console.toPlainText()
+    ok(person, hand)
+    assert previews(person) == 0
     feature = document.getObject("Feature")
     assert (feature.LayerHeight.Value, feature.Status, document.UndoCount) == (
         5.0,
         "up to date",
         steps + 1,
     )
-    assert (feature.Source, feature.Substrate) == ((wall, ["Face1"]), pipe)
-    assert person.screen_pixels(ORANGE) > 150  # the finished feature draws its own first layer
+    assert (feature.Source, feature.Substrate) == ((part, ["Face1"]), pipe)
+    assert person.screen_pixels(ORANGE) > 150  # what is made shows its first layer itself
     person.screenshot("wall_on_part")
 
     key = feature.Key
@@ -113,14 +110,14 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
     hand.undo()
     assert set(document.Objects) == set(bend) and person.screen_pixels(ORANGE) == 0
     console = console.toPlainText()
-    assert console_text.count("make_surface_feature") == earlier_calls
+    assert said.count("make_surface_feature") == before
     hand.redo()
     assert document.Feature.Key == key and person.screen_pixels(ORANGE) > 150
     call = (
         console[console.rindex("am.make_surface_feature(") :].split("\n>>>")[0].replace("\n", " ")
     )
     again = eval(call, {"App": App, "am": api})
-    assert again.Key == key  # the recorded call gives the same
+    assert again.Key == key  # the recorded call makes the same
 
     document.removeObject(again.Name)
     document.saveAs(str(tmp_path / "bend.FCStd"))
@@ -134,17 +131,17 @@ def test_a_wall_by_the_mouse(person, hand, bend, tmp_path):
 
 
 def test_without_a_selection_the_panel_waits_for_clicks(person, hand, bend):
-    wall, pipe = bend
-    document, steps = wall.Document, wall.Document.UndoCount
+    part, pipe = bend
+    document, steps = part.Document, part.Document.UndoCount
     hand.click(person.button("RoboticAM_WallOnPart"))
     panel = person.panel(PANEL)
     assert person.field(panel, "PickSource").isChecked()
-    hand.click_face(wall, "Face1")
+    hand.click_face(part, "Face1")
     assert person.field(panel, "Source").text() == "Bend on it Face1"
     assert person.gui.Selection.getSelection() == []
-    hand.click_face(wall, "Face1")  # a second click removes it
+    hand.click_face(part, "Face1")  # a second click takes it back
     assert person.field(panel, "Source").text() == ""
-    hand.click_face(wall, "Face1")
+    hand.click_face(part, "Face1")
     hand.click_face(pipe, outside(pipe))  # can only be the substrate
     assert person.field(panel, "Substrate").text() == "Old pipe"
     previewed(person, panel)
@@ -162,23 +159,19 @@ def test_without_a_selection_the_panel_waits_for_clicks(person, hand, bend):
         and not person.field(panel, "PickSubstrate").isChecked()
     )
     previewed(person, panel)
-    press_button(person, hand, "Cancel")
-    assert (set(document.Objects), document.UndoCount, preview_count(person)) == (
-        set(bend),
-        steps,
-        0,
-    )
+    ok(person, hand, "Cancel")
+    assert (set(document.Objects), document.UndoCount, previews(person)) == (set(bend), steps, 0)
     assert person.screen_pixels(ORANGE) == 0
-    person.gui.Selection.addSelection(wall)  # the panel no longer observes the selection
+    person.gui.Selection.addSelection(part)  # nobody listens any more
     person.idle()
 
 
 def test_an_error_goes_with_its_entry_however_soon_the_next_is_typed(person, bend, monkeypatch):
     monkeypatch.setattr(
         worker, "WAIT", 1500
-    )  # the delay before the panel checks an entry; previews start sooner
-    wall, pipe = bend
-    person.select(wall)
+    )  # entries are judged so long after the last one is typed, previews are sooner
+    part, pipe = bend
+    person.select(part)
     person.gui.Selection.addSelection(pipe)
     person.click("RoboticAM_WallOnPart")
     panel = person.panel(PANEL)
@@ -199,8 +192,8 @@ def test_an_error_goes_with_its_entry_however_soon_the_next_is_typed(person, ben
 
 
 def test_errors_stand_under_the_field_they_belong_to(person, bend):
-    wall, pipe = bend
-    person.select(wall)
+    part, pipe = bend
+    person.select(part)
     person.gui.Selection.addSelection(pipe)
     person.click("RoboticAM_WallOnPart")
     panel = person.panel(PANEL)
@@ -220,9 +213,9 @@ def test_errors_stand_under_the_field_they_belong_to(person, bend):
     person.type(panel, "LayerHeight", "5 mm")
     previewed(person, panel)
     person.until(lambda: not note.isVisible(), "that the note goes", 10)
-    block = wall.Document.addObject("Part::Box", "Far")
+    block = part.Document.addObject("Part::Box", "Far")
     block.Placement.Base = App.Vector(500, 0, 0)
-    wall.Document.recompute()
+    part.Document.recompute()
     person.field(panel, "ClearSubstrate").click()
     person.field(panel, "PickSubstrate").click()
     person.gui.Selection.addSelection(block)
@@ -239,9 +232,9 @@ def test_errors_stand_under_the_field_they_belong_to(person, bend):
 
 
 def test_an_existing_wall_is_changed_with_a_preview_and_cancelled_without_a_trace(person, bend):
-    wall, pipe = bend
-    feature = api.make_surface_feature(wall.Document, wall, ["Face1"], pipe, layer_height=5)
-    key, steps = feature.Key, wall.Document.UndoCount
+    part, pipe = bend
+    feature = api.make_surface_feature(part.Document, part, ["Face1"], pipe, layer_height=5)
+    key, steps = feature.Key, part.Document.UndoCount
     person.double_click(feature)
     panel = person.panel(PANEL)
     assert person.field(panel, "Substrate").text() == "Old pipe"
@@ -249,30 +242,30 @@ def test_an_existing_wall_is_changed_with_a_preview_and_cancelled_without_a_trac
     person.type(panel, "LayerHeight", "2 mm")
     person.press("Cancel")
     person.panel_closed()
-    assert (feature.Key, wall.Document.UndoCount, preview_count(person)) == (key, steps, 0)
+    assert (feature.Key, part.Document.UndoCount, previews(person)) == (key, steps, 0)
     person.double_click(feature)
     person.type(person.panel(PANEL), "LayerHeight", "2 mm")
     person.press("Ok")
     person.panel_closed()
-    assert feature.LayerHeight.Value == 2.0 and wall.Document.UndoCount == steps + 1
+    assert feature.LayerHeight.Value == 2.0 and part.Document.UndoCount == steps + 1
     person.double_click(feature)
     previewed(person, person.panel(PANEL))
-    App.closeDocument(wall.Document.Name)  # the panel outlives its document
+    App.closeDocument(part.Document.Name)  # the panel outlives it
     person.idle(0.6)
     if person.gui.Control.activeDialog():
         person.press("Cancel")
 
 
 def test_a_panel_goes_with_its_document_whatever_is_clicked_then(person, bend):
-    wall, _ = bend
-    other_document = App.newDocument("Other")
-    ball = other_document.addObject("Part::Sphere", "Ball")
-    other_document.recompute()
-    App.setActiveDocument(wall.Document.Name)
+    part, _ = bend
+    other = App.newDocument("Other")
+    ball = other.addObject("Part::Sphere", "Ball")
+    other.recompute()
+    App.setActiveDocument(part.Document.Name)
     person.gui.Selection.clearSelection()
     person.click("RoboticAM_WallOnPart")
     person.panel(PANEL)
-    App.closeDocument(wall.Document.Name)
+    App.closeDocument(part.Document.Name)
     person.gui.Selection.addSelection(ball)  # a traceback in the report view would fail the test
     person.panel_closed()
 
@@ -304,10 +297,10 @@ def test_a_preview_that_lacks_memory_says_what_to_do(person, bend, monkeypatch):
     def too_much(*_):
         raise MemoryError("Unable to allocate 444. PiB")
 
-    wall_on = surface_feature.wall_on
+    whole = surface_feature.wall_on
     monkeypatch.setattr(surface_feature, "wall_on", too_much)
-    wall, pipe = bend
-    person.select(wall, "Face1")
+    part, pipe = bend
+    person.select(part, "Face1")
     person.gui.Selection.addSelection(pipe)
     person.click("RoboticAM_WallOnPart")
     panel = person.panel(PANEL)
@@ -318,7 +311,7 @@ def test_a_preview_that_lacks_memory_says_what_to_do(person, bend, monkeypatch):
         10,
     )
     assert "MemoryError" not in note.text()
-    monkeypatch.setattr(surface_feature, "wall_on", wall_on)
+    monkeypatch.setattr(surface_feature, "wall_on", whole)
     person.type(panel, "LayerHeight", "4 mm")
     previewed(person, panel)
     person.press("Cancel")
@@ -328,11 +321,11 @@ def test_a_preview_that_lacks_memory_says_what_to_do(person, bend, monkeypatch):
 def test_a_scan_is_a_substrate_and_a_mesh_alone_a_wall(person, bend):
     import Mesh
 
-    solid_wall, _ = bend
-    scan = solid_wall.Document.addObject("Mesh::Feature", "Scan")
+    part, _ = bend
+    scan = part.Document.addObject("Mesh::Feature", "Scan")
     scan.Mesh = Mesh.createBox(10.0, 10.0, 10.0)
     person.select(scan)
-    person.gui.Selection.addSelection(solid_wall)
+    person.gui.Selection.addSelection(part)
     person.click("RoboticAM_WallOnPart")
     panel = person.panel(PANEL)
     assert [person.field(panel, name).text() for name in ("Source", "Substrate")] == [
@@ -346,7 +339,7 @@ def test_a_scan_is_a_substrate_and_a_mesh_alone_a_wall(person, bend):
     assert person.field(panel, "Source").text() == "Scan"
     person.press("Cancel")
     person.panel_closed()
-    tube = solid_wall.Document.addObject("Mesh::Feature", "Vase")
+    tube = part.Document.addObject("Mesh::Feature", "Vase")
     tube.Mesh = Mesh.createCylinder(10.0, 30.0, 0, 5.0, 30)
     person.select(tube)
     person.click("RoboticAM_WallOnPart")
@@ -355,7 +348,7 @@ def test_a_scan_is_a_substrate_and_a_mesh_alone_a_wall(person, bend):
     previewed(person, panel)
     person.press("Ok")
     person.panel_closed()
-    wall = solid_wall.Document.ActiveObject
+    wall = part.Document.ActiveObject
     assert wall.WallKind == "mesh" and wall.Source[0] == tube
 
 
@@ -394,7 +387,7 @@ def test_a_body_in_an_assembly_carries_a_linked_wall_beside_fixtures(person):
         person.gui.Selection.addSelection(clamp)
         person.idle()
     assert person.field(panel, "Fixtures").text() == "Clamp, Other"
-    person.gui.Selection.addSelection(clamps[0])  # removes it
+    person.gui.Selection.addSelection(clamps[0])  # takes it back
     person.idle()
     previewed(person, panel)
     person.press("Ok")
@@ -405,15 +398,15 @@ def test_a_body_in_an_assembly_carries_a_linked_wall_beside_fixtures(person):
         body,
         [clamps[1]],
     )
-    first_curves = api.result(feature).first
-    on_pipe = np.hypot(first_curves[:, 1], first_curves[:, 2])
+    first = api.result(feature).first
+    on_pipe = np.hypot(first[:, 1], first[:, 2])
     assert (
-        np.abs(np.hypot(first_curves[:, 0] - 50, first_curves[:, 1]) - 12).max() < 1e-6
+        np.abs(np.hypot(first[:, 0] - 50, first[:, 1]) - 12).max() < 1e-6
         and np.abs(on_pipe - 30).max() < 1e-6
     )
-    console_length = len(person.console())
+    said = len(person.console())
     document.recompute()
-    assert "scope" not in person.console()[console_length:]
+    assert "scope" not in person.console()[said:]
 
 
 def test_a_wall_that_starts_at_an_edge_needs_no_substrate(person):

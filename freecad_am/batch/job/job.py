@@ -41,7 +41,6 @@ SECTIONS = (
     "cell",
     "joints",
     "process",
-    "settings",
     "program",
     "place",
 )

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple, TypeVar
@@ -273,34 +274,57 @@ class Charted:
 
     def pieces(self, flat: Array, chord_error: float) -> Index:
         """Return the number of pieces of each edge that keeps the chord error, mm."""
-        edge = np.diff(flat, axis=0)
-        length = np.linalg.norm(edge, axis=1)
-        looks = step_counts(length, self.look, 2)
-        edge_number = np.repeat(np.arange(len(edge)), looks + 1)
-        share = (
-            np.arange(len(edge_number)) - np.repeat(np.cumsum(looks + 1) - looks - 1, looks + 1)
-        ) / looks[edge_number]
-        points = self.in_part(
-            self.chart.find(flat[edge_number] + share[:, None] * edge[edge_number])
-        )[0]
-        inner = (
-            np.flatnonzero(
-                (edge_number[1:-1] == edge_number[:-2]) & (edge_number[1:-1] == edge_number[2:])
-            )
-            + 1
-        )
-        bend = (
-            np.linalg.norm(points[inner - 1] - 2.0 * points[inner] + points[inner + 1], axis=1)
-            / 8.0
-        )
-        max_bend = np.zeros(len(edge))
-        np.maximum.at(max_bend, edge_number[inner], bend)
-        count = np.maximum(np.ceil(looks * np.sqrt(max_bend / chord_error) - 1e-9), 1.0)
-        return np.asarray(count.astype(np.intp))
+
+        def in_part(points: Array) -> Array:
+            return self.in_part(self.chart.find(points))[0]
+
+        return count_pieces(in_part, flat, self.look, chord_error)
 
     def axes(self, normals: Array) -> tuple[Array, Array]:
         """Return the part's X and Y projected onto the layer, see `chart.axes`."""
         return axes(normals)
+
+
+def count_pieces(
+    in_part: Callable[[Array], Array], flat: Array, look: float, chord_error: float
+) -> Index:
+    """Return the number of equal pieces of each edge of a wrapped polyline that keeps a chord error.
+
+    Parameters
+    ----------
+    in_part : callable
+        Maps points (k, 2) of the plane to points (k, 3) of the part, mm.
+    flat : (n, 2) array
+        The polyline on the plane, mm.
+    look : float
+        Distance between the points at which bending is measured, mm.
+    chord_error : float
+        Maximum distance between a piece and the surface, mm.
+
+    Returns
+    -------
+    (n - 1,) array of int
+        Numbers of pieces, at least 1.
+    """
+    edge = np.diff(flat, axis=0)
+    length = np.linalg.norm(edge, axis=1)
+    looks = step_counts(length, look, 2)
+    edge_number = np.repeat(np.arange(len(edge)), looks + 1)
+    share = (
+        np.arange(len(edge_number)) - np.repeat(np.cumsum(looks + 1) - looks - 1, looks + 1)
+    ) / looks[edge_number]
+    points = in_part(flat[edge_number] + share[:, None] * edge[edge_number])
+    inner = (
+        np.flatnonzero(
+            (edge_number[1:-1] == edge_number[:-2]) & (edge_number[1:-1] == edge_number[2:])
+        )
+        + 1
+    )
+    bend = np.linalg.norm(points[inner - 1] - 2.0 * points[inner] + points[inner + 1], axis=1) / 8.0
+    max_bend = np.zeros(len(edge))
+    np.maximum.at(max_bend, edge_number[inner], bend)
+    count = np.maximum(np.ceil(looks * np.sqrt(max_bend / chord_error) - 1e-9), 1.0)
+    return np.asarray(count.astype(np.intp))
 
 
 def axes(normals: Array) -> tuple[Array, Array]:

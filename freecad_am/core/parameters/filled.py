@@ -440,6 +440,9 @@ class SolidParameters(FilledParameters):
         return {"middle": 0.5, "bottom": 0.0, "top": 1.0}[self.cut_at]
 
 
+FILL, HELIX = "fill", "helix"
+
+
 @dataclass(frozen=True)
 class CladdingParameters(FilledParameters):
     """How faces are covered with layers of beads. mm and rad."""
@@ -450,6 +453,13 @@ class CladdingParameters(FilledParameters):
         "Number of layers on the faces, one layer height apart along their normals.",
         low=1,
         high=1000,
+    )
+    pattern: str = f.parameter(
+        FILL,
+        f.CHOICE,
+        "Beads by strategy.fill, or one helix around faces of revolution that close around their "
+        "axis.",
+        choices=(FILL, HELIX),
     )
     side: str = f.parameter(
         "front",

@@ -97,8 +97,9 @@ def joint_trajectory(
     velocity = np.zeros_like(position)
     step = np.diff(time)[:, None] / NANOSECONDS
     speed = np.diff(position, axis=0) / step
-    before, after = step[:-1], step[1:]
-    velocity[1:-1] = (after * speed[:-1] + before * speed[1:]) / (before + after)
+    arriving, leaving = step[:-1], step[1:]  # s
+    weighted = leaving * speed[:-1] + arriving * speed[1:]
+    velocity[1:-1] = weighted / (arriving + leaving)
     stops = motion.stops | (times.waits > 0.0)
     velocity[stops[row]] = 0.0
     velocity[[0, -1]] = 0.0

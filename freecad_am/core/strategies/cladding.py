@@ -24,7 +24,7 @@ from ..layers.margins import BORDER
 from ..layers.parted_chart import borders, flatten, split_flattenable, stretch_of
 from ..layers.surface import Slice
 from ..parameters.build_direction import BuildDirectionParameters
-from ..parameters.filled import CladdingParameters
+from ..parameters.filled import HELIX, CladdingParameters
 from ..parameters.process import ProcessParameters
 from ..process.bead_model import BeadModel
 from ..process.bead_order import IslandOrder, RankedBead, order_beads
@@ -32,9 +32,10 @@ from ..process.cooling_waits import add_waits
 from ..process.seams import SeamPlacer
 from ..toolpath import Checks, MotionRules, Toolpath
 from ..types import Array
+from . import helix
 from .progress import Progress, silent
 from .solids.beads import MadeBead, bead_of, layer_volumes, start_beads, twice_volume
-from .solids.filling import Pictures, bead_width, over_fed, spaced
+from .solids.filling import Filled, Pictures, bead_width, over_fed, spaced
 from .solids.notes import notes
 
 # ---- Layers: each is one layer height above the previous layer, along the face normals. Faces are
@@ -213,6 +214,27 @@ def _refuse_folded(
 REPORTED_DISTORTION = 0.02  # minimum relative distortion that is reported
 
 
+def _stacks(
+    clad_faces: CladFaces, strategy: CladdingParameters, process: ProcessParameters, width: float
+) -> list[Iterator[tuple[Slice, Filled]]]:
+    """Return the layers with their beads, one stack for each piece of the faces."""
+    if strategy.pattern == HELIX:
+        return [helix.filled_layers(sheet, strategy, process) for sheet in clad_faces.sheets]
+    pictures = Pictures(strategy, process, width)
+    return [
+        _filled_layers(sheet, piece, strategy, pictures, clad_faces.label)
+        for sheet in clad_faces.sheets
+        for piece in pieces(sheet, strategy)
+    ]
+
+
+def _filled_layers(
+    sheet: PatchWall, piece: Piece, strategy: CladdingParameters, pictures: Pictures, label: str
+) -> Iterator[tuple[Slice, Filled]]:
+    for layer in slices(sheet, piece, strategy):
+        yield layer, pictures.filled(layer, label)
+
+
 def plan(
     clad_faces: CladFaces,
     strategy: CladdingParameters,
@@ -246,33 +268,28 @@ def plan(
     Raises
     ------
     InputError
-        FOLDED, BEAD_SPACING, NOTHING_TO_DEPOSIT.
+        FOLDED, BEAD_SPACING, NOTHING_TO_DEPOSIT, and NOT_REVOLVED for a helix.
     InfeasibleError
         THIN_REGION.
     """
     strategy = spaced(strategy, process)
     width = bead_width(strategy, process, model)
-    pictures = Pictures(strategy, process, width)
-    sheet_pieces = [
-        (sheet, piece) for sheet in clad_faces.sheets for piece in pieces(sheet, strategy)
-    ]
+    stacks = _stacks(clad_faces, strategy, process, width)
     ranked: list[RankedBead] = []
     made_beads: list[MadeBead] = []
     issues: list[Issue] = []
     covers: list[Cover] = []
     stretch = 0.0
-    for number, (sheet, piece) in enumerate(sheet_pieces):
+    for number, stack in enumerate(stacks):
         order = IslandOrder()
         placer = SeamPlacer(process.seam, strategy.chord_error, width)
-        for layer in slices(sheet, piece, strategy):
+        for layer, picture in stack:
             progress(
-                (number + layer.number / strategy.layers) / len(sheet_pieces),
-                f"layer {layer.number}",
+                (number + layer.number / strategy.layers) / len(stacks), f"layer {layer.number}"
             )
-            picture = pictures.filled(layer, clad_faces.label)
             issues += picture.issues
-            assert isinstance(layer.surface, FaceLayer)
-            stretch = max(stretch, layer.surface.stretch)
+            if isinstance(layer.surface, FaceLayer):
+                stretch = max(stretch, layer.surface.stretch)
             covers.append(picture.cover)
             made_in_layer = start_beads(
                 [
@@ -310,6 +327,10 @@ def plan(
         if note.code != "SINGLE_LAYER"
     ]  # the user chose the number of layers
     fed = over_fed(strategy, process, model, width)
+    twice: float | None = twice_volume(made_beads, strategy, covers, width)
+    if strategy.pattern == HELIX:
+        issues.append(helix.note_ends(twice or 0.0))
+        twice = None  # the note of the helix replaces the warning, whose remedies are for fills
     issues = [*clad_faces.issues, *_stretched(stretch), *issues, *fed, *noted]
     return Toolpath(
         layers,
@@ -321,10 +342,7 @@ def plan(
         clad_faces.surroundings,
         None if model is None else model.law(process.acceleration),
         width,
-        checks=Checks(
-            volumes=layer_volumes(strategy, covers),
-            twice=twice_volume(made_beads, strategy, covers, width),
-        ),
+        checks=Checks(volumes=layer_volumes(strategy, covers), twice=twice),
         rules=MotionRules(process.overlap),
     )
 

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Tutorial 1, step by step: a part of revolution from a STEP file to a program, with the tool
-rotation set by hand."""
+"""Tutorial 1, step by step: a part of revolution from a STEP file to a program, with the rotation about the tool by hand."""
 
 from freecad_am import api
 from freecad_am.gui.redundancy_map import dock as docks
@@ -10,11 +9,11 @@ PAGE = "hemisphere"
 
 def test_the_hemisphere(person, hand, lesson, tmp_path):
     lesson.step("1. Open the part")
-    document, hemisphere = lesson.parts("hemisphere.step")
+    document, part = lesson.parts("hemisphere.step")
     lesson.picture("hemisphere-part")
 
     lesson.step("2. Make the job")
-    hand.click_face(hemisphere, "Face1")
+    hand.click_face(part, "Face1")
     lesson.tool("NewJob")
     panel = person.panel("RoboticAM_NewJob")
     assert "share one axis of revolution" in panel_text(person, panel)
@@ -63,18 +62,14 @@ def test_the_hemisphere(person, hand, lesson, tmp_path):
     lesson.step("6. Turn the part about the nozzle")
     lesson.tool("SpinMap")
     dock = person.panel("RoboticAM_SpinMap")
-    map_dock = docks._open[0]
-    person.until(lambda: map_dock.canvas.painted is not None, "the map", 30)
+    one = docks._open[0]
+    person.until(lambda: one.canvas.painted is not None, "the map", 30)
     assert person.field(dock, "together").isChecked()
-    planned = map_dock.board.draft_values(map_dock.draft)
+    planned = one.board.draft_values(one.draft)
     column = len(planned) // 2
-    start, end = (
-        screen_position(map_dock.canvas, column, planned[column] + turn) for turn in (0.0, -0.5)
-    )
+    start, end = (place(one.canvas, column, planned[column] + turn) for turn in (0.0, -0.5))
     lesson.drag(start, end)
-    assert (
-        abs(map_dock.board.draft_values(map_dock.draft) - planned).min() > 0.2
-    )  # the whole curve has moved
+    assert abs(one.board.draft_values(one.draft) - planned).min() > 0.2  # all of it has moved
     assert person.field(dock, "use").isEnabled()
     lesson.picture("hemisphere-map")
     hand.click(person.field(dock, "use"))
@@ -98,18 +93,18 @@ def test_the_hemisphere(person, hand, lesson, tmp_path):
     lesson.finish()
 
 
-def screen_position(canvas, column, value):
-    """Return the position of a column of the map and a rotation on the screen."""
+def place(canvas, column, value):
+    """Where a column of the map and a rotation are on the screen."""
     from PySide import QtCore
 
-    position = canvas.mapToGlobal(
+    there = canvas.mapToGlobal(
         QtCore.QPoint(round(float(canvas.x_of(column))), round(float(canvas.y_of(value))))
     )
-    return position.x(), position.y()
+    return there.x(), there.y()
 
 
 def panel_text(person, panel):
-    """Return all texts of a panel."""
+    """All that a panel says."""
     return "\n".join(
         label.text() for label in panel.findChildren(person.widgets.QLabel) if label.isVisible()
     )
