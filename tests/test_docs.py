@@ -183,13 +183,13 @@ def test_jobs_shown_are_read(tmp_path):
 
 
 def imports_table():
-    """OURS, FOREIGN and ALONE of tests/test_imports.py."""
+    """Return OURS, FOREIGN and FILE_EXCEPTIONS of tests/test_imports.py."""
     spec = importlib.util.spec_from_file_location(
         "imports_table", ROOT / "tests" / "test_imports.py"
     )
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module.OURS, module.FOREIGN, module.ALONE
+    return module.OURS, module.FOREIGN, module.FILE_EXCEPTIONS
 
 
 def listed(cell):
