@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Kinds of damage to a program's text, each applied once at a random position; each one changes the
 meaning. A kind is a pattern with a function that changes a match, or a function of all files. It
-never changes the last digit of a number; SMALLEST lists the smallest change of a number that must
-be rejected."""
+never changes the last digit of a number; SMALLEST_REJECTED lists the smallest change of a number that
+must be rejected."""
 
 from __future__ import annotations
 
