@@ -91,10 +91,10 @@ class Swept:
         """Return the number of the first point of the bead's layer."""
         return self.begin[self.layer.index(self.layer[bead])]
 
-    def deepest(self, tip, tool, before, layer_start, cone, low):
+    def deepest(self, tip, tool, end, layer_start, cone, low):
         """Return how deep the deposit of the points below number `before` reaches into the nozzle,
         in mm; `layer_start` is where the current layer begins."""
-        count = int(np.searchsorted(self.number, before))
+        count = int(np.searchsorted(self.number, end))
         base, size = self.base[:count] - tip, self.size[:count]
         ball = np.hypot(0.5 * size[:, 0], size[:, 1])
         x = base @ tool

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The pages in docs say what the code does: every key of a job with its default, and the table of imports."""
+"""The pages in docs agree with the code: every key of a job with its default, and the import
+table."""
 
 import dataclasses
 import functools
@@ -22,7 +23,8 @@ from freecad_am.core.parameters.scan import ScanParameters
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
-ROOMS = (ROOT, ROOT / "freecad_am", ROOT / "tests")  # file names in guides start in one of these
+# file names in guides are relative to one of these
+FILE_FOLDERS = (ROOT, ROOT / "freecad_am", ROOT / "tests")
 SECTIONS = (
     *(("strategy", parameters) for parameters in [family.parameters for family in FAMILIES]),
     ("build_direction", BuildDirectionParameters),
@@ -76,7 +78,7 @@ WORDS = {
 
 
 def parameters(prefix, cls):
-    """(dotted key, dataclass field) of a parameters dataclass and the groups in it."""
+    """Return (dotted key, dataclass field) of a parameters dataclass and its groups."""
     for field in dataclasses.fields(cls):
         key = f"{prefix}.{field.name}"
         if f.spec_of(field).kind == f.GROUP:
@@ -89,7 +91,7 @@ FIELDS = [pair for prefix, cls in SECTIONS for pair in parameters(prefix, cls)]
 
 
 def default_text(spec, value):
-    """A default as a job file has it."""
+    """Return a default in the format of a job file."""
     if spec.kind == f.VECTOR:
         return spec.records.text(value)
     if value is None:
@@ -114,7 +116,7 @@ def default_text(spec, value):
 
 
 def values_text(spec, type_text):
-    """What a key takes: words, or a kind with its range."""
+    """Return the values that a key accepts: words, or a kind with its range."""
     if spec.kind == f.FLAG:
         return "`true`, `false`"
     if spec.kind == f.CHOICE:
@@ -129,7 +131,7 @@ def values_text(spec, type_text):
 
 
 def table_rows(page):
-    """Cells of every table row of a page whose first cell is a key."""
+    """Return the cells of every table row of a page whose first cell is a key."""
     for line in page.read_text(encoding="utf-8").splitlines():
         cells = [cell.strip() for cell in line.strip().strip("|").split(" | ")]
         if line.startswith("| `") and len(cells) == 4:
@@ -142,20 +144,20 @@ JOB_ROWS = list(table_rows(DOCS / "job-file.md"))
 @pytest.mark.parametrize("key,field", FIELDS, ids=[key for key, _ in FIELDS])
 def test_every_key_of_a_job_is_documented(key, field):
     spec = f.spec_of(field)
-    wanted = [
+    expected = [
         f"`{key}`",
         f"`{default_text(spec, field.default)}`",
         values_text(spec, str(field.type)),
     ]
-    row = f"| {' | '.join(wanted)} | {spec.help} |"
-    assert wanted in [cells[:3] for cells in JOB_ROWS], (
+    row = f"| {' | '.join(expected)} | {spec.help} |"
+    assert expected in [cells[:3] for cells in JOB_ROWS], (
         f"docs/job-file.md lacks or contradicts the row\n{row}"
     )
 
 
 def test_no_key_is_documented_that_a_job_does_not_have():
-    known = {key for key, _ in FIELDS} | BY_HAND
-    assert {cells[0].strip("`") for cells in JOB_ROWS} - known == set()
+    known_keys = {key for key, _ in FIELDS} | BY_HAND
+    assert {cells[0].strip("`") for cells in JOB_ROWS} - known_keys == set()
     assert {cells[0].strip("`") for cells in JOB_ROWS} >= BY_HAND
 
 
@@ -165,7 +167,7 @@ def test_sections_and_strategies_are_those_of_a_job():
 
 
 def test_jobs_shown_are_read(tmp_path):
-    """Every YAML block of README and job-file.md that has a part is a job the program accepts."""
+    """The program accepts every YAML block of README and job-file.md that has a part."""
     blocks = [
         block
         for page in (ROOT / "README.md", DOCS / "job-file.md")
@@ -205,20 +207,21 @@ def test_architecture_has_the_table_of_imports():
         for line in section.splitlines()
         if line.startswith("| `")
     ]
-    shown = {cells[0].strip("`"): listed(cells[1]) for cells in rows if len(cells) == 3}
-    assert shown == ours
+    shown_rows = {cells[0].strip("`"): listed(cells[1]) for cells in rows if len(cells) == 3}
+    assert shown_rows == ours
     for cells in rows:
         assert listed(cells[2]) == foreign[cells[0].strip("`").split("/")[0]], cells[0]
-    told = re.search(r"Single files may import more: (.+?)\.", section)[1]
+    exceptions_text = re.search(r"Single files may import more: (.+?)\.", section)[1]
     assert {
-        file: listed(more) for file, more in re.findall(r"`([^`]+)` has (`[^;]+`)", told)
+        file: listed(modules_text)
+        for file, modules_text in re.findall(r"`([^`]+)` has (`[^;]+`)", exceptions_text)
     } == alone
 
 
 @functools.cache
 def paths_of_rooms():
     """Return all files and folders that guides name."""
-    return {path.as_posix() for room in ROOMS for path in room.rglob("*")}
+    return {path.as_posix() for room in FILE_FOLDERS for path in room.rglob("*")}
 
 
 @pytest.mark.parametrize(
@@ -234,7 +237,7 @@ def test_files_named_in_guides_exist(page):
         name
         for name in names
         if not re.search("NAME|KIND", name)
-        and not any((room / name).exists() for room in ROOMS)
+        and not any((room / name).exists() for room in FILE_FOLDERS)
         and not any(path.endswith(f"/{name.strip('/')}") for path in paths)
     ]
     assert not missing
@@ -284,7 +287,7 @@ def test_every_tool_has_a_page_and_the_index_lists_it():
 
 
 def test_names_in_modules_that_guides_name_exist():
-    """`module.name` is a name in a module of that name, where there is one."""
+    """Where a module of that name exists, it must define the name in `module.name`."""
     files = {
         f"/{path.relative_to(ROOT).as_posix()}": path.read_text(encoding="utf-8")
         for folder in ("freecad_am", "tests")

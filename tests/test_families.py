@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Modules ask a family of features for facts and do not compare its kind: `core/families` says what follows from it."""
+"""Modules ask a family of features for facts and do not compare its kind: `core/families` states
+the consequences."""
 
 import ast
 import functools
@@ -23,11 +24,11 @@ FEATURE_CLASSES = {family.parameters.__name__ for family in FAMILIES} | {
 WALL_CLASSES = {"RevolvedWall", "PatchWall", "SurfaceWall", "SolidsOnHub", "CladFaces"}
 # comparisons with a kind, and tests of the class of parameters, features and walls; only goes down
 MAX_SWITCHES = 0
-MAX_FILES_OF_A_FAMILY = 12  # that have its kind as a string
+MAX_FILES_OF_A_FAMILY = 12  # files that contain its kind as a string
 LAYERS = {"planes", "geodesic", "offset", "along", "PLANES", "GEODESIC", "OFFSET"}
 MAX_LAYER_SWITCHES = 9  # comparisons with a kind of layers
-MAX_FILL_SWITCHES = 12  # comparisons with a fill, most where it is made; three are other words
-OTHER_WORDS = {  # files in which a word is no kind
+MAX_FILL_SWITCHES = 12  # comparisons with a fill, mostly where it is planned; three are other words
+OTHER_WORDS = {  # files in which such a word is not a kind
     "brep/files/read.py",
     "brep/files/three_mf.py",
     "core/geometry/curves/gcode.py",
@@ -37,7 +38,7 @@ OTHER_WORDS = {  # files in which a word is no kind
 
 @functools.cache
 def modules():
-    """(name below the package, nodes of the syntax tree) of every module."""
+    """Return (name below the package, nodes of the syntax tree) of every module."""
     names = {path.relative_to(PACKAGE).as_posix(): path for path in sorted(PACKAGE.rglob("*.py"))}
     return [
         (name, list(ast.walk(ast.parse(path.read_text(encoding="utf-8")))))
@@ -47,14 +48,14 @@ def modules():
 
 
 def kinds_in(tree):
-    """The kinds that are strings of a syntax tree."""
+    """Return the kinds that are strings of a syntax tree."""
     return {
         node.value for node in ast.walk(tree) if isinstance(node, ast.Constant)
     } & KINDS  # an unhashable constant does not exist
 
 
 def identifiers(tree):
-    """The names and attributes of a syntax tree."""
+    """Return the names and attributes of a syntax tree."""
     return {
         node.id if isinstance(node, ast.Name) else node.attr
         for node in ast.walk(tree)
@@ -63,12 +64,13 @@ def identifiers(tree):
 
 
 def is_none(comparison):
-    """Whether a comparison asks for None."""
+    """Return whether a comparison is with None."""
     return isinstance(comparison.ops[0], (ast.Is, ast.IsNot))
 
 
 def is_switch(node):
-    """Whether a node compares the kind of a feature, looks it up in a table, or tests a class of a family."""
+    """Return whether a node compares the kind of a feature, looks it up in a table, or tests a
+    class of a family."""
     if isinstance(node, ast.Compare):
         sides = (node.left, *node.comparators)
         attributes = {side.attr for side in sides if isinstance(side, ast.Attribute)}
@@ -82,15 +84,15 @@ def is_switch(node):
 
 
 def compares(node, words):
-    """Whether a node compares with one of some words or constants."""
+    """Return whether a node compares with one of some words or constants."""
     if not isinstance(node, ast.Compare):
         return False
     compared = [node.left, *node.comparators]
     texts = {
-        part.value
+        node_.value
         for side in compared
-        for part in ast.walk(side)
-        if isinstance(part, ast.Constant) and isinstance(part.value, str)
+        for node_ in ast.walk(side)
+        if isinstance(node_, ast.Constant) and isinstance(node_.value, str)
     }
     constants = {name for name in set().union(*map(identifiers, compared)) if name.isupper()}
     return bool(words & (texts | constants))
@@ -100,13 +102,13 @@ def compares(node, words):
     ("words", "most"), [(LAYERS, MAX_LAYER_SWITCHES), (set(FILLS), MAX_FILL_SWITCHES)]
 )
 def test_comparisons_with_layers_and_fills_are_few(words, most):
-    found = [
+    comparisons = [
         f"{name}:{node.lineno}"
         for name, nodes in modules()
         for node in nodes
         if compares(node, words)
     ]
-    assert 0 < len(found) <= most, found
+    assert 0 < len(comparisons) <= most, comparisons
 
 
 def test_fills_that_replace_others_are_fills():
@@ -114,10 +116,10 @@ def test_fills_that_replace_others_are_fills():
 
 
 def test_switches_on_the_kind_of_a_feature_are_few():
-    found = [
+    switches = [
         f"{name}:{node.lineno}" for name, nodes in modules() for node in nodes if is_switch(node)
     ]
-    assert len(found) <= MAX_SWITCHES, found
+    assert len(switches) <= MAX_SWITCHES, switches
 
 
 @pytest.mark.parametrize("kind", sorted(KINDS))
@@ -183,10 +185,11 @@ def test_families_without_a_planned_surface_refuse_to_be_compared():
         assert (caught.value.code, caught.value.where) == ("NOT_FOR_FAMILY", "Feature")
     wall = hemisphere()
     above = np.array([[0.0, 0.0, 60.0]])
-    found, expected = (
-        each.exact(above)[0] for each in (surface("revolution", wall), revolution_surface(wall))
+    distance, expected = (
+        surface_.exact(above)[0]
+        for surface_ in (surface("revolution", wall), revolution_surface(wall))
     )
-    assert found == pytest.approx(expected)
+    assert distance == pytest.approx(expected)
 
 
 def test_modes_are_those_of_the_parameter():

@@ -34,7 +34,9 @@ WAYS = tuple(
     )
 )
 # (machine, output format); the machine file lists the controllers that drive tilting heads
-CASES = [(name, way) for name in MACHINES for way in WAYS if way[0] in machines.load(name).posts]
+CASES = [
+    (name, output) for name in MACHINES for output in WAYS if output[0] in machines.load(name).posts
+]
 
 
 def turned_bead(distance, start):
@@ -181,9 +183,9 @@ def test_another_turn_is_caught_by_counting_axes_and_is_none_to_endless_ones():
 
 def test_the_work_offset_is_taken_from_the_program():
     planned = plan("table-xyzbc")
-    way = ("linuxcnc", ("cartesian", "time"))
-    program, files = write_program(planned, way)
+    output = ("linuxcnc", ("cartesian", "time"))
+    program, files = write_program(planned, output)
     elsewhere = dataclasses.replace(
         program, carried=(program.carried[0] + 0.01, *program.carried[1:])
     )
-    assert "VERIFY_POINT" in codes(planned, elsewhere, files, way)[0]
+    assert "VERIFY_POINT" in codes(planned, elsewhere, files, output)[0]

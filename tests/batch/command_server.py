@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Runs commands as freecad_am/batch/boot.py does, each in a copy of this process, which has FreeCAD and all modules.
-
-What is asked for comes in by stdin, a line of JSON each: [folder, environment, file for stdout, file for stderr, words, most
-seconds of the processor, most bytes, whether the copy is to have a group of its own]; to the descriptor named by the first
-argument goes the number of the copy, once it is there, and in a further line the exit status, negative for a signal, s of
-the processor, and MB of memory of the largest process. This process computes nothing and has
-one thread: OpenCASCADE 7.8 would wait in a copy of one that has meshed for threads that are not copied.
-"""
+"""Run commands as freecad_am/batch/boot.py does, each in a copy of this process, which has loaded
+FreeCAD and all modules. Each request is a line of JSON on stdin: [folder, environment, file for
+stdout, file for stderr, words, processor seconds, bytes, own group]; limits of 0 mean none, and the
+last entry gives the copy a process group. The answer goes to the descriptor in the first argument:
+a line with the number of the copy when it has started, and a line with the exit status (negative
+for a signal), processor seconds, and MB of the largest process. This process computes nothing and
+has one thread: in a copy of a process that has meshed, OpenCASCADE 7.8 would wait for threads that
+are not copied."""
 
 import contextlib
 import gc

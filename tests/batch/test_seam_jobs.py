@@ -41,18 +41,18 @@ POSTS = {
 }
 
 
-def planned(workshop, seam, rest=""):
+def planned(workshop, seam, more_sections=""):
     if not (workshop.folder / "bar.step").exists():
         Part.makeBox(SIDE, SIDE, 2.0 * LAYER).exportStep(str(workshop.folder / "bar.step"))
-    (workshop.folder / "bar.yaml").write_text(JOB.replace("{SEAM}", seam) + rest)
-    done = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
-    assert done.status == 0, done.err
+    (workshop.folder / "bar.yaml").write_text(JOB.replace("{SEAM}", seam) + more_sections)
+    command = workshop.run("plan", "bar.yaml", "-o", "out", "--no-page")
+    assert command.status == 0, command.err
     with open(workshop.folder / "out" / "waypoints.csv", encoding="utf-8", newline="") as stream:
         return [row for row in csv.DictReader(stream) if row["kind"] == "deposit"]
 
 
 def beads_of(rows):
-    """By layer and bead: points and speeds."""
+    """Return points and speeds by layer and bead."""
     beads = {}
     for row in rows:
         beads.setdefault((int(row["layer"]), int(row["bead"])), []).append(
@@ -66,13 +66,13 @@ def check_scarfs(rows, usual):
     count = 0
     for key, bead in beads_of(rows).items():
         step = np.linalg.norm(np.diff(bead[:, :3], axis=0), axis=1)
-        before = usual[key]
-        ring = np.linalg.norm(np.diff(before[:, :3], axis=0), axis=1)
-        if ring.sum() < 2.0 * SCARF or np.abs(before[0, :3] - before[-1, :3]).max() > 1e-6:
+        plain_bead = usual[key]
+        ring = np.linalg.norm(np.diff(plain_bead[:, :3], axis=0), axis=1)
+        if ring.sum() < 2.0 * SCARF or np.abs(plain_bead[0, :3] - plain_bead[-1, :3]).max() > 1e-6:
             continue
         count += 1
         time = (step / bead[1:, 3]).sum()
-        assert time == pytest.approx((ring / before[1:, 3]).sum(), rel=2e-4)
+        assert time == pytest.approx((ring / plain_bead[1:, 3]).sum(), rel=2e-4)
         flat = np.linalg.norm(np.diff(bead[:, :2], axis=0), axis=1).sum()
         assert flat == pytest.approx(ring.sum() + 0.75 * SCARF, abs=0.15)
         rise = bead[:, 2] - key[0] * LAYER
@@ -91,6 +91,6 @@ def test_programs_of_all_controllers_have_the_scarf(workshop, post):
         entries["controller"]["pulses_per_degree"] = [1435.3, 1308.25, 1313.5, 980.0, 876.8, 454.75]
         (workshop.folder / "gp12.json").write_text(json.dumps(entries))
     usual = planned(workshop, "{angle: 0 deg}")
-    made = planned(workshop, "{scarf: 12 mm}", f"{cell}program: {{post: {post}}}\n")
+    plan = planned(workshop, "{scarf: 12 mm}", f"{cell}program: {{post: {post}}}\n")
     assert any((workshop.folder / "out" / "program").iterdir())
-    assert check_scarfs(made, beads_of(usual)) == 8
+    assert check_scarfs(plan, beads_of(usual)) == 8

@@ -44,10 +44,10 @@ def plate(points):
 
 @dataclass(frozen=True)
 class Example:
-    """A job in resources/examples, the file of its wall, its layer height (mm), the distance of points from the skin of its
-    substrate, how far the substrate itself is off that skin, and the
-    largest error of the local distance at and between the points of the fronts (mm). thicker: the layer height is not that
-    of the file, but one at which it is planned in a third of the time."""
+    """A job in resources/examples, the file of its wall, its layer height (mm), the distance of
+    points from the skin of its substrate, the deviation of the substrate from that skin, and the
+    largest error of the local distance at and between the points of the fronts (mm). thicker: the
+    job is planned at this layer height, in a third of the time, instead of that in its file."""
 
     job: str
     wall: str

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The judge of `bench infill` on layers whose void, over and outside follow from a formula, and what it judges: sections of
-meshes and strokes of G-code."""
+"""The judge of `bench infill`, on layers whose void, over and outside follow from a formula, and
+its inputs: sections of meshes and strokes of G-code."""
 
 import math
 import sys
@@ -16,13 +16,13 @@ from infill_parts import LAYER, Triangles
 from prusa import read_program
 
 WIDTH = 4.0  # mm
-# the raster: pixels of a fortieth of the width cross the 100 to 400 mm of borders of these layers at random places, so that
-# their errors add up to less than 1 mm2
+# rasterisation: pixels of a fortieth of the width cross the 100 to 400 mm of borders of these
+# layers at random positions, so that their errors add up to less than 1 mm2
 PIXELS_MM2 = 1.0
 
 
 def polygon(*corners):
-    """Edges of a section with these corners."""
+    """Return the edges of a section with these corners."""
     points = np.array(corners, dtype=float)
     return np.stack([points, np.roll(points, -1, axis=0)], axis=1)
 
@@ -36,12 +36,14 @@ def stroke(*points, width=WIDTH):
 
 
 def ring(inset, long=60.0, wide=40.0):
-    far, high = long - inset, wide - inset
-    return stroke((inset, inset), (far, inset), (far, high), (inset, high), (inset, inset))
+    width_end, high = long - inset, wide - inset
+    return stroke(
+        (inset, inset), (width_end, inset), (width_end, high), (inset, high), (inset, inset)
+    )
 
 
 def areas(section, strokes, area, narrowest=0.0):
-    """void, over and outside in mm2."""
+    """Return void, over and outside in mm2."""
     return area * np.array(judge(section, strokes, WIDTH, narrowest))
 
 
@@ -52,13 +54,13 @@ def test_rings_that_touch_fill_a_rectangle_with_sharp_corners():
 
 @pytest.mark.parametrize("spacing", [1.1, 0.9])
 def test_lines_with_a_gap_and_lines_that_overlap(spacing):
-    """Across the section only: strokes reach beyond both of its ends."""
+    """The check is across the section only: strokes extend beyond both of its ends."""
     wide = WIDTH * (1.0 + spacing)
     lines = [stroke((-50, y), (150, y)) for y in (2.0, 2.0 + spacing * WIDTH)]
     void, over, _ = areas(rectangle(100, wide), lines, 100.0 * wide)
     gap = 100.0 * (spacing - 1.0) * WIDTH
     assert void == pytest.approx(max(gap, 0.0), abs=PIXELS_MM2)
-    # deposit overlaps over all of its length, but for round ends
+    # deposit overlaps over the full length except for the round ends
     assert over == pytest.approx(max(-2.0 * gap, 0.0), abs=0.03 * WIDTH**2 + PIXELS_MM2)
 
 
@@ -78,7 +80,8 @@ def test_zigzag_turns_back_without_double_deposit():
 
 
 def test_a_sharp_corner_counts_the_overlap_of_its_legs():
-    """Legs of half a width on either side overlap by a kite inside; the sector outside is all that they cover more."""
+    """Legs of half a width on either side overlap in a kite inside, and cover a sector more
+    outside."""
     turn = math.radians(150.0)
     legs = stroke((30, 0), (0, 0), (30 * math.cos(math.pi - turn), 30 * math.sin(math.pi - turn)))
     kite, sector = 0.25 * WIDTH**2 * math.tan(0.5 * turn), 0.125 * WIDTH**2 * turn
@@ -127,7 +130,7 @@ def test_widths_change_along_a_stroke():
     tapered = Stroke(np.column_stack([x, np.zeros(81)]), widths)
     void, over, outside = areas(wedge, [tapered], 120.0)
     assert over == pytest.approx(0.0, abs=0.3)
-    assert max(void, outside) < 0.1 * WIDTH**2  # the round ends alone
+    assert max(void, outside) < 0.1 * WIDTH**2  # only the round ends
 
 
 def test_deposit_outside():
@@ -155,7 +158,7 @@ def test_holes_and_islands_of_a_section():
 
 
 def test_section_of_a_mesh():
-    """A pyramid with a square base: half as wide in the middle of its height."""
+    """A pyramid with a square base is half as wide in the middle of its height."""
     base = np.array([(-10, -10, 0), (10, -10, 0), (10, 10, 0), (-10, 10, 0)], dtype=float)
     tip = np.array([0.0, 0.0, LAYER])
     sides = [np.array([base[k], base[(k + 1) % 4], tip]) for k in range(4)]

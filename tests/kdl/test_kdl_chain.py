@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""PyKDL's opinion on the kinematics of every machine."""
+"""PyKDL agrees with the kinematics of every machine."""
 
 import numpy as np
 import pytest
@@ -23,14 +23,14 @@ def joints(count, seed, axes=6):
 
 def test_flange_poses_agree(arm):
     q = joints(100, 1, len(arm.axes))
-    wanted = KdlArm(arm).forward(q)
-    assert np.abs(arm.chain.forward(q) - wanted).max() < 1e-9
+    expected = KdlArm(arm).forward(q)
+    assert np.abs(arm.chain.forward(q) - expected).max() < 1e-9
     if arm.opw is not None:
-        assert np.abs(arm.opw.forward(q) - wanted).max() < 1e-9
+        assert np.abs(arm.opw.forward(q) - expected).max() < 1e-9
 
 
 def test_joints_that_stand_still_for_a_while_are_seen_where_they_are():
-    """Each row on its own, whatever the rows before it were."""
+    """Each row is independent of the rows before it."""
     arm = machine.load("fanuc-arcmate120ic")
     rng = np.random.default_rng(4)
     q = joints(60, 4)
@@ -38,7 +38,9 @@ def test_joints_that_stand_still_for_a_while_are_seen_where_they_are():
         still = rng.random(6) < 0.7
         q[row, still] = q[row - 1, still]
     poses = KdlArm(arm).forward(q)
-    assert np.array_equal(poses, np.concatenate([KdlArm(arm).forward(one[None]) for one in q]))
+    assert np.array_equal(
+        poses, np.concatenate([KdlArm(arm).forward(joints[None]) for joints in q])
+    )
     assert np.abs(arm.chain.forward(q) - poses).max() < 1e-9
 
 
@@ -50,15 +52,15 @@ def test_jacobians_agree(arm):
 
 @pytest.mark.parametrize("solver", SOLVERS)
 def test_numeric_inverse_ends_in_the_closed_form(solver):
-    """From a seed nearby, PyKDL's solvers find the branch that the closed form calls by that name."""
+    """From a nearby seed, PyKDL's solvers find the configuration that the closed form names."""
     arm = machine.load("fanuc-arcmate120ic")
     rng = np.random.default_rng(3)
     q = rng.uniform((-1, -0.5, -0.5, -1, 0.5, -1), (1, 0.5, 0.5, 1, 1.5, 1), (20, 6))
     poses = arm.chain.forward(q)
-    found = KdlArm(arm).inverse(poses, q + rng.uniform(-0.03, 0.03, q.shape), solver, 1e-10)
+    joints = KdlArm(arm).inverse(poses, q + rng.uniform(-0.03, 0.03, q.shape), solver, 1e-10)
     closed = arm.opw.inverse(poses)[arm.opw.branch_of(q), np.arange(len(q))]
-    # PyKDL takes a rotation that small for none, and LMA stops by its own weighting of mm and rad
-    assert np.abs(found - closed).max() < (1e-6 if solver == "nr" else 1e-4)
+    # PyKDL treats such a small rotation as none, and LMA stops by its own weighting of mm and rad
+    assert np.abs(joints - closed).max() < (1e-6 if solver == "nr" else 1e-4)
 
 
 def test_unknown_solver_is_refused():

@@ -16,7 +16,7 @@ from tests.core.planned_dome import planned_dome
 
 @pytest.fixture(scope="session")
 def dome():
-    """The source of a dome, and what the report tells of its joints."""
+    """Return the source of a dome, and the joint figures of its report."""
     process = ProcessParameters(
         lead_on=0.5, travel_speed=8.0, between_layers=BetweenLayersParameters(lift=15.0, wait=2.0)
     )
@@ -30,7 +30,7 @@ def dome():
 
 @pytest.fixture
 def modelled():
-    """A toolpath alone with speeds, widths and heights as a bead model sets them."""
+    """Return a toolpath with speeds, widths and heights from a bead model."""
     turn = np.linspace(0.0, 2.0 * np.pi, 61)
     up = np.tile([0.0, 0.0, 1.0], (61, 1))
     layers = []

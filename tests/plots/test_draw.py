@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Drawn pictures show the values of their charts: lines, limits, bars; bytes depend on them alone; tables give them back."""
+"""Drawn pictures show the values of their charts: lines, limits, bars. Their bytes depend only on
+the values, and tables return them."""
 
 import csv
 import io
@@ -29,7 +30,7 @@ TIME, ANGLE = Quantity("time", "s"), Quantity("angle", "deg")
 
 
 def lines(axes):
-    """The lines in a frame that are not marks: drawn in the units of the data."""
+    """Return the lines in a frame that are not marks, in data units."""
     return [line for line in axes.get_lines() if line.get_transform() == axes.transData]
 
 
@@ -37,13 +38,13 @@ def test_lines_are_the_values(dome):
     source, _ = dome
     for name in ("angles", "speeds", "deposit", "condition"):
         charts = pictures.picture(name, source).charts
-        figure, places = draw.figure(charts, LIGHT, 4000, 900)  # so wide that nothing is left out
-        assert len(figure.axes) == len(places) == len(charts)
-        for axes, chart, place in zip(figure.axes, charts, places, strict=True):
+        figure, frames = draw.figure(charts, LIGHT, 4000, 900)  # wide enough for every point
+        assert len(figure.axes) == len(frames) == len(charts)
+        for axes, chart, frame in zip(figure.axes, charts, frames, strict=True):
             for line, curve in zip(lines(axes), chart.curves, strict=True):
                 assert np.array_equal(line.get_xdata(), curve.x)
                 assert np.array_equal(line.get_ydata(), curve.y, equal_nan=True)
-            assert axes.get_xlim() == place.across and axes.get_ylim() == place.up
+            assert axes.get_xlim() == frame.across and axes.get_ylim() == frame.up
 
 
 def test_a_wide_curve_looks_the_same_with_few_points():
@@ -53,20 +54,20 @@ def test_a_wide_curve_looks_the_same_with_few_points():
     y[120_000:150_000] = np.nan
     y[77_777] = 5000.0
     for low, high in ((0.0, 100.0), (20.0, 61.0)):
-        kept = envelope(x, y, 500, low, high)
-        assert len(kept) <= 4 * 502 and (np.diff(kept) > 0).all()
+        kept_rows = envelope(x, y, 500, low, high)
+        assert len(kept_rows) <= 4 * 502 and (np.diff(kept_rows) > 0).all()
         edges = np.linspace(low, high, 501)
         for values, reduce in ((y, np.fmax), (y, np.fmin)):
             column = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, 499)
-            seen = (x >= low) & (x < high)
-            whole, few = np.full(500, np.nan), np.full(500, np.nan)
-            reduce.at(whole, column[seen], values[seen])
-            chosen = kept[seen[kept]]
-            reduce.at(few, column[chosen], values[chosen])
-            assert np.array_equal(whole, few, equal_nan=True)
-        assert 77_777 in kept
+            is_visible = (x >= low) & (x < high)
+            full_curve, reduced_curve = np.full(500, np.nan), np.full(500, np.nan)
+            reduce.at(full_curve, column[is_visible], values[is_visible])
+            visible_rows = kept_rows[is_visible[kept_rows]]
+            reduce.at(reduced_curve, column[visible_rows], values[visible_rows])
+            assert np.array_equal(full_curve, reduced_curve, equal_nan=True)
+        assert 77_777 in kept_rows
     gap = envelope(x, y, 500, 0.0, 100.0)
-    assert np.isnan(y[gap]).sum() >= 90  # the gap, a tenth of the columns, is one
+    assert np.isnan(y[gap]).sum() >= 90  # the gap is a tenth of the columns
     assert np.array_equal(envelope(x[:50], y[:50], 500, x[0], x[49]), np.arange(50))
     assert envelope(x, np.full(len(x), np.nan), 100, 0.0, 100.0).size <= 204
 
@@ -74,21 +75,21 @@ def test_a_wide_curve_looks_the_same_with_few_points():
 def test_limits_are_bands_and_what_breaks_them_is_marked():
     x = np.linspace(0.0, 10.0, 101)
     chart = Chart("A", TIME, ANGLE, (Curve("A", x, 100.0 * np.sin(x)),), limits=(-120.0, 90.0))
-    figure, places = draw.figure((chart,), LIGHT, 600, 300)
+    figure, frames = draw.figure((chart,), LIGHT, 600, 300)
     (axes,) = figure.axes
     over = 100.0 * np.sin(x) > 90.0
     assert chart.wrong_count == over.sum()
     _, wrong = lines(axes)
     assert np.array_equal(np.isfinite(wrong.get_ydata()), over) and wrong.get_color() == LIGHT.bad
     bands = [(patch.get_y(), patch.get_y() + patch.get_height()) for patch in axes.patches]
-    low, high = places[0].up
+    low, high = frames[0].up
     assert sorted(bands) == pytest.approx([(low, -120.0), (90.0, high)]) and low < -120.0
     texts = [text.get_text() for text in figure.texts]
     assert any(text == f"A: {over.sum()} points beyond the limit" for text in texts)
     assert {"90", "-120"} <= set(texts) and "time, s" in texts
-    far = Chart("A", TIME, ANGLE, (Curve("A", x, np.sin(x)),), limits=(-120.0, 90.0))
-    figure, places = draw.figure((far,), DARK, 600, 300)
-    assert places[0].up[1] < 2.0 and not figure.axes[0].patches  # out of sight, but told
+    distant = Chart("A", TIME, ANGLE, (Curve("A", x, np.sin(x)),), limits=(-120.0, 90.0))
+    figure, frames = draw.figure((distant,), DARK, 600, 300)
+    assert frames[0].up[1] < 2.0 and not figure.axes[0].patches  # outside the frame, but reported
     assert "limits -120 to 90 deg" in [text.get_text() for text in figure.texts]
 
 
@@ -106,15 +107,17 @@ def test_a_window_shows_a_part(dome):
     source, _ = dome
     charts = pictures.picture("angles", source).charts
     low, high = charts[0].across()
-    part = (low + 0.2 * (high - low), low + 0.4 * (high - low))
-    figure, places = draw.figure(charts, LIGHT, 500, 600, draw.Window({0: part}, {2: (-1.0, 1.0)}))
-    assert {place.across for place in places} == {part} and places[2].up == (-1.0, 1.0)
+    section = (low + 0.2 * (high - low), low + 0.4 * (high - low))
+    figure, frames = draw.figure(
+        charts, LIGHT, 500, 600, draw.Window({0: section}, {2: (-1.0, 1.0)})
+    )
+    assert {frame.across for frame in frames} == {section} and frames[2].up == (-1.0, 1.0)
     assert figure.axes[2].get_ylim() == (-1.0, 1.0)
     x = lines(figure.axes[0])[0].get_xdata()
     assert (
-        (x > part[0]).any()
-        and x[0] <= part[0]
-        and x[-1] >= part[1]
+        (x > section[0]).any()
+        and x[0] <= section[0]
+        and x[-1] >= section[1]
         and len(x) < len(charts[0].curves[0].x)
     )
 
@@ -123,13 +126,13 @@ def test_a_window_shows_a_part(dome):
 def test_the_same_values_are_the_same_bytes(dome, kind):
     source, _ = dome
     charts = pictures.picture("deposit", source).charts
-    made = [files.image(draw.figure(charts, LIGHT, 500, 300)[0], kind) for _ in range(2)]
-    assert made[0] == made[1] and len(made[0]) > 2000
-    other = files.image(
+    images = [files.image(draw.figure(charts, LIGHT, 500, 300)[0], kind) for _ in range(2)]
+    assert images[0] == images[1] and len(images[0]) > 2000
+    other_image = files.image(
         draw.figure(pictures.picture("deposit", source, PATH).charts, LIGHT, 500, 300)[0], kind
     )
-    assert other != made[0]
-    assert not re.search(rb"20\d\d-\d\d-\d\d|Matplotlib v|D:20", made[0])
+    assert other_image != images[0]
+    assert not re.search(rb"20\d\d-\d\d-\d\d|Matplotlib v|D:20", images[0])
 
 
 def test_pictures_in_a_page_take_its_colours(dome):
@@ -187,7 +190,7 @@ def test_tables_of_what_is_no_course(modelled, name):
         assert table[0][:2] == ["layer", "lowest_mm"]
         return
     assert table[0] == ["chart", "curve", "from", "to", "value"]
-    wanted = [
+    expected = [
         (chart.title, low, high, value)
         for chart in picture.charts
         if chart.bars is not None
@@ -195,14 +198,14 @@ def test_tables_of_what_is_no_course(modelled, name):
             chart.bars.edges[:-1], chart.bars.edges[1:], chart.bars.heights, strict=True
         )
     ]
-    wanted += [
+    expected += [
         (chart.title, x, x, y)
         for chart in picture.charts
         for curve in chart.curves
         for x, y in zip(curve.x, curve.y, strict=True)
     ]
-    assert len(table) == 1 + len(wanted)
-    for row, (title, *numbers) in zip(table[1:], wanted, strict=True):
+    assert len(table) == 1 + len(expected)
+    for row, (title, *numbers) in zip(table[1:], expected, strict=True):
         assert row[0] == title and [float(cell) for cell in row[2:]] == pytest.approx(
             numbers, rel=1e-9, abs=1e-12
         )
@@ -229,13 +232,13 @@ def test_names_of_curves_are_beside_or_above_their_frame_and_clear_of_each_other
         Curve(f"radius {5 * number} mm, measured", x, x + number, number) for number in range(7)
     )
     chart = Chart("Width of beads", TIME, ANGLE, curves)
-    figure, (place,) = draw.figure((chart,), LIGHT, width, 400)
+    figure, (frame,) = draw.figure((chart,), LIGHT, width, 400)
     renderer = FigureCanvasAgg(figure).get_renderer()
     texts = {text.get_text(): text.get_window_extent(renderer) for text in figure.texts}
     boxes = [texts[curve.name] for curve in curves] + [texts["Width of beads"]]
     for number, box in enumerate(boxes):
-        assert box.y0 >= 400 - place.top  # pixels from below: above the frame
+        assert box.y0 >= 400 - frame.top  # pixels from the bottom: above the frame
         assert box.x0 >= 0.0 and box.x1 <= width and box.y1 <= 400
-        for other in boxes[:number]:
-            assert not box.overlaps(other)
-    assert place.height > 150
+        for other_box in boxes[:number]:
+            assert not box.overlaps(other_box)
+    assert frame.height > 150

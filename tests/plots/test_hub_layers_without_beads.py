@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Pictures of layers laid flat, where a layer is too narrow for any bead."""
+"""Pictures of flattened layers, where a layer is too narrow for any bead."""
 
 from types import SimpleNamespace
 

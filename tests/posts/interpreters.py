@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Interpreters of five-axis programs that are not ours, and what they make of a text.
-
-LinuxCNC's own `rs274`, and nc-gcode-interpreter for SINUMERIK; rosbags reads messages of ROS. `./freecad-am test` puts them into a folder of their own
-(.test-env): the package linuxcnc-uspace unpacked, not installed, and a Python environment. Tests skip where they are not.
-"""
+"""Run independent interpreters of five-axis programs: LinuxCNC's own `rs274`, and
+nc-gcode-interpreter for SINUMERIK; rosbags reads messages of ROS. `./freecad-am test` puts them
+into .test-env: the package linuxcnc-uspace, unpacked but not installed, and a Python environment.
+Tests skip if they are missing."""
 
 from __future__ import annotations
 
@@ -23,35 +22,35 @@ UNPACKED = ENVIRONMENT / "linuxcnc"
 NC_PYTHON = ENVIRONMENT / "nc" / "bin" / "python"
 PACKAGES = ("linuxcnc-uspace", "libboost-python1.74.0", "libtirpc3", "libedit2")
 WHEELS = ("nc-gcode-interpreter", "polars", "polars-runtime-32", "rosbags")
-LIMIT = 120
+TIMEOUT_S = 120
 
 
 def rs274() -> tuple[list[str], dict[str, str]] | None:
-    """Command and environment of LinuxCNC's interpreter, None where it is not there."""
-    here = UNPACKED / "usr" / "bin" / "rs274"
-    if here.exists():
+    """Return command and environment of LinuxCNC's interpreter, None without it."""
+    unpacked = UNPACKED / "usr" / "bin" / "rs274"
+    if unpacked.exists():
         libraries = [
             str(UNPACKED / "usr/lib"),
             *map(str, (UNPACKED / "usr/lib").glob("*-linux-gnu")),
         ]
-        return [str(here)], {**os.environ, "LD_LIBRARY_PATH": ":".join(libraries)}
+        return [str(unpacked)], {**os.environ, "LD_LIBRARY_PATH": ":".join(libraries)}
     installed = shutil.which("rs274")
     return ([installed], dict(os.environ)) if installed else None
 
 
 def nc_python() -> list[str] | None:
-    """A Python with nc-gcode-interpreter, None where there is none."""
+    """Return a Python with nc-gcode-interpreter, None without one."""
     return [str(NC_PYTHON)] if NC_PYTHON.exists() else None
 
 
 def ros_packages() -> Path | None:
-    """Return the folder from which a Python imports rosbags, None where it is not there."""
+    """Return the folder from which a Python imports rosbags, None without it."""
     folders = NC_PYTHON.parents[1].glob("lib/*/site-packages")
     return next((folder for folder in folders if (folder / "rosbags").exists()), None)
 
 
 def provide() -> None:
-    """Fetch what is missing; say so where that fails."""
+    """Fetch missing interpreters, and print a message if that fails."""
     if rs274() is None and not _unpack():
         print(
             "freecad-am: no rs274 of LinuxCNC: its programs are NOT interpreted by the tests",
@@ -74,12 +73,12 @@ def _unpack() -> bool:
         flush=True,
     )
     with tempfile.TemporaryDirectory() as folder:
-        if not _done(["apt-get", "download", "-q", *PACKAGES], cwd=folder):
+        if not _succeeds(["apt-get", "download", "-q", *PACKAGES], cwd=folder):
             return False
         shutil.rmtree(UNPACKED, ignore_errors=True)
         UNPACKED.parent.mkdir(parents=True, exist_ok=True)
         return all(
-            _done(["dpkg-deb", "-x", str(package), str(UNPACKED)])
+            _succeeds(["dpkg-deb", "-x", str(package), str(UNPACKED)])
             for package in Path(folder).glob("*.deb")
         )
 
@@ -91,10 +90,10 @@ def _wheels() -> bool:
         flush=True,
     )
     folder = NC_PYTHON.parents[1]
-    if not _done([sys.executable, "-m", "venv", str(folder)]):
+    if not _succeeds([sys.executable, "-m", "venv", str(folder)]):
         return False
-    # it needs no more than these to run
-    if _done(
+    # the interpreter needs only these
+    if _succeeds(
         [
             str(NC_PYTHON),
             "-m",
@@ -107,14 +106,14 @@ def _wheels() -> bool:
             *WHEELS,
         ]
     ):
-        return _done([str(NC_PYTHON), "-c", "import nc_gcode_interpreter"])
+        return _succeeds([str(NC_PYTHON), "-c", "import nc_gcode_interpreter"])
     shutil.rmtree(folder, ignore_errors=True)
     return False
 
 
-def _done(command: list[str], **more: object) -> bool:
+def _succeeds(command: list[str], **options: object) -> bool:
     try:
-        return subprocess.run(command, timeout=LIMIT, check=False, **more).returncode == 0  # type: ignore[call-overload]
+        return subprocess.run(command, timeout=TIMEOUT_S, check=False, **options).returncode == 0  # type: ignore[call-overload]
     except (OSError, subprocess.TimeoutExpired):
         return False
 
@@ -125,12 +124,11 @@ KINEMATICS = (428, 429, 430)
 def run_rs274(
     folder: Path, files: dict[str, bytes], main: str, tool_length: float = 0.0
 ) -> tuple[list[dict], list[str]]:
-    """What LinuxCNC's interpreter makes of a program: its moves in order, and what it complains of.
-
-    A move: at (6,) mm and deg, seconds, deposit, kinematics (428, 429 or None), offset (number of the work offset),
-    corner (mm it is rounded by at most, 0 for an exact stop), analogue (values of outputs). seconds come from the feed as
-    LinuxCNC counts it: of the linear axes where they move, else of the rotary ones.
-    """
+    """Return the moves of a program in order, and the complaints of LinuxCNC's interpreter. A move
+    has: at (6,) in mm and deg, seconds, deposit, kinematics (428, 429 or None), offset (number of
+    the work offset), corner (mm, the largest rounding, 0 for an exact stop), analogue (values of
+    outputs). The seconds follow from the feed as LinuxCNC counts it: that of the linear axes if
+    they move, else of the rotary ones."""
     command, environment = rs274()
     for name, content in files.items():
         (folder / name).write_bytes(content)
@@ -148,7 +146,7 @@ def run_rs274(
     (folder / "machine.ini").write_text(
         f"[RS274NGC]\nSUBROUTINE_PATH={folder}\n{remaps}[TRAJ]\nLINEAR_UNITS=mm\n[EMCIO]\n"
     )
-    # standing alone it takes the tool table for inches
+    # without a configuration, its unit for the tool table is inches
     (folder / "tool.tbl").write_text(
         "".join(f"T{n} P{n} Z{tool_length / 25.4:.6f} D0.1 ;\n" for n in range(1, 30))
     )
@@ -159,20 +157,20 @@ def run_rs274(
         env=environment,
         capture_output=True,
         text=True,
-        timeout=LIMIT,
+        timeout=TIMEOUT_S,
         check=False,
     )
-    moves, complaints, ended = [], [], False
-    at, feed, deposit, kinematics, offset = np.full(6, np.nan), 0.0, False, None, 0
+    moves, complaints, has_ended = [], [], False
+    position, feed, deposit, kinematics, offset = np.full(6, np.nan), 0.0, False, None, 0
     analogue: dict[int, tuple[float, bool]] = {}
     corner: float | None = None
     for line in (result.stdout + result.stderr).splitlines():
-        found = re.match(r" *\d+ N\S* +(\w+)\((.*)\)\s*$", line)
-        if found is None:
+        match = re.match(r" *\d+ N\S* +(\w+)\((.*)\)\s*$", line)
+        if match is None:
             if line.strip() not in ("", "executing") and "updating variable file" not in line:
                 complaints.append(line.strip())
             continue
-        word, inside = found.groups()
+        word, inside = match.groups()
         if word == "SET_FEED_RATE":
             feed = float(inside)
         elif word == "SET_G5X_OFFSET":
@@ -185,18 +183,18 @@ def run_rs274(
         elif word in ("SET_AUX_OUTPUT_VALUE", "SET_MOTION_OUTPUT_VALUE"):
             number, value = inside.split(",")
             analogue[int(number)] = (float(value), word.startswith("SET_MOTION"))
-        elif word == "COMMENT" and (said := re.match(r'"kinematics (\d+)', inside)):
-            kinematics = int(said[1])
+        elif word == "COMMENT" and (kinematics_match := re.match(r'"kinematics (\d+)', inside)):
+            kinematics = int(kinematics_match[1])
         elif word in ("STRAIGHT_FEED", "STRAIGHT_TRAVERSE"):
-            place = np.array([float(value) for value in inside.split(",")][:6])
-            step = place - at
-            way = np.linalg.norm(step[:3]) or np.linalg.norm(step[3:])
+            target = np.array([float(value) for value in inside.split(",")][:6])
+            step = target - position
+            distance = np.linalg.norm(step[:3]) or np.linalg.norm(step[3:])
             moves.append(
                 {
-                    "at": place,
-                    "way": way,
+                    "at": target,
+                    "way": distance,
                     "feed": feed,
-                    "seconds": 60.0 * way / feed if feed else np.nan,
+                    "seconds": 60.0 * distance / feed if feed else np.nan,
                     "deposit": deposit,
                     "kinematics": kinematics,
                     "offset": offset,
@@ -205,14 +203,14 @@ def run_rs274(
                     "analogue": dict(analogue),
                 }
             )
-            at = place
-        ended |= word == "PROGRAM_END"
-    if result.returncode or not ended:
-        complaints.append(f"status {result.returncode}, {'' if ended else 'not '}at its end")
+            position = target
+        has_ended |= word == "PROGRAM_END"
+    if result.returncode or not has_ended:
+        complaints.append(f"status {result.returncode}, {'' if has_ended else 'not '}at its end")
     return moves, complaints
 
 
-# runs in the other Python: rows of the interpreter as JSON
+# runs in the other Python, and prints the rows of the interpreter as JSON
 _INTERPRET = """
 import json, sys
 import nc_gcode_interpreter as nc
@@ -224,18 +222,16 @@ for text, extra in json.load(sys.stdin):
     else:
         print(json.dumps({"columns": frame.columns, "rows": frame.rows()}))
 """
-# words of the language that the interpreter takes for calls of subprograms
+# words of the language that the interpreter takes for subprogram calls
 _KNOWN = {"TRAORI", "TRAFOOF", "FGROUP(X,Y,Z)", "STOPRE"}
 
 
 def run_nc(texts: list[str]) -> list[tuple[list[dict], list[str], str]]:
-    """What nc-gcode-interpreter makes of SINUMERIK programs, each by itself: its blocks as rows, the names it takes for
-    calls, and its complaint, or ''.
-
-    Words it has no address for (A3=, H1=) become variables of other names, rows have them under the old ones, analogue
-    outputs as O1 and so on; C=DC(..) is taken as the value; input 3 reads as on.
-    """
-    asked = []
+    """Return, for each SINUMERIK program, the blocks of nc-gcode-interpreter as rows, the names
+    that it takes for calls, and its complaint, or ''. Words without an address in it (A3=, H1=)
+    become variables of other names; rows have their original names, and analogue outputs are O1 and
+    so on. C=DC(..) is the value, and input 3 reads as on."""
+    requests = []
     for text in texts:
         plain = re.sub(r"(?:\bDO )?\$A_OUTA\[(\d+)\]=", r"O\1=", text)
         plain = re.sub(r"\b([A-Z]\d+)=(?!=)", r"V_\1=", plain)
@@ -244,20 +240,20 @@ def run_nc(texts: list[str]) -> list[tuple[list[dict], list[str], str]]:
             .replace("$A_IN[3]==0", "0==1")
             .replace("$A_INA[4]>=", "0>=")
         )
-        asked.append((plain, sorted(set(re.findall(r"\bV_[A-Z]\d+(?==)", plain)))))
+        requests.append((plain, sorted(set(re.findall(r"\bV_[A-Z]\d+(?==)", plain)))))
     result = subprocess.run(
-        [*(nc_python() or []), "-c", _INTERPRET], input=json.dumps(asked), capture_output=True, text=True, timeout=LIMIT,
+        [*(nc_python() or []), "-c", _INTERPRET], input=json.dumps(requests), capture_output=True, text=True, timeout=TIMEOUT_S,
         check=True,
     )  # fmt: skip
     return [_rows(json.loads(line)) for line in result.stdout.splitlines()]
 
 
-def _rows(found: dict) -> tuple[list[dict], list[str], str]:
-    if "error" in found:
-        return [], [], found["error"]
+def _rows(reply: dict) -> tuple[list[dict], list[str], str]:
+    if "error" in reply:
+        return [], [], reply["error"]
     rows = [
-        {name.removeprefix("V_"): value for name, value in zip(found["columns"], row, strict=True)}
-        for row in found["rows"]
+        {name.removeprefix("V_"): value for name, value in zip(reply["columns"], row, strict=True)}
+        for row in reply["rows"]
     ]
     calls = []
     for row in rows:

@@ -63,7 +63,7 @@ WAYS = [
 
 
 def test_every_post_is_in_the_lists():
-    missing = set(catalogue.NAMES) - {way[0] for way in ONE_EACH}
+    missing = set(catalogue.NAMES) - {variant[0] for variant in ONE_EACH}
     assert not missing, f"add a way of {missing} to ONE_EACH, see docs/contributing/post.md"
 
 
