@@ -122,8 +122,8 @@ class Scarf:
         """
         share = np.arange(1, steps + 1) / steps
         before_seam = share[share <= LEAST_SECTION]
-        before = total - self.length * before_seam[::-1]
-        return np.asarray(np.r_[self.length * share, before])
+        falling = total - self.length * before_seam[::-1]
+        return np.asarray(np.r_[self.length * share, falling])
 
     def sections(self, position: Array, total: float) -> Array:
         """Return the sections at positions along a bead, as fractions of its full section.
@@ -468,10 +468,10 @@ class Bead:
         """
         return dataclasses.replace(self, **self._rows(index))
 
-    def _rows(self, which: slice | Index) -> dict[str, Any]:
+    def _rows(self, rows: slice | Index) -> dict[str, Any]:
         """Return the selected rows of each column."""
         columns = [(entry.name, getattr(self, entry.name)) for entry in dataclasses.fields(self)]
-        return {name: column[which] for name, column in columns if isinstance(column, np.ndarray)}
+        return {name: column[rows] for name, column in columns if isinstance(column, np.ndarray)}
 
 
 @dataclass(frozen=True)
@@ -643,11 +643,11 @@ class Toolpath:
         """
         if not self.features:
             return ((self, np.arange(len(self.layers))),)
-        of = np.array([layer.feature for layer in self.layers])
-        numbers = [np.flatnonzero(of == k) for k in range(len(self.features))]
+        owner = np.array([layer.feature for layer in self.layers])
+        numbers = [np.flatnonzero(owner == k) for k in range(len(self.features))]
         return tuple(
-            (dataclasses.replace(one.values, layers=tuple(self.layers[k] for k in some)), some)
-            for one, some in zip(self.features, numbers, strict=True)
+            (dataclasses.replace(feature.values, layers=tuple(self.layers[k] for k in rows)), rows)
+            for feature, rows in zip(self.features, numbers, strict=True)
         )
 
     @property
@@ -659,7 +659,8 @@ class Toolpath:
         (layers,) array
             Heights, mm.
         """
-        heights = [one.values.layer_height for one in self.features] or [self.layer_height]
+        heights = [feature.values.layer_height for feature in self.features]
+        heights = heights or [self.layer_height]
         return np.array([heights[layer.feature if self.features else 0] for layer in self.layers])
 
     @property
@@ -686,10 +687,11 @@ class Toolpath:
         (n,) array
             Widths, mm; 0 if unknown, as in old documents. Such beads count as lines.
         """
-        known = [one.values.bead_width or 0.0 for one in self.features] or [self.bead_width or 0.0]
+        usual = [feature.values.bead_width or 0.0 for feature in self.features]
+        usual = usual or [self.bead_width or 0.0]
         return np.concatenate(
             [
-                np.full(len(bead), known[self.layers[i].feature if self.features else 0])
+                np.full(len(bead), usual[self.layers[i].feature if self.features else 0])
                 if bead.width is None
                 else bead.width
                 for i, _, bead in self
@@ -705,10 +707,10 @@ class Toolpath:
         (n,) array
             Predicted heights, else layer heights, mm; 0 if the bead width is also unknown.
         """
-        known = self.layer_heights if self.bead_width else np.zeros(len(self.layers))
+        usual = self.layer_heights if self.bead_width else np.zeros(len(self.layers))
         return np.concatenate(
             [
-                np.full(len(bead), known[i]) if bead.height is None else bead.height
+                np.full(len(bead), usual[i]) if bead.height is None else bead.height
                 for i, _, bead in self
             ]
         )

@@ -81,10 +81,20 @@ def test_seam_point_and_viewer_are_taken_from_the_view(person, hand, block):
     person.double_click(toolpath)
     panel = person.panel(PANEL)
     open_seam(person, panel)
+    choose_position(person, panel, "spread")
+    names = ("SeamAngle", "SeamDistance", "SeamScarf", "SeamAwayFrom")
+    assert visible(person, panel, *names) == ["SeamAngle", "SeamDistance", "SeamScarf"]
+    assert person.field(panel, "SeamDistance").text() == "15 mm"
+    person.type(panel, "SeamScarf", "12 mm")
+    person.screenshot("seam_spread")
     choose_position(person, panel, "hidden")
     hand.click(person.field(panel, "TakeSeamDirection"))
     assert person.field(panel, "SeamAwayFrom").text() == "0 1 0"
     person.press("Ok")
     starts = outer_starts(toolpath)
     assert starts[:, :2] == pytest.approx(np.tile([130.0, 2.0], (3, 1)), abs=0.1)
-    assert any(issue.code == "NO_EFFECT" for issue in api.result(toolpath).issues)
+    issues = {issue.code for issue in api.result(toolpath).issues}
+    assert "NO_EFFECT" in issues  # the point is still set
+    assert all(
+        bead.scarf for _, _, bead in api.result(toolpath) if bead.length > 24.0 and bead.closed
+    )

@@ -39,6 +39,8 @@ LATER_FIELDS = (
     "uneven",
     "section",
     "coverage",
+    "scarf",
+    "settings",
     "twice",
     "external",
     "max_from_vertical",

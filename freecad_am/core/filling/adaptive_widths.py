@@ -58,7 +58,7 @@ FRONT = 1e-6  # relative tolerance of the space at which a pair begins
 # fraction of the minimum space of a pair; range of space before the pair begins over which the
 # outer beads return to their own width
 TIP = 0.5
-SAME = 1e-9  # in spacings; tolerance of equal lengths
+LENGTH_TOLERANCE = 1e-9  # in spacings; tolerance of equal lengths
 SHORTEST_PIECE = 0.1  # in spacings; shorter pieces of the axis are ends of branches into corners
 # fraction of the end radius; clearance between a round end, which has no extra volume, and the bead
 # at which it ends
@@ -154,7 +154,7 @@ class BeadLaw:
 
     def shares(self, counts: Index, radii: Array) -> Array:
         """Return the bead shares (n,) of the inner beads."""
-        room = np.maximum(self._variable_radius(counts), SAME)
+        room = np.maximum(self._variable_radius(counts), LENGTH_TOLERANCE)
         share = 1.0 + (radii - self.usual_radius(counts)) / room
         return np.asarray(np.clip(share, self.narrowest, self.widest))
 
@@ -483,7 +483,7 @@ def _thickness(
     middles = spokes.middles
     rise = radii[following] - radii
     distance = np.hypot(*(middles[following] - middles).T)
-    tiny = SAME * law.spacing
+    tiny = LENGTH_TOLERANCE * law.spacing
     is_steep = np.abs(rise) > np.maximum(math.sin(0.5 * max_wedge) * distance, tiny)
     is_level = ~is_steep & (distance > tiny)
     forks = _forks(spokes, distance, law.spacing)
@@ -833,7 +833,7 @@ def _join_summits(
         is_own = joined[passing] == passing  # between two sides
         heights = deciding[joined[passing]] + np.where(is_own, 1e-3 * reach, 0.0)
         highest = joined[passing[np.argmax(heights)]]
-        if heights.max() > deciding[top] * (1.0 + SAME) and highest != top:
+        if heights.max() > deciding[top] * (1.0 + LENGTH_TOLERANCE) and highest != top:
             parent[top] = highest
     for _ in range(16):
         parent = parent[parent]
@@ -877,7 +877,7 @@ def _rings(
     Each bead follows one side of the axis as far as the pair extends and returns along the other
     side.
     """
-    is_valid = pair.is_there & (pair.depths <= spokes.radii + SAME * law.spacing)
+    is_valid = pair.is_there & (pair.depths <= spokes.radii + LENGTH_TOLERANCE * law.spacing)
     runs: list[tuple[_Crossing | None, Index, _Crossing | None]] = []
     for cycle in _cycles(spokes.following):
         for run in _runs(is_valid[cycle]):
@@ -1107,7 +1107,7 @@ def _centres(
         thin_points, thin_shares = _thinned(points, closed_shares, True, beads)
         curves.append(PlaneCurve(thin_points, True, "centre", 0, share=thin_shares))
     for piece in _join_middles(pieces, JOINT * STEP * law.spacing, law, beads.shortest):
-        if len(piece.points) < 2 or length(piece.points, False) < SAME * law.spacing:
+        if len(piece.points) < 2 or length(piece.points, False) < LENGTH_TOLERANCE * law.spacing:
             continue
         thin_points, thin_shares = _thinned(piece.points, piece.shares, False, beads)
         curves.append(PlaneCurve(thin_points, False, "centre", 0, share=thin_shares))
@@ -1134,7 +1134,7 @@ def _middle_pieces(
         away = np.hypot(*(ends - other.points[[-1, 0]]).transpose(2, 0, 1)).max(axis=1)
         number = int(np.argmin(away))
         shorter = length(pieces[number].points, False) - length(other.points, False)
-        if away[number] < 0.5 * law.spacing and shorter > SAME * law.spacing:
+        if away[number] < 0.5 * law.spacing and shorter > LENGTH_TOLERANCE * law.spacing:
             pieces[number] = other
     return pieces, closed
 

@@ -20,7 +20,7 @@ from ..parameters.process import ProcessParameters
 from ..toolpath import Bead, Layer
 from ..types import Array, Index
 
-NEAREST = 8  # number of neighbours looked up first
+NEIGHBOUR_COUNT = 8  # number of neighbours looked up first
 SURELY_NEARER = 1.0 - 1e-12  # ratio of distances beyond rounding errors
 
 
@@ -105,7 +105,9 @@ class IslandOrder:
 
 def _nearest(points: Array, places: Array) -> Index:
     """Return for each place (n, 3) the index of the nearest point (k, 3), mm; of equally near ones the first."""
-    found = cKDTree(points).query(places, min(NEAREST, len(points)))[1].reshape(len(places), -1)
+    found = (
+        cKDTree(points).query(places, min(NEIGHBOUR_COUNT, len(points)))[1].reshape(len(places), -1)
+    )
     found = np.sort(found, axis=1)
     distances = np.linalg.norm(points[found] - places[:, None], axis=2)
     return np.asarray(found[np.arange(len(places)), np.argmin(distances, axis=1)])
@@ -145,7 +147,7 @@ class StartPoints:
         if 2 * self._count < len(self._left):
             self._left = np.flatnonzero(self._is_left)
             self._tree = cKDTree(self._points[self._left])
-        wanted = NEAREST
+        wanted = NEIGHBOUR_COUNT
         while True:
             distances, found = self._tree.query(place, min(wanted, len(self._left)))
             numbers = self._left[np.atleast_1d(found)]

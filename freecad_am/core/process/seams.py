@@ -188,7 +188,7 @@ def _stretches_below(loop: _Loop, level: Array, limit: float) -> list[tuple[floa
 
 
 def find_free_arc(
-    loop: _Loop, others: Array, distance: float, start: float, sense: float
+    loop: _Loop, starts_nearby: Array, distance: float, start: float, sense: float
 ) -> float | None:
     """Return the first arc length from a start at which a bead is far enough from points.
 
@@ -198,7 +198,7 @@ def find_free_arc(
     ----------
     loop : _Loop
         The bead.
-    others : (m, 3) array
+    starts_nearby : (m, 3) array
         The points, mm.
     distance : float
         Radius of the spheres, mm.
@@ -212,7 +212,7 @@ def find_free_arc(
     float or None
         The arc length, mm; None if the spheres hide the whole bead.
     """
-    offset = loop.bead.points[:-1] - others[:, None]
+    offset = loop.bead.points[:-1] - starts_nearby[:, None]
     along = (offset * loop.chords).sum(axis=2)
     square = loop.length**2
     inside = along**2 - square * ((offset**2).sum(axis=2) - distance**2)
@@ -232,12 +232,14 @@ def find_free_arc(
     return None if free > loop.total - TOUCH_MM else (start + sense * free) % loop.total
 
 
-def _farthest_arc(loop: _Loop, others: Array, distance: float, start: float, sense: float) -> float:
+def _farthest_arc(
+    loop: _Loop, starts_nearby: Array, distance: float, start: float, sense: float
+) -> float:
     """Return the arc length at which a bead is farthest from points, mm; arguments as in `find_free_arc`."""
     low, high, arc = 0.0, distance, start
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        free = find_free_arc(loop, others, middle, start, sense)
+        free = find_free_arc(loop, starts_nearby, middle, start, sense)
         low, high, arc = (low, middle, arc) if free is None else (middle, high, free)
     return arc
 
@@ -297,8 +299,8 @@ class SeamPlacer:
                 locations.append(START)
                 continue
             loop = _Loop(bead)
-            others = np.array([*open_starts, *starts]).reshape(-1, 3)
-            locations.append(self._locate(loop, others, layer))
+            starts_nearby = np.array([*open_starts, *starts]).reshape(-1, 3)
+            locations.append(self._locate(loop, starts_nearby, layer))
             starts.append(loop.point(locations[-1]))
         if self._seam.position == BY_POINT:
             self._measure_point(beads, layer)
@@ -306,10 +308,10 @@ class SeamPlacer:
         self._starts_below = np.array([*open_starts, *starts]).reshape(-1, 3)
         return locations
 
-    def _locate(self, loop: _Loop, others: Array, layer: int) -> SeamLocation:
+    def _locate(self, loop: _Loop, starts_nearby: Array, layer: int) -> SeamLocation:
         seam = self._seam
         if seam.position == SPREAD:
-            return self._spread(loop, np.vstack([others, self._starts_below]), layer)
+            return self._locate_apart(loop, np.vstack([starts_nearby, self._starts_below]), layer)
         if seam.position == BY_POINT:
             self._applies = True
             return loop.nearest(np.array(seam.point))[0]
@@ -322,7 +324,7 @@ class SeamPlacer:
         self._without += not locations
         return self._preferred(loop, locations) if locations else START
 
-    def _spread(self, loop: _Loop, others: Array, layer: int) -> SeamLocation:
+    def _locate_apart(self, loop: _Loop, starts_nearby: Array, layer: int) -> SeamLocation:
         """Return the first place far enough from other starts (m, 3), else the farthest one."""
         start = 0.0
         if len(self._below):  # above the start of the bead below
@@ -332,14 +334,14 @@ class SeamPlacer:
         wanted_distance = self._seam.distance
         margin = self._tolerance + SNAP_MM  # the seam is on the curve, not on the chord
         low, high = loop.bead.points.min(axis=0), loop.bead.points.max(axis=0)
-        outside = np.maximum(low - others, others - high).max(axis=1)
-        others = others[outside < wanted_distance + margin]
-        arc = find_free_arc(loop, others, wanted_distance + margin, start, loop.sense)
+        outside = np.maximum(low - starts_nearby, starts_nearby - high).max(axis=1)
+        starts_nearby = starts_nearby[outside < wanted_distance + margin]
+        arc = find_free_arc(loop, starts_nearby, wanted_distance + margin, start, loop.sense)
         if arc is not None:
             return loop.location_at(arc)
-        arc = _farthest_arc(loop, others, wanted_distance, start, loop.sense)
+        arc = _farthest_arc(loop, starts_nearby, wanted_distance, start, loop.sense)
         location = loop.location_at(arc)
-        gap = float(np.linalg.norm(others - loop.point(location), axis=1).min())
+        gap = float(np.linalg.norm(starts_nearby - loop.point(location), axis=1).min())
         if gap < wanted_distance:
             self._short.append((gap, layer))
         return location
@@ -627,7 +629,7 @@ def set_scarfs(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
         fits = [bead.closed and bead.length >= 2.0 * length for bead in layer.beads]
         short += [number for bead, fit in zip(layer.beads, fits) if bead.closed and not fit]
         beads = tuple(
-            _with_scarf(bead, length, toolpath.layer_height) if fit else bead
+            _add_scarf(bead, length, toolpath.layer_height) if fit else bead
             for bead, fit in zip(layer.beads, fits)
         )
         layers.append(dataclasses.replace(layer, beads=beads))
@@ -638,7 +640,7 @@ def set_scarfs(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
     )
 
 
-def _with_scarf(bead: Bead, length: float, height: float) -> Bead:
+def _add_scarf(bead: Bead, length: float, height: float) -> Bead:
     """Return a closed bead with a scarf and points at the steps of its ramps."""
     scarf, loop = Scarf(length, height), _Loop(bead)
     steps = max(1, min(STEPS, round_down(length / MIN_STEP)))

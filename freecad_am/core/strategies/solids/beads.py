@@ -253,13 +253,13 @@ class BeadMaker:
         if not self._may_move or not isinstance(surface, PlaneLayer):
             return bead_of(curve, layer, *self._parameters)
         key = curve, classes.fill_bead_class(curve.kind, layer.number)
-        base, plane, made = self._made.get(key, (None, None, None))
-        if base is not layer.base or plane is None or made is None:
-            made = bead_of(curve, layer, *self._parameters)
-            self._made[key] = layer.base, surface, made
-            return made
+        base, plane, made_bead = self._made.get(key, (None, None, None))
+        if base is not layer.base or plane is None or made_bead is None:
+            made_bead = bead_of(curve, layer, *self._parameters)
+            self._made[key] = layer.base, surface, made_bead
+            return made_bead
         rise = layer.base.rotate_to_part(np.array([[0.0, 0.0, surface.height - plane.height]]))
-        return made._replace(bead=replace(made.bead, points=made.bead.points + rise))
+        return made_bead._replace(bead=replace(made_bead.bead, points=made_bead.bead.points + rise))
 
 
 def _thinned(dense: MadeBead) -> MadeBead:

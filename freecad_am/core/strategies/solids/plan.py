@@ -107,17 +107,17 @@ def _hidden_volume(corner: Array, longest: float, hidden: Callable[[Array, Array
 
     Partly hidden pieces are divided FINER times finer. hidden: predicate for points (n, 3) with areas (n, 3).
     """
-    pieces = _divided(corner, longest)
-    areas, middles = doubled_areas(pieces) / 2.0, pieces.mean(axis=1)
+    triangles = _divided(corner, longest)
+    areas, middles = doubled_areas(triangles) / 2.0, triangles.mean(axis=1)
     at_middle = hidden(middles, areas)
     at_corners = [
-        hidden(pieces[:, k] + INWARDS * (middles - pieces[:, k]), areas) for k in range(3)
+        hidden(triangles[:, k] + INWARDS * (middles - triangles[:, k]), areas) for k in range(3)
     ]
     mixed = np.any([mask != at_middle for mask in at_corners], axis=0)
     is_hidden = at_middle & ~mixed
     volume = float(dots(middles[is_hidden], areas[is_hidden]).sum()) / 3.0
     if mixed.any():
-        fine = _divided(pieces[mixed], longest / FINER)
+        fine = _divided(triangles[mixed], longest / FINER)
         areas, middles = doubled_areas(fine) / 2.0, fine.mean(axis=1)
         cut = hidden(middles, areas)
         volume += float(dots(middles[cut], areas[cut]).sum()) / 3.0
@@ -147,19 +147,19 @@ def _hiding(
 
 def _divided(corner: Array, longest: float) -> Array:
     """Halve triangles (m, 3, 3) until no side is longer than `longest`; return triangles (n, 3, 3)."""
-    pieces = []
+    triangles = []
     while len(corner):
         side = np.linalg.norm(np.roll(corner, -1, axis=1) - corner, axis=2)
         top = np.argmax(side, axis=1)
         small = side[np.arange(len(top)), top] <= longest
-        pieces.append(corner[small])
+        triangles.append(corner[small])
         corner, top = corner[~small], top[~small]
         a, b, c = (corner[np.arange(len(top)), (top + k) % 3] for k in range(3))
         middle = 0.5 * (a + b)
         corner = np.concatenate(
             [np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)]
         )
-    return np.concatenate(pieces)
+    return np.concatenate(triangles)
 
 
 class BareLayer(NamedTuple):
@@ -559,12 +559,12 @@ def uncut(
         return []
     missed = []
     for number, group in enumerate(solids.groups):
-        for piece in (piece for body in group.bodies for piece in _pieces(body)):
-            levels = _levels(group, piece.vertices[np.unique(piece.triangles)])
+        for solid in (solid for body in group.bodies for solid in _pieces(body)):
+            levels = _levels(group, solid.vertices[np.unique(solid.triangles)])
             if _is_cut(float(levels.min()), float(levels.max()), strategy):
                 continue
             group_beads = [bead for bead in ranked if bead.group == number]
-            missed_piece = _missed(group, piece, strategy, group_beads, width)
+            missed_piece = _missed(group, solid, strategy, group_beads, width)
             if missed_piece.bare > LEAST_SHARE * missed_piece.volume:
                 missed.append(missed_piece)
     return missed
@@ -577,13 +577,13 @@ def uncut_issues(missed: Sequence[Uncut], strategy: FilledParameters) -> list[Is
     named = [
         Text(
             "{} at {} ({:.3g} mm high, {:.4g} of its {:.4g} cm3)",
-            piece.name,
-            place(piece.point),
-            piece.height,
-            piece.bare / MM3,
-            piece.volume / MM3,
+            uncut.name,
+            place(uncut.point),
+            uncut.height,
+            uncut.bare / MM3,
+            uncut.volume / MM3,
         )
-        for piece in sorted(missed, key=lambda piece: -piece.bare)[:MAX_NAMED]
+        for uncut in sorted(missed, key=lambda uncut: -uncut.bare)[:MAX_NAMED]
     ]
     return [
         Issue(
@@ -595,7 +595,7 @@ def uncut_issues(missed: Sequence[Uncut], strategy: FilledParameters) -> list[Is
                 "or fuse them with the adjacent solid",
                 len(missed),
                 strategy.layer_height,
-                sum(piece.bare for piece in missed) / MM3,
+                sum(uncut.bare for uncut in missed) / MM3,
                 Text.joined(", ", named),
                 "" if len(missed) <= MAX_NAMED else ", ...",
             ),
@@ -636,14 +636,14 @@ def _is_cut(low: float, high: float, strategy: FilledParameters) -> bool:
 
 def _missed(
     group: Group,
-    piece: Body,
+    body: Body,
     strategy: FilledParameters,
     ranked: Sequence[RankedBead],
     width: float,
 ) -> Uncut:
     """Estimate the volume of a piece that no bead covers."""
-    corners = piece.vertices[np.unique(piece.triangles)]
-    points = _places_in(piece, corners)
+    corners = body.vertices[np.unique(body.triangles)]
+    points = _places_in(body, corners)
     levels = _levels(group, points)
     layer = np.floor(levels / strategy.layer_height + EXACT)
     covered = np.zeros(len(points), dtype=bool)
@@ -655,14 +655,14 @@ def _missed(
             rise = levels[rows] - number * strategy.layer_height
             distance = cKDTree(_sample_beads(beads, width / STEPS)).query(points[rows])[0]
             covered[rows] = distance**2 - rise**2 <= reach**2 + (0.5 * width / STEPS) ** 2
-    volume = abs(SolidMesh(piece.vertices, np.asarray(piece.triangles, dtype=np.intp)).volume)
+    volume = abs(SolidMesh(body.vertices, np.asarray(body.triangles, dtype=np.intp)).volume)
     bare = points[~covered] if (~covered).any() else points
     middle = bare[int(((bare - bare.mean(axis=0)) ** 2).sum(axis=1).argmin())]
     high = float(np.ptp(_levels(group, corners)))
-    return Uncut(piece.name, volume, volume * float((~covered).mean()), middle, high)
+    return Uncut(body.name, volume, volume * float((~covered).mean()), middle, high)
 
 
-def _places_in(piece: Body, corners: Array) -> Array:
+def _places_in(body: Body, corners: Array) -> Array:
     """Return points (n, 3) in a piece from an even grid in the bounding box of its corners (k, 3).
 
     If no grid point is inside, return the centroids of the triangles.
@@ -672,9 +672,9 @@ def _places_in(piece: Body, corners: Array) -> Array:
     count = np.clip(np.rint(size / step), MIN_SAMPLES, MAX_SAMPLES).astype(np.intp)
     axes = [low[k] + size[k] * (np.arange(count[k]) + 0.5) / count[k] for k in range(3)]
     grid = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
-    inside = inside_of(piece)
+    inside = inside_of(body)
     inside_points = grid[inside.holds(grid)] if inside is not None else grid[:0]
-    middles: Array = piece.corners().mean(axis=1)
+    middles: Array = body.corners().mean(axis=1)
     return inside_points if len(inside_points) else middles
 
 
