@@ -682,7 +682,7 @@ def place(path: Any, cell: Any = None, *, parameters: Any = None, **values: Any)
 
     checked_stage(path)
     if cell is not None and checked_stage(cell).kind != "cell":
-        raise InputError("WRONG_KIND", cell.Label, "this is not a cell; choose one")
+        raise InputError("WRONG_KIND", cell.Label, "the object is not a cell; choose a cell")
     return placing_of(path, cell).search_poses(change_parameters(parameters, values))
 
 

@@ -136,7 +136,7 @@ def lacking(what: str, workbench: str, otherwise: str) -> InputError:
     return InputError(
         "NO_MODULE",
         what,
-        "this FreeCAD has no {} workbench; install it or {} instead",
+        "the {} workbench is not installed in this FreeCAD; install the workbench, or {}",
         workbench,
         otherwise,
     )
@@ -309,11 +309,13 @@ def _path_of(obj: Any) -> Any:
     if stage is None or stage.kind not in KINDS:
         label = getattr(obj, "Label", repr(obj))
         raise InputError(
-            "BAD_INPUT", label, "it has no path; choose a toolpath, joint path or program"
+            "BAD_INPUT", label, "the object has no path; choose a toolpath, joint path or program"
         )
     path = obj if stage.kind != "program" else obj.JointPath
     if path is None:
-        raise InputError("NO_INPUT", obj.Label, "its joint path was deleted; choose a joint path")
+        raise InputError(
+            "NO_INPUT", obj.Label, "the joint path of the program was deleted; choose a joint path"
+        )
     if path.Key:
         check_current(path)
     return path
@@ -333,7 +335,7 @@ def write_wires(obj: Any, path: str, rapids: bool) -> str:
         raise InputError(
             "UNSUPPORTED_FILE",
             path,
-            "wires are written as .step or .dxf; use one of these extensions",
+            "wires are written as .step or .dxf; use the extension .step or .dxf",
         )
     lines = lines_of(obj, rapids)
     return _write_whole(path, lambda unfinished: _write(lines, unfinished, ending, obj.Label))
@@ -347,7 +349,7 @@ def write_waypoints(obj: Any, path: str) -> str:
     """
     if os.path.splitext(path)[1].lower() != ".csv":
         raise InputError(
-            "UNSUPPORTED_FILE", path, "waypoints are written as .csv; use this extension"
+            "UNSUPPORTED_FILE", path, "waypoints are written as .csv; use the extension .csv"
         )
     motion, columns, units = motion_of(obj)
 
@@ -408,7 +410,7 @@ def write_cell(obj: Any, path: str) -> str:
             "UNSUPPORTED_FILE", path, "cells are written as .yaml; use the extension .yaml"
         )
     if getattr(getattr(obj, "Proxy", None), "kind", "") != "cell":
-        raise InputError("WRONG_KIND", obj.Label, "this is not a cell; choose one")
+        raise InputError("WRONG_KIND", obj.Label, "the object is not a cell; choose a cell")
     check_recomputed(obj)
     saved = cell_text(
         obj.Proxy.parameters(obj, CellParameters), os.path.dirname(os.path.abspath(path))
@@ -426,7 +428,10 @@ def _write_whole(path: str, write: Callable[[str], None]) -> str:
     folder = os.path.dirname(os.path.abspath(path))
     if not os.path.isdir(folder):
         raise InputError(
-            "NO_FOLDER", path, "the folder {} does not exist; create it, or choose another", folder
+            "NO_FOLDER",
+            path,
+            "the folder {} does not exist; create the folder, or choose another",
+            folder,
         )
     try:
         with tempfile.TemporaryDirectory(prefix=".unfinished-", dir=folder) as temporary:
@@ -688,7 +693,7 @@ def write_step(lines: Sequence[Line], path: str, label: str) -> None:
         import Import
     except ImportError:
         raise InputError(
-            "NO_MODULE", "STEP", "this FreeCAD lacks the module Import; use DXF instead"
+            "NO_MODULE", "STEP", "this FreeCAD lacks the module Import; use DXF instead of STEP"
         ) from None
     active = App.ActiveDocument
     document = App.newDocument("RoboticAM_Export", label, True, True)

@@ -334,7 +334,7 @@ def test_a_message_that_begins_with_a_name_is_known():
             "no bead model sets the speeds (process.bead_model)",
             "no bead model sets the speeds (“Bead model”)",
         ),
-        ("a wider strategy.band rounds them", "a wider “Band” rounds them"),
+        ("use a wider strategy.band to round the layers", "use a wider “Band” to round the layers"),
         ("raise process.between_layers.lift", "raise “Between layers, lift”"),
         (
             "joints.given is of no effect; use process.seam.",
@@ -448,10 +448,10 @@ def stages(doc):
 
 def test_what_became_stale_is_told_in_french(stages, told):
     stages.feature.LayerHeight = 3
-    assert told(message_of(stages.feature)) == f"LayerHeight a changé{NO_BREAK}; recalculez"
-    assert told(message_of(stages.toolpath)) == f"Feature a changé{NO_BREAK}; recalculez"
+    assert told(message_of(stages.feature)) == f"LayerHeight a changé{NO_BREAK}; recalculez l'objet"
+    assert told(message_of(stages.toolpath)) == f"Feature a changé{NO_BREAK}; recalculez l'objet"
     stages.toolpath.Proxy.execute(stages.toolpath)
-    assert told(message_of(stages.toolpath)) == f"attend Feature{NO_BREAK}; recalculez"
+    assert told(message_of(stages.toolpath)) == f"attend Feature{NO_BREAK}; recalculez l'objet"
 
 
 def test_work_that_was_cancelled_or_overtaken_is_told_in_french(stages, told, monkeypatch):
@@ -463,7 +463,7 @@ def test_work_that_was_cancelled_or_overtaken_is_told_in_french(stages, told, mo
     monkeypatch.setattr(cell.Proxy, "prepare", cancelled)
     with pytest.raises(progress.Cancelled):
         cell.Proxy.renew(cell)
-    assert told(message_of(cell)) == f"annulé{NO_BREAK}; recalculez"
+    assert told(message_of(cell)) == f"annulé{NO_BREAK}; recalculez l'objet"
 
     def overtaken(obj):
         work = prepare(obj)
@@ -472,7 +472,10 @@ def test_work_that_was_cancelled_or_overtaken_is_told_in_french(stages, told, mo
 
     monkeypatch.setattr(cell.Proxy, "prepare", overtaken)
     cell.Proxy.renew(cell)
-    assert told(message_of(cell)) == f"une entrée a changé pendant le calcul{NO_BREAK}; recalculez"
+    assert (
+        told(message_of(cell))
+        == f"une entrée a changé pendant le calcul{NO_BREAK}; recalculez l'objet"
+    )
 
 
 def test_a_missing_input_is_told_in_french(stages, told):

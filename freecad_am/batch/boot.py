@@ -86,7 +86,7 @@ def run(words):
     if demo and status == 0:
         folder = words[3]
         print(
-            f"freecad-am: look at {folder}/report.html, and open {folder}/hemisphere.FCStd in FreeCAD",
+            f"freecad-am: open {folder}/report.html in a browser, and {folder}/hemisphere.FCStd in FreeCAD",
             file=sys.stderr,
         )
     return status

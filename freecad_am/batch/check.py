@@ -160,7 +160,7 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
         raise InputError(
             "NO_FILE",
             where,
-            "the folder holds no program; pass its files, or the folder that holds them",
+            "the folder holds no program; pass the program files, or the folder that contains them",
         )
     if len(paths) > MOST_FILES:
         raise InputError(
@@ -176,7 +176,10 @@ def _files(programs: Sequence[str]) -> dict[str, bytes]:
         except (OSError, ValueError) as error:
             reason = getattr(error, "strerror", None) or str(error)
             raise InputError(
-                "NO_FILE", name, "it cannot be read ({}); pass the files of the program", reason
+                "NO_FILE",
+                name,
+                "the file cannot be read ({}); pass the files of the program",
+                reason,
             ) from None
         remaining -= len(contents[name])
         if remaining < 0:
@@ -282,7 +285,7 @@ def _promises(motion: Motion, cell: Cell, context: Known) -> list[Promise]:
     )
     row = int(rapid_check.rows[0]) if len(rapid_check.rows) else None
     location = None if row is None else row_place(motion, row)
-    how = f"driven at {rapid_check.places} places against the platform and what is deposited by then; no other body is known"
+    how = f"rapids simulated at {rapid_check.places} places against the platform and the deposit at that time; other obstacles are unknown"
     met = float(len(rapid_check.rows))
     return [
         *promises,

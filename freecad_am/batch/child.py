@@ -156,14 +156,14 @@ def report_outputs(folder: str, made_folders: list[str]) -> None:
 def crash(where: str, status: int | None) -> AmError:
     """Return the error for a process that ended without a result. status: as in Popen."""
     if status == -signal.SIGKILL:
-        message = "the system ended the command, for lack of memory most likely; free some, or plan less at the same time"
+        message = "the system stopped the command, probably for lack of memory; free memory, or plan fewer rows at the same time"
         return AmError("ENDED", where, message)
     names = {-number.value: number.name for number in signal.Signals}
     return InputError(
         "CRASHED",
         where,
-        "FreeCAD crashed ({}): the shape is damaged or too complex for its geometry kernel; check the "
-        "part in FreeCAD (Part > Check geometry), repair it or export it again",
+        "FreeCAD crashed ({}): the shape is damaged or too complex for the geometry kernel; "
+        "check the part in FreeCAD (Part > Check geometry), and repair it or export it again",
         names.get(status or 0, f"status {status}"),
     )
 

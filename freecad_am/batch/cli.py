@@ -107,7 +107,7 @@ def _failed(error: Exception, session: Any) -> int:
         return error.exit_status
     what = " ".join(str(error).split()) or "no message"
     session.say(
-        f"error[INTERNAL] {type(error).__name__}: {what}; this is our fault, please report it with the job "
+        f"error[INTERNAL] {type(error).__name__}: {what}; please report this bug with the job "
         "(FREECAD_AM_DEBUG=1 shows where)"
     )
     return OUR_FAULT
@@ -150,8 +150,8 @@ def _batch(options: Any, session: Any) -> int:
         raise InputError(
             "USAGE",
             "freecad-am batch",
-            "-j sets the number of local rows, and --scheduler plans on a cluster, whose workers "
-            "set their own number; remove one option",
+            "-j sets the number of local rows, but --scheduler plans on a cluster, whose workers "
+            "set their own number; remove one of the two options",
         )
     how = rows.How(options.jobs or 1, options.scheduler or "", options.resume, options.dry_run)
     return rows.run(options.table, options.job, options.output, how, session)
@@ -261,7 +261,7 @@ def command_parsers() -> tuple[Parser, dict[str, Parser]]:
     command_line_parser = Parser(prog=PROGRAM, allow_abbrev=False, add_help=False)
     command_line_parser.usage = f"{PROGRAM} COMMAND"
     command_line_parser.epilog = (
-        f"demo, test, bench and docs: see the README; {PROGRAM} COMMAND --help tells the rest"
+        f"demo, test, bench and docs: see the README; {PROGRAM} COMMAND --help lists the options"
     )
     commands = command_line_parser.add_subparsers(
         title="commands", metavar="COMMAND", dest="command"
@@ -291,7 +291,7 @@ def command_parsers() -> tuple[Parser, dict[str, Parser]]:
 
 def _add_plan(parser: Parser) -> None:
     parser.add_argument("job", metavar="JOB.yaml")
-    parser.add_argument("--no-page", action="store_true", help="leave report.html out")
+    parser.add_argument("--no-page", action="store_true", help="do not write report.html")
 
 
 def _add_place(parser: Parser) -> None:
@@ -348,13 +348,11 @@ def _add_check(parser: Parser) -> None:
     parser.add_argument(
         "program", metavar="PROGRAM", nargs="+", help="the files of a program, or their folder"
     )
-    parser.add_argument(
-        "--cell", metavar="FILE", required=True, help="a job, or a cell in a file of its own"
-    )
+    parser.add_argument("--cell", metavar="FILE", required=True, help="job file or cell file")
     parser.add_argument(
         "--post",
         metavar="NAME",
-        help="the post that reads it; default: the post of the job or of the machine",
+        help="post that reads the program; default: the post of the job or of the machine",
     )
 
 
@@ -368,10 +366,10 @@ def _add_batch(parser: Parser) -> None:
         "--scheduler", metavar="ADDRESS", help="plan on the workers of this Dask scheduler"
     )
     parser.add_argument(
-        "--resume", action="store_true", help="keep the rows that an earlier run completed"
+        "--resume", action="store_true", help="keep the rows completed by an earlier run"
     )
     parser.add_argument(
-        "--dry-run", action="store_true", help="check all rows, and plan none of them"
+        "--dry-run", action="store_true", help="check all rows without planning any row"
     )
 
 
@@ -381,9 +379,13 @@ def _add_machines(parser: Parser) -> None:
     )
     forms = parser.add_mutually_exclusive_group()
     for option, form, words in (
-        ("--urdf", "urdf", "write it as URDF, without shapes"),
-        ("--dh", "dh", "write its table of Denavit and Hartenberg, in mm and degrees"),
-        ("--modified-dh", "modified-dh", "the same by Craig"),
+        ("--urdf", "urdf", "write the machine as URDF, without shapes"),
+        ("--dh", "dh", "write the Denavit-Hartenberg table of the machine, in mm and degrees"),
+        (
+            "--modified-dh",
+            "modified-dh",
+            "write the modified (Craig) Denavit-Hartenberg table, in mm and degrees",
+        ),
     ):
         forms.add_argument(option, action="store_const", const=form, dest="form", help=words)
     parser.add_argument("--maker", metavar="NAME", help="list machines of this manufacturer")
@@ -411,14 +413,14 @@ COMMANDS: dict[str, tuple[str, bool, Callable[[Parser], None]]] = {
     "export": ("recompute a saved document and write its programs", True, _add_export),
     "batch": ("plan one job per row of a table of job keys", True, _add_batch),
     "inspect": ("compare measured points with the plan", True, _add_inspect),
-    "check": ("drive a program that was edited, or written elsewhere, in a cell", True, _add_check),
+    "check": ("check an edited or foreign program in a cell", True, _add_check),
     "place": (
         "find feasible positions of the part, and the best pose in its cell",
         True,
         _add_place,
     ),
     "machines": (
-        "list the known machines, or write one as URDF or as a table",
+        "list the known machines, or write a machine as URDF or table",
         False,
         _add_machines,
     ),

@@ -136,7 +136,7 @@ class Cluster:
             raise InputError(
                 CODE,
                 WHERE,
-                "{} has no workers; start some with: dask worker {}",
+                "{} has no workers; start workers with: dask worker {}",
                 self._address,
                 self._address,
             )
@@ -159,7 +159,8 @@ class Cluster:
                 raise InputError(
                     CODE,
                     worker,
-                    "this worker cannot plan: {}; install FreeCAD there, or end it",
+                    "the worker cannot plan: {}; install FreeCAD on its machine, or stop the "
+                    "worker",
                     _failure_text(future),
                 )
             if future.status == "finished":
@@ -181,8 +182,8 @@ class Cluster:
         if differing:
             ours = ", ".join(f"{name} {local_versions.get(name, 'missing')}" for name in differing)
             self._session.say(
-                f"warning[VERSIONS] {worker}: here is {ours}; last digits of its rows may differ from what is "
-                "planned here"
+                f"warning[VERSIONS] {worker}: this machine has {ours}; rows of the worker may differ from local "
+                "rows in the last digits"
             )
 
     def _result(
@@ -191,10 +192,7 @@ class Cluster:
         """Return the result of a row. The outputs are stored and recorded even on Ctrl-C."""
         if future.status != "finished":
             if future.status == "error" and type(future.exception()).__name__ == "KilledWorker":
-                message = (
-                    "each worker that planned it was lost; check their memory, and plan "
-                    "this row separately"
-                )
+                message = "every worker that planned the row was lost; check the memory of the workers, and plan the row separately"
                 return {"exit": 1, "message": message, "lines": [f"error[LOST] row: {message}"]}
             raise InputError(
                 CODE,
@@ -228,9 +226,9 @@ class Cluster:
 
     def _lost_error(self) -> InputError:
         what = (
-            "it has no workers any more"
+            "the scheduler has no more workers"
             if self._client.status == "running"
-            else "it does not answer any more"
+            else "the scheduler no longer answers"
         )
         return InputError(
             CODE,
@@ -266,8 +264,9 @@ def _connected(address: str) -> Any:
         raise InputError(
             CODE,
             WHERE,
-            "no scheduler answers at {!r} ({}); start one with: dask scheduler, pass its "
-            "address, such as tcp://host:8786, and use the same version of Dask everywhere",
+            "no scheduler answers at {!r} ({}); start a scheduler with `dask scheduler`, pass "
+            "its address, such as tcp://host:8786, and use the same version of Dask on all "
+            "machines",
             address,
             why,
         ) from None
@@ -289,7 +288,8 @@ def _refuse_versions(address: str, client: Any) -> None:
             raise InputError(
                 CODE,
                 WHERE,
-                "{}: {} has distributed {}, this command {}; install the same version everywhere",
+                "{}: {} has distributed {}, but the command has {}; install the same version on "
+                "all machines",
                 address,
                 where,
                 theirs,
@@ -348,5 +348,5 @@ def _first_done(futures: list[Any]) -> list[Any]:
 
 def _failure_text(future: Any) -> str:
     if future.status != "error":
-        return Text("it was {}", future.status)
+        return Text("the row was {}", future.status)
     return " ".join(str(future.exception()).split()) or type(future.exception()).__name__

@@ -82,7 +82,7 @@ class Session:
             text = f"{text[: MAX_LINE_LENGTH // 2]} ... {text[-MAX_LINE_LENGTH // 2 :]}"
         _write(self._saved[1], text + "\n")
 
-    def issues(self, findings: Iterable[Issue], elsewhere: str = "stand in report.json") -> None:
+    def issues(self, findings: Iterable[Issue], elsewhere: str = "are in report.json") -> None:
         """Write issues to stderr, remedies first, then errors.
 
         Issues of one kind in several layers share a line. After _MAX_ISSUES lines, only the number

@@ -116,5 +116,5 @@ def require_freecad() -> None:
         raise InputError(
             "NO_FREECAD",
             "Python",
-            "FreeCAD cannot be imported; set FREECAD_AM_PYTHON to a Python that can",
+            "FreeCAD cannot be imported; set FREECAD_AM_PYTHON to a Python with FreeCAD",
         )

@@ -81,7 +81,7 @@ def _chosen(
     candidates = [obj for objects in of_kinds for obj in objects]
     if not candidates:
         raise InputError(
-            code, label, "the document has no {}s; create one with the workbench", kinds[0]
+            code, label, "the document has no {}s; create them in the workbench", kinds[0]
         )
     labels = ", ".join(obj.Label for obj in candidates)
     selected = []
@@ -93,7 +93,7 @@ def _chosen(
             message = "no {} is called {!r}; name one of {}"
             raise InputError("NO_OBJECT", label, message, kinds[0], name, labels)
         if len(matches) > 1:
-            message = "{!r} is the label of several {}s; use the name of one"
+            message = "{!r} is the label of several {}s; use a name instead of the label"
             raise InputError("NO_OBJECT", label, message, name, kinds[0])
         selected += matches
     selected = selected or next(objects for objects in of_kinds if objects)
@@ -115,7 +115,10 @@ def _write_paths(paths: list[Any], kind: str, files: outputs.Outputs, session: A
         name = Text("{}/{}.{}", folder, obj.Label.replace(os.sep, "-"), kind)
         if name in written:
             raise InputError(
-                "SAME_NAME", obj.Label, "two paths write {}; change one label", Word(name)
+                "SAME_NAME",
+                obj.Label,
+                "two paths write {}; change the label of one path",
+                Word(name),
             )
         written.add(name)
         if kind in WIRE_KINDS:
@@ -142,7 +145,10 @@ def _files(programs: list[Any], session: Any) -> dict[str, bytes]:
         for name, content in api.result(program).files.items():
             if files.setdefault(name, content) != content:
                 raise InputError(
-                    "SAME_NAME", program.Label, "two programs write {}; change one name", name
+                    "SAME_NAME",
+                    program.Label,
+                    "two programs write {}; change the name of one program",
+                    name,
                 )
     return files
 
@@ -255,8 +261,8 @@ def _opened(source: str, name: str, session: Any) -> tuple[Any, Any]:
         raise InputError(
             "USAGE",
             "freecad-am inspect",
-            "--object selects an object from FCStd documents; remove it: a job is compared with "
-            "its own part",
+            "--object selects an object of an FCStd document, but a job is compared with its own "
+            "part; remove --object",
         )
     import FreeCAD
 
@@ -303,7 +309,7 @@ def _open_document(path: str, name: str) -> tuple[Any, Any]:
         text = (
             Text("{} objects have the label {!r}", len(matches), name)
             if name
-            else Text("it has {} features; choose one with --object", len(matches))
+            else Text("the job has {} features; choose a feature with --object", len(matches))
         )
         raise InputError("NO_OBJECT", label, "{}; choose the measured object", Word(text))
     return document, matches[0]

@@ -53,8 +53,8 @@ class Outputs:
                 child.report_outputs(self.folder, self._made)
             if self._staging.others and session is not None:
                 session.say(
-                    f"note[BUSY] {self.folder}: another run writes into this folder too; what ends last stays; give one "
-                    "of them another folder with -o"
+                    f"note[BUSY] {self.folder}: another run writes into the same folder, and the outputs of the later "
+                    "run remain; choose another folder with -o"
                 )
         except (OSError, ValueError) as error:
             self._remove()
@@ -101,13 +101,14 @@ class Outputs:
             except OSError as error:
                 raise self._unwritable(error.filename or self.folder, error) from None
             if self._session is not None:
-                self._session.outcome = "the outputs were in place already"
+                self._session.outcome = "the outputs were already complete"
         return names
 
     def _unwritable(self, path: str, error: Exception) -> InputError:
         reason = getattr(error, "strerror", None) or str(error)
         message = Text(
-            "the outputs cannot be written here ({}); free the folder, or choose another with -o",
+            "the outputs cannot be written ({}); check the folder, or choose another folder with "
+            "-o",
             reason,
         )
         return InputError("UNWRITABLE", path, message)

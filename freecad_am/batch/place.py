@@ -29,13 +29,13 @@ _OUT_OF_RANGE_COLOUR = "#b9bec8"
 
 def render(name: str, placement: Placed) -> str:
     """Return the page of the rated poses of a job as HTML."""
-    title = f"{name}: where it can stand"
+    title = f"Placement of {name}"
     serve = sum(pose_result.feasible for pose_result in placement.judged)
     what = placement.moves.replace("-", " ")
     text = (
-        f"{serve} of {len(placement.poses)} poses of the {what} are feasible, as far as {placement.points} of {placement.of} points "
-        "show. Each square is the best of its rotations; its colour is the least share of a joint's "
-        "range that is left to a limit, grey where the pose is not feasible; the number is the share of points served."
+        f"{serve} of {len(placement.poses)} poses of the {what} are feasible at the {placement.points} checked points of {placement.of}. "
+        "Each square shows the best rotation at its position: the colour is the smallest joint margin as a share of the range, "
+        "grey if the pose is infeasible, and the number is the share of feasible points."
     )
     html_parts = [
         f'<header><h1>{escape(title)}</h1></header><p class="sub">{text}</p>',
@@ -218,8 +218,8 @@ def _write_results(job: Job, stages: Any, files: outputs.Outputs, session: Any) 
         best_share = max(pose_result.share for pose_result in placement.judged)
         wrong = placement.judged[max(range(count), key=lambda k: placement.judged[k].share)]
         text = Text(
-            "none of {} poses works at {}: at most {:.3g} % of the points are within reach and "
-            "limits ({}); enlarge the box in `place`, or try another cell.branch",
+            "none of {} poses is feasible at {}: at most {:.3g} % of the points are within reach "
+            "and limits ({}); enlarge the box in `place`, or try another cell.branch",
             count,
             Word(extent),
             100.0 * best_share,
@@ -227,8 +227,8 @@ def _write_results(job: Job, stages: Any, files: outputs.Outputs, session: Any) 
         )
         if serve:
             text = Text(
-                "none of the {} best of {} poses is feasible at all points, only at some; raise "
-                "place.points or place.proven",
+                "none of the {} best of {} poses is feasible at all points; raise place.points "
+                "or place.proven",
                 len(placement.proven),
                 serve,
             )
@@ -238,7 +238,7 @@ def _write_results(job: Job, stages: Any, files: outputs.Outputs, session: Any) 
         NOTE,
         "PLACED",
         Text(
-            "{} of {} poses are feasible at {}; the best one is verified at all points: margin "
+            "{} of {} poses are feasible at {}; the best pose is verified at all points: margin "
             "{:.3g} %, {:.0f} s; {} and {} are in {}",
             serve,
             count,

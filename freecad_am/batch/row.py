@@ -60,9 +60,7 @@ def plan_row(order: Order) -> dict[str, Any]:
         quiet.say(error.line())
     except Exception as error:
         message = f"{type(error).__name__}: {error}"
-        quiet.say(
-            f"error[INTERNAL] {' '.join(message.split())}; this is our fault, please report it"
-        )
+        quiet.say(f"error[INTERNAL] {' '.join(message.split())}; please report this bug")
     return {"exit": status, "message": message or quiet.first, "lines": quiet.lines, **result}
 
 

@@ -78,7 +78,7 @@ def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
         ]
     except csv.Error as error:
         raise InputError(
-            "BAD_FILE", label, "this is not a table: {}; separate cells by commas", error
+            "BAD_FILE", label, "the file is not a table: {}; separate cells by commas", error
         ) from None
     lines = [line for line in lines if any(line)]
     if len(lines) < 2:
@@ -93,7 +93,7 @@ def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
             raise InputError(
                 "BAD_FILE",
                 label,
-                "the column {!r} is empty or duplicated; use each name once",
+                "the column {!r} is empty or duplicated; give each column a unique name",
                 column,
             )
         if ";" in column or "\t" in column:
@@ -103,7 +103,7 @@ def _cells(text: str, label: str) -> tuple[list[str], list[list[str]]]:
                 "the cells are not separated by commas; save the table as CSV with commas",
             )
         if column.split(".")[0] not in job.SECTIONS:
-            message = "there is no such key; use job keys such as strategy.layer_height"
+            message = "the column is not a job key; use keys such as strategy.layer_height"
             raise InputError("UNKNOWN_KEY", f"{label}: {column}", message)
     for number, line in enumerate(lines[1:], 1):
         if len(line) != len(columns):

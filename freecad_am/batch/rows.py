@@ -73,11 +73,9 @@ def run(path: str, job_path: str, output: str | None, how: How, session: Session
             waiting.append(row)
     if how.resume:
         session.say(
-            f"note[RESUMED] batch: {len(rows) - len(waiting)} of {len(rows)} rows need not be planned again"
+            f"note[RESUMED] batch: {len(rows) - len(waiting)} of {len(rows)} rows are kept from an earlier run"
         )
-    session.outcome = (
-        "rows that were done are whole, of the others nothing was written; --resume plans those"
-    )
+    session.outcome = "completed rows are saved; --resume plans the remaining rows"
     began, resumed_count = time.monotonic(), len(results)
     for row, result in _planned(waiting, folder, how, session, journal):
         for line in result.pop("lines", []):

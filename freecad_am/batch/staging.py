@@ -83,13 +83,13 @@ def refuse(folder: str, names: Sequence[str]) -> None:
     for name in names:
         target = os.path.join(folder, *name.split("/"))
         if os.path.isdir(target) and not os.path.islink(target):
-            raise IsADirectoryError(21, "a folder takes the place of a file", target)
+            raise IsADirectoryError(21, "a folder has the name of an output file", target)
         parent = os.path.dirname(target)
         while len(parent) > len(folder):
             if os.path.islink(parent):
-                raise Linked(20, "a link takes the place of an output folder", parent)
+                raise Linked(20, "a link has the name of an output folder", parent)
             if os.path.lexists(parent) and not os.path.isdir(parent):
-                raise NotADirectoryError(20, "a file takes the place of a folder", parent)
+                raise NotADirectoryError(20, "a file has the name of an output folder", parent)
             if os.path.isdir(parent) and not os.access(parent, os.W_OK | os.X_OK):
                 raise PermissionError(13, "the folder is closed", parent)
             parent = os.path.dirname(parent)

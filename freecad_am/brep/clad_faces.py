@@ -48,8 +48,8 @@ def clad_faces(
             raise InputError(
                 "NO_FACES",
                 label,
-                "it is a solid with {} face(s), and none is selected; select the faces to cover, "
-                "or name them in part.faces of a job",
+                "the object is a solid with {} face(s), but no face is selected; select the "
+                "faces to cover, or name them in part.faces of a job",
                 len(faces_of_names),
             )
         named = [(name, faces_of_names[name]) for name in dict.fromkeys(names or faces_of_names)]
@@ -84,7 +84,7 @@ def _refuse_several(shape: Any, named: Sequence[tuple[str, Any]], back: bool, la
         raise InputError(
             "BACK_OF_SOLID",
             "strategy.side",
-            "behind {} is the material of {}; use front, the outside",
+            "the back of {} is inside {}; use front",
             next(iter(owners)),
             label,
         )

@@ -42,7 +42,7 @@ def curves_of(
             raise InputError(
                 f"UNKNOWN_{kind.upper()}",
                 label,
-                "it has no {}, only {} {}(s); choose others, starting with {}1",
+                "the object has no {}, only {} {}(s), numbered from {}1; correct the name",
                 ", ".join(wrong),
                 len(available),
                 kind.lower(),
@@ -57,7 +57,7 @@ def curves_of(
         raise InputError(
             "NO_CURVES",
             label,
-            "it has no edges to deposit as beads; choose edges, a wire or a sketch",
+            "the object has no edges to deposit as beads; choose edges, a wire or a sketch",
         )
     polylines = [
         _polyline(chain, chord_error, bool(faces)) for chain in Part.sortEdges(selected_edges)
@@ -135,7 +135,7 @@ def edges_of(shape: Any, names: Sequence[str], label: str) -> list[tuple[Array, 
         raise InputError(
             "UNKNOWN_EDGE",
             label,
-            "it has no {}; choose from Edge1 to Edge{}",
+            "the shape has no {}; choose an edge from Edge1 to Edge{}",
             ", ".join(wrong),
             len(edges_by_name),
         )
@@ -143,7 +143,8 @@ def edges_of(shape: Any, names: Sequence[str], label: str) -> list[tuple[Array, 
         raise InputError(
             "GUIDE_OPEN",
             label,
-            "it has {} edges, and a guide uses only some; choose them, as in edges: [Edge1]",
+            "the shape has {} edges, but a guide uses only some of them; name these edges, as in "
+            "edges: [Edge1]",
             len(edges_by_name),
         )
     edges = [edges_by_name[name] for name in dict.fromkeys(names)] or list(shape.Edges)

@@ -58,7 +58,7 @@ def complete_mesh(solid: Any, chord: float, label: str) -> tuple[Tessellation, t
         return tessellation, ()  # the kernel's volume integral is wrong, not the mesh
     volume, tessellation = min(attempts, key=lambda attempt: abs(attempt[0] - exact))
     message = Text(
-        "{}: its triangles enclose {:.4g} cm3 but its faces {:.4g} cm3; check the part and "
+        "{}: the triangles enclose {:.4g} cm3, but the faces {:.4g} cm3; check the part and "
         "export it again, or deposit it from a mesh",
         label,
         1e-3 * volume,
@@ -258,7 +258,8 @@ def _seat(name: str, face: Any, selected: bool) -> Seat | None:
             raise InputError(
                 "NOT_DEVELOPABLE",
                 name,
-                "it is neither a cylinder nor a cone; choose another face, or set strategy.base",
+                "the face is neither a cylinder nor a cone; choose another face, or set "
+                "strategy.base",
             )
         return None
     origin, z, radius, taper = round_one
@@ -273,7 +274,7 @@ def _seat(name: str, face: Any, selected: bool) -> Seat | None:
             raise InputError(
                 "INNER_FACE",
                 name,
-                "it is the inside of a bore; choose the outer face of a hub",
+                "the face is the inside of a bore; choose the outer face of a hub",
             )
         return None
     low, high = float(along.min()), float(along.max())

@@ -171,10 +171,10 @@ def _merged(issues: list[Issue]) -> Issue:
     if len(issues) == 1:
         return worst
     if len(layers) < 2:
-        message = Text("{} (and {} more like it)", worst.message, len(issues) - 1)
+        message = Text("{} (and {} similar findings)", worst.message, len(issues) - 1)
     else:
         message = Text(
-            "{} findings in layers {}, the worst here: {}",
+            "{} findings in layers {}, of which the worst is: {}",
             len(issues),
             ranges(layers),
             worst.message,

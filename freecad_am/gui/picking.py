@@ -165,7 +165,7 @@ def refused(document: Any) -> str:
         if stage_of(obj) is not None or is_group(obj):
             return tr("{} belongs to a job; select the part itself.").format(obj.Label)
         if links_to_nothing(obj):
-            return tr("{} links to nothing: its target was deleted or is not loaded.").format(
+            return tr("{} links to no object: its target was deleted or is not loaded.").format(
                 obj.Label
             )
         return tr("{} has no shape; select a body, solid, face, link or sketch.").format(obj.Label)

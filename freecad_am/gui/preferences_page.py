@@ -31,7 +31,7 @@ class PreferencesPage:
         note = QtGui.QLabel(
             tr(
                 "Defaults and appearance of the window for new objects. Existing documents, jobs "
-                "and macros do not depend on them."
+                "and macros do not depend on these settings."
             )
         )
         note.setWordWrap(True)
@@ -79,8 +79,8 @@ class PreferencesPage:
             "machineFolder",
             tr("Machine files"),
             tr(
-                "Additional folder of machine files, such as a shared one; your own are in {} as "
-                "well"
+                "Additional folder of machine files, such as a shared folder; your own machine "
+                "files are in {}"
             ).format(os.path.join("RoboticAM", "machines")),
         )
         self.programs = self._folder(

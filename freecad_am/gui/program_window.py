@@ -174,7 +174,9 @@ class ProgramWindow:
         )
         fits = self.obj.Status == UP_TO_DATE
         warning = (
-            "" if fits or not names else tr("This text belongs to an earlier plan; do not run it.")
+            ""
+            if fits or not names
+            else tr("This program belongs to an earlier plan; do not run it.")
         )
         status = tr("Status: {}.").format(translated(self.obj.Status))
         self.state.setText(

@@ -55,7 +55,7 @@ def reference(obj: Any) -> str:
     with contextlib.suppress(RuntimeError):
         name = obj.Name
     if name is None:
-        raise ReferenceError("it is no longer part of a document")
+        raise ReferenceError("the object is no longer part of a document")
     return f"{_document(obj.Document)}.getObject({name!r})"
 
 

@@ -93,7 +93,7 @@ def _plain(obj: Any, row: rows.Row, value: Any, where: str) -> Any:
         return value
     if row.form not in rows.FOLLOW:
         raise InputError(
-            "BAD_EXPRESSION", where, "it cannot follow an expression; enter a plain value"
+            "BAD_EXPRESSION", where, "the value cannot follow an expression; enter a plain value"
         )
     return rows.evaluated(value, obj, where)
 
@@ -104,7 +104,7 @@ def checked_document(doc: Any, where: str = "doc") -> Any:
         raise InputError(
             "BAD_INPUT",
             where,
-            "{} is not a document; pass one, such as FreeCAD.ActiveDocument",
+            "{} is not a document; pass a document, such as FreeCAD.ActiveDocument",
             named(doc),
         )
     return doc
@@ -119,13 +119,14 @@ def checked_object(value: Any, where: str, doc: Any = None) -> Any:
         raise InputError(
             "BAD_INPUT",
             where,
-            "it takes a single object; pass it, and the names of its faces separately",
+            "the argument takes a single object; pass the object, and the names of its faces "
+            "separately",
         )
     if not isinstance(value, App.DocumentObject) or is_gone(value):
         raise InputError(
             "BAD_INPUT",
             where,
-            "{} is not an object of a document; pass one, such as doc.Body",
+            "{} is not an object of a document; pass an object, such as doc.Body",
             named(value),
         )
     if doc is not None and value.Document != doc:
@@ -148,7 +149,7 @@ def checked_objects(values: Any, where: str, doc: Any = None) -> list[Any]:
         raise InputError(
             "BAD_INPUT",
             where,
-            "{} is not a list of objects; pass one, such as [doc.Clamp]",
+            "{} is not a list of objects; pass a list, such as [doc.Clamp]",
             named(values),
         )
     return [checked_object(value, where, doc) for value in values]
@@ -173,14 +174,18 @@ def checked_names(names: Any, where: str) -> list[str]:
 def checked_text(value: Any, where: str) -> str:
     """Return the string. Raises InputError BAD_INPUT, naming the argument, for anything else."""
     if not is_text(value):
-        raise InputError("BAD_INPUT", where, "{} is not a text; put it in quotes", named(value))
+        raise InputError(
+            "BAD_INPUT", where, "{} is not a text; write the text in quotes", named(value)
+        )
     return value
 
 
 def checked_number(value: Any, where: str) -> float:
     """Return the number as a float. Raises InputError BAD_INPUT, naming the argument, otherwise."""
     if isinstance(value, bool) or not isinstance(value, numbers.Real) or math.isnan(value):
-        raise InputError("BAD_INPUT", where, "{} is not a number; pass one such as 2", named(value))
+        raise InputError(
+            "BAD_INPUT", where, "{} is not a number; pass a number such as 2", named(value)
+        )
     return float(value)
 
 
@@ -193,7 +198,10 @@ def checked_keywords(values: Any, where: str) -> dict[str, Any]:
         return {}
     if not isinstance(values, Mapping) or not all(isinstance(key, str) for key in values):
         raise InputError(
-            "BAD_INPUT", where, "{} is not a mapping of keys to values; pass one", named(values)
+            "BAD_INPUT",
+            where,
+            "{} is not a mapping of keys to values; pass a dictionary",
+            named(values),
         )
     return dict(values)
 
@@ -207,7 +215,7 @@ def checked_list(values: Any, where: str) -> list[Any]:
         return []
     if not isinstance(values, (list, tuple)):
         raise InputError(
-            "BAD_INPUT", where, "{} is not a list; pass one, such as []", named(values)
+            "BAD_INPUT", where, "{} is not a list; pass a list, such as []", named(values)
         )
     return list(values)
 
@@ -219,7 +227,7 @@ def checked_target(path: Any, where: str) -> str:
         raise InputError(
             "BAD_INPUT",
             where,
-            '{} is not a path; pass one as a text, such as "cup.step"',
+            '{} is not a path; pass a path as a text, such as "cup.step"',
             named(path),
         )
     return text
@@ -235,7 +243,7 @@ def checked_path(path: Any, where: str) -> str:
         raise InputError(
             "BAD_INPUT",
             where,
-            '{} is not a path; pass one as a text, such as "cup.step"',
+            '{} is not a path; pass a path as a text, such as "cup.step"',
             named(path),
         )
     return text
@@ -394,7 +402,9 @@ def checked_stage(obj: Any) -> stages.Stage:
     """Return the proxy of a stage. Raises InputError BAD_INPUT for any other object."""
     proxy = None if is_gone(obj) else stages.stage_of(obj)
     if proxy is None:
-        raise InputError("BAD_INPUT", named(obj), "it is not a stage of the workbench; choose one")
+        raise InputError(
+            "BAD_INPUT", named(obj), "the object is not a stage of the workbench; choose a stage"
+        )
     return proxy
 
 

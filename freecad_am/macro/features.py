@@ -32,7 +32,7 @@ def proxy_of(kind: str) -> type[Any]:
         raise InputError(
             "BAD_VALUE",
             "kind",
-            "{!r} is not one of {}; choose one",
+            "{!r} is not a valid choice; choose one of {}",
             kind,
             Text.joined(", ", KINDS),
         )

@@ -59,7 +59,9 @@ def export(program: Any, folder: str) -> list[str]:
         from ..objects.program import files_of
     else:
         raise InputError(
-            "WRONG_KIND", program.Label, "it is neither a program nor an inspection; choose one"
+            "WRONG_KIND",
+            program.Label,
+            "the object is neither a program nor an inspection; choose a program or an inspection",
         )
     files = files_of(program)
     try:
@@ -389,7 +391,7 @@ def array_element(array: Any, index: int) -> Any:
     checked_object(array, "array")
     if isinstance(index, bool) or not isinstance(index, int):
         raise InputError(
-            "BAD_INPUT", "index", "{} is not a whole number; give one such as 1", named(index)
+            "BAD_INPUT", "index", "{} is not a whole number; give a number such as 1", named(index)
         )
     with one_step(array.Document, "Element of array"):
         return object_of(array, index)

@@ -72,7 +72,7 @@ def suit(cell: Any, *stages: Any, failed_layers: Collection[int] = ()) -> bool:
         ]
         changed = ", ".join(labels)
         App.Console.PrintWarning(
-            f"{cell.Label}: {changed}: proposed for this job; enter what yours really has\n"
+            f"{cell.Label}: {changed}: proposed for this job; enter the values of your cell\n"
         )
     return bool(suited != settings)
 
@@ -177,7 +177,10 @@ def refuse_otherwise(kind: str, layers: str) -> None:
     family = find_family(kind)
     if layers and (family is None or not family.chooses_layers):
         raise InputError(
-            "BAD_VALUE", "layers_otherwise", "it is for kind: solid, not for {}; remove it", kind
+            "BAD_VALUE",
+            "layers_otherwise",
+            "the parameter is for kind: solid, not for {}; remove the parameter",
+            kind,
         )
     if layers:
         SolidParameters(layers=layers)
@@ -195,7 +198,7 @@ def in_vain(stages: Sequence[Any], otherwise: str) -> bool:
         return False
     code = next((issue.code for issue in issues_of(failed) if issue.level == ERROR), "")
     App.Console.PrintWarning(
-        f"{feature.Label}: layers: {otherwise}, for {feature.Layers} ones end with {code}\n"
+        f"{feature.Label}: layers: {otherwise}, because {feature.Layers} layers end with {code}\n"
     )
     for stage in reversed(stages):
         stage.Document.removeObject(stage.Name)

@@ -49,7 +49,7 @@ class CladdingFeature(FeatureStage):
         source_body, fixtures = snapshot_of(source), fixtures_of(obj)
         if source_body.shape is None and faces:
             raise InputError(
-                "UNKNOWN_FACE", source.Label, "a mesh has no selectable faces; remove them"
+                "UNKNOWN_FACE", source.Label, "a mesh has no selectable faces; remove the faces"
             )
         ground = () if obj.Substrate is None else (snapshot_of(obj.Substrate),)
         own_body = (

@@ -40,7 +40,7 @@ def check_current(obj: Any, code: str = "NO_RESULT", template: str = "") -> None
             raise InputError(
                 code,
                 stage_object.Label,
-                "no result fits its inputs ({}); recompute it first",
+                "the result does not match its inputs ({}); recompute the object first",
                 reason,
             )
     check_recomputed(obj, code)
@@ -59,7 +59,7 @@ def reason_outdated(obj: Any) -> str:
     if obj.Status == INFEASIBLE:
         return message_of(obj)
     if is_of_earlier_version(obj):
-        return Text("an earlier version computed it; read Migrating in the changelog")
+        return Text("an earlier version computed the result; read Migrating in the changelog")
     return Text("{}: an input changed after the computation", obj.Label)
 
 

@@ -226,8 +226,8 @@ def _bases(
         raise InputError(
             "NO_HUB",
             inputs.label,
-            "the hub, a cylinder or cone below the solids, is unknown: choose it as substrate, "
-            "choose its faces, or set strategy.base; for a flat base use kind: solid",
+            "the hub, a cylinder or cone below the solids, is unknown; choose the hub as "
+            "substrate, choose its faces, or set strategy.base; for a flat base use kind: solid",
         )
     seats_of_solids = [seats(solid_faces, False) for solid_faces in owned]
     hub = hub_among(solids, seats_of_solids, SHARE * strategy.chord_error, inputs.label)

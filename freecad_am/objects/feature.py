@@ -40,8 +40,8 @@ class RevolutionFeature(FeatureStage):
         Link(
             "Axis",
             "",
-            "A straight edge, sketch axis or datum line to turn about, where the shape has none. "
-            "A sketch is turned about its vertical axis unless another one is chosen.",
+            "A straight edge, sketch axis or datum line as the axis of revolution, if the shape "
+            "has no axis. A sketch turns about its vertical axis by default.",
             required=False,
             type_name="App::PropertyLinkSub",
         ),

@@ -87,7 +87,9 @@ class Inspection(Stage):
             f"{obj.Label}.File",
         )
         if not path:
-            raise InputError("NO_FILE", where, "the file of measured points is missing; choose one")
+            raise InputError(
+                "NO_FILE", where, "the file of measured points is missing; choose a file"
+            )
         if is_predicted(obj):
             return self._predicted(obj, linked, parameters)
         obj.FileDigest = _digest(path, where)

@@ -81,7 +81,10 @@ def planned_of(path: Any, label: str) -> tuple[Planned, Toolpath, CellParameters
         linked = getattr(path, link)
         if linked is None or not linked.Key:
             raise InputError(
-                "NO_INPUT", path.Label, "its {} is missing; choose one and recompute", link.lower()
+                "NO_INPUT",
+                path.Label,
+                "the {} is missing; choose another and recompute",
+                link.lower(),
             )
     planned, toolpath, cell = (
         stage.Proxy.value(stage) for stage in (path, path.Toolpath, path.Cell)
@@ -96,7 +99,7 @@ class JointPath(Stage):
     sections = (Section(JointParameters, "joints", "Joints"),)
     links = (
         Link("Toolpath", "toolpath", "The toolpath to run."),
-        Link("Cell", "cell", "The cell that runs it."),
+        Link("Cell", "cell", "The cell that runs the toolpath."),
     )
     figures = (
         ("Duration", "App::PropertyFloat", "Time of all moves (s)."),
@@ -289,8 +292,9 @@ def _not_kept(cell: cells.Cell) -> list[Issue]:
             NOTE,
             "OBSTACLES_NOT_KEPT",
             Text(
-                "{}: checked against the nozzle during planning, against links and part only "
-                "after planning; set cell.arm_clearance to check these during planning too",
+                "{}: checked against the nozzle during planning, but against links and part only "
+                "after planning; set cell.arm_clearance to check links and part during planning "
+                "too",
                 names,
             ),
         )
@@ -309,7 +313,8 @@ def _not_known(cell: cells.Cell) -> list[Issue]:
             "BODIES_NOT_KNOWN",
             Text(
                 "the shape of {} is unknown, so nozzle, torch and robot are not checked against "
-                "it; add bodies to its machine file, or list its fixed parts in cell.obstacles",
+                "this mechanism; add bodies to its machine file, or list its fixed parts in "
+                "cell.obstacles",
                 lacking,
             ),
         )

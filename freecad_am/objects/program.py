@@ -98,7 +98,7 @@ class Program(Stage):
         """Read the inputs. Raises InputError or InfeasibleError for invalid inputs."""
         if not obj.ProgramName:
             raise InputError(
-                "NO_NAME", f"{obj.Label}.ProgramName", "the program has no name; enter one"
+                "NO_NAME", f"{obj.Label}.ProgramName", "the program has no name; enter a name"
             )
         path = self.linked(obj)["JointPath"]
         linked = path.Proxy.linked(path)
@@ -238,7 +238,7 @@ def _write_program(job: Job, label: str) -> Outcome:
         raise InfeasibleError(
             "NOT_VERIFIED",
             label,
-            "the program, read back, differs from the planned path; do not use it",
+            "the program, read back, differs from the planned path; do not run the program",
             issues=tuple(checked.issues),
         )
     issues = (
@@ -265,7 +265,7 @@ def files_of(obj: Any) -> dict[str, bytes]:
 
     Raises InputError NO_PROGRAM, with the reason, if files are missing or out of date.
     """
-    template = "no program fits its inputs ({}); mend that and recompute it"
+    template = "no program matches its inputs ({}); correct the cause and recompute the program"
     if not obj.Key or obj.Status != UP_TO_DATE:
         raise InputError("NO_PROGRAM", obj.Label, template, reason_stale(obj) or obj.Status)
     check_current(obj, "NO_PROGRAM", template)

@@ -95,7 +95,7 @@ class Stage(Stored):
             "App::PropertyEnumeration",
             "Status",
             _RESULT,
-            "Whether the result matches its inputs.",
+            "State of the result: up to date, stale, infeasible or failed.",
             READ_ONLY | OUTPUT,
         ):
             obj.Status = list(STATUSES)
@@ -104,7 +104,7 @@ class Stage(Stored):
             "App::PropertyString",
             "Message",
             _RESULT,
-            "The problem and its remedy.",
+            "The problem and the remedy.",
             READ_ONLY | OUTPUT,
         )
         for name, type_name, help in self.figures:
@@ -161,7 +161,7 @@ class Stage(Stored):
             raise InputError(
                 "BUSY",
                 obj.Label,
-                "another computation is running; wait until it ends, or cancel it",
+                "another computation is running; wait for its end, or cancel it",
             )
         try:
             with one_thread(), faults.kernel(obj):
@@ -173,7 +173,7 @@ class Stage(Stored):
             issues_found = issues_of(obj)
             with self._own_changes():
                 if outdated:
-                    say(obj, STALE, "an input changed while it was computed; recompute")
+                    say(obj, STALE, "an input changed during the computation; recompute the object")
                 else:
                     say(
                         obj,
@@ -183,7 +183,7 @@ class Stage(Stored):
         except progress.Cancelled:
             if is_there(obj) and key != obj.Key:
                 with self._own_changes():
-                    say(obj, STALE, "cancelled; recompute")
+                    say(obj, STALE, "cancelled; recompute the object")
             raise
         except InfeasibleError as error:
             with self._own_changes():
@@ -285,7 +285,7 @@ class Stage(Stored):
         )
         if stale:
             with self._own_changes():
-                say(obj, STALE, Text("waits for {}; recompute", stale))
+                say(obj, STALE, Text("waits for {}; recompute the object", stale))
             return
         try:
             self.renew(obj)
@@ -354,7 +354,7 @@ def _lost_link(obj: Any, label: str, link: str) -> Text:
                 link,
             )
     return Text(
-        "{} links to nothing, as its target was deleted or is not loaded; choose another {}",
+        "{} links to no object, as its target was deleted or is not loaded; choose another {}",
         label,
         link,
     )
@@ -389,7 +389,7 @@ def _checked(obj: Any, link: Link, linked: Any) -> Any:
         raise InputError(
             "BAD_INPUT",
             f"{obj.Label}.{link.name}",
-            "{} is not {} {}; choose one",
+            "{} is not {} {}; choose another object",
             linked.Label,
             Word(article),
             link.kind,
@@ -403,7 +403,7 @@ def _checked(obj: Any, link: Link, linked: Any) -> Any:
             obj.Label,
             "waits for {}: {}",
             linked.Label,
-            reason_of(linked) or "recompute it",
+            reason_of(linked) or "recompute the object",
         )
     return linked
 

@@ -34,7 +34,7 @@ RESULTS = frozenset(
     }
 )
 
-LEFT_OUT = "FreeCAD left it out of the recompute; unfreeze it (Toggle Freeze in the tree) if it is frozen, then recompute"
+LEFT_OUT = "FreeCAD left the object out of the recompute; if the object is frozen, unfreeze it (Toggle Freeze in the tree), then recompute"
 
 
 def changed(obj: Any, name: str) -> None:
@@ -181,7 +181,7 @@ def _mark(obj: Any, cause: str) -> None:
     obj.Proxy.changes += 1
     missing = obj.Proxy.missing(obj)
     status, message = (
-        (FAILED, missing) if missing else (STALE, Text("{} changed; recompute", cause))
+        (FAILED, missing) if missing else (STALE, Text("{} changed; recompute the object", cause))
     )
     if obj.Status != status or (missing and obj.Message != missing):
         say(obj, status, message)

@@ -31,13 +31,15 @@ class SurfaceFeature(FeatureStage):
         Link(
             "Substrate",
             "",
-            "The solid part or closed mesh that the wall grows on; not needed if start edges are chosen.",
+            "The solid part or closed mesh that the wall grows on; not needed if start edges are "
+            "chosen.",
             required=False,
         ),
         Link(
             "StartEdges",
             "",
-            "Edges of the wall from which layers start, instead of its intersection with the substrate.",
+            "Edges of the wall from which layers start, instead of its intersection with the "
+            "substrate.",
             required=False,
             type_name="App::PropertyLinkSub",
         ),
@@ -72,11 +74,13 @@ class SurfaceFeature(FeatureStage):
                 "OWN_SUBSTRATE",
                 f"{obj.Label}.Substrate",
                 "the wall and its substrate are the same object, {}; choose the part below the "
-                "wall, or none if the wall starts on the platform or from edges",
+                "wall, or clear the substrate if the wall starts on the platform or from edges",
                 label,
             )
         if source_body.shape is None and faces:
-            raise InputError("UNKNOWN_FACE", label, "a mesh has no selectable faces; remove them")
+            raise InputError(
+                "UNKNOWN_FACE", label, "a mesh has no selectable faces; remove the faces"
+            )
 
         def work() -> Outcome:
             ground = bodies(substrates)

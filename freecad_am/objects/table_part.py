@@ -82,7 +82,11 @@ def refuse_gcode_keys(label: str, roles: str, rotary: str) -> None:
     for key, (value, allowed) in defaults.items():
         if value not in allowed:
             raise InputError(
-                "NOT_USED", key, "{!r} is for G-code, but {} is not G-code; remove it", value, label
+                "NOT_USED",
+                key,
+                "{!r} is for G-code, but {} is not G-code; remove the setting",
+                value,
+                label,
             )
 
 
@@ -94,11 +98,11 @@ def _read(path: str, name: str, form: str) -> Points:
         return Points(form, base64.encodebytes(data).decode() if form == ADA else data.decode())
     except UnicodeDecodeError:
         raise InputError(
-            "BAD_FILE", name, "it is not text; give {}", Word("a table of points as CSV")
+            "BAD_FILE", name, "the file is not text; give {}", Word("a table of points as CSV")
         ) from None
     except OSError as error:
         raise InputError(
-            "NO_FILE", name, "it cannot be read: {}; choose another file", error.strerror
+            "NO_FILE", name, "the file cannot be read: {}; choose another file", error.strerror
         ) from None
 
 

@@ -57,7 +57,7 @@ class Toolpath(Stage):
         Link(
             "Further",
             "feature",
-            "Further features, deposited after it in this order.",
+            "Further features, deposited after the first feature in this order.",
             required=False,
             type_name="App::PropertyLinkList",
         ),
@@ -121,8 +121,8 @@ class Toolpath(Stage):
                 raise InputError(
                     "NOT_YET",
                     f"{obj.Label}.Scan",
-                    "several features together cannot be fitted to a scan yet; remove it, or "
-                    "deposit them one by one",
+                    "several features together cannot be fitted to a scan yet; remove the scan, "
+                    "or deposit the features one by one",
                 )
             members = [
                 member(feature, entry, features)
@@ -312,7 +312,8 @@ def own_process(process: ProcessParameters, of_job: ProcessParameters) -> str:
         raise InputError(
             "NOT_FOR_FEATURE",
             f"process.{shared[0]}",
-            "it applies to the whole program, not to one feature; set it at the top level",
+            "the setting applies to the whole program, not to one feature; move it to the top "
+            "level",
         )
     return json.dumps(differences) if differences else ""
 

@@ -57,7 +57,7 @@ def save(name: str, text: str) -> str:
         raise InputError(
             "NOT_WRITTEN",
             path,
-            "it cannot be written: {}; check the folder",
+            "the file cannot be written: {}; check the folder",
             error.strerror or error,
         ) from None
     return path

@@ -198,7 +198,7 @@ def fit(measured: Measured, model: BeadModel, target: float | None = None) -> Ch
                 DOTS,
             )
         )
-    marks = () if target is None else ((target, f"asked: {target:g}"),)
+    marks = () if target is None else ((target, f"requested: {target:g}"),)
     return Chart(
         "Width of beads",
         Quantity("travel speed", "mm/min"),

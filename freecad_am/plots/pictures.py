@@ -612,7 +612,7 @@ class Entry:
     along: Callable[[Source, Rows], Charts] | None = None
     from_layers: Callable[[Source, tuple[int, int]], Charts] | None = None
     machine: bool = False
-    lacking: str = "these layers have nothing to show"
+    lacking: str = "these layers have no values to show"
 
 
 def _fit(source: Source, layers: tuple[int, int]) -> Charts:
@@ -629,14 +629,14 @@ PICTURES = {
     "accelerations": Entry("Joint accelerations", accelerations, machine=True),
     "jerks": Entry("Joint jerks", jerks, machine=True),
     "condition": Entry(
-        "Condition", condition, machine=True, lacking="this machine has no condition number"
+        "Condition", condition, machine=True, lacking="the machine has no condition number"
     ),
     "travel": Entry("Speed along the path", travel),
     "deposit": Entry("Deposit rate", deposit),
     "spacing": Entry(
         "Distance between layers",
         from_layers=spacing,
-        lacking="none of these layers rests on another",
+        lacking="no layer shown rests on another layer",
     ),
     "volumes": Entry("Volume by layer", from_layers=by_layer, lacking=_NO_PLANES),
     "infill": Entry(

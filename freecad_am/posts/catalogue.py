@@ -59,17 +59,19 @@ class Naming:
         """
         as_written = self.written(name) if name.isascii() else name
         if not name:
-            raise self.refused(name, where, "it is empty")
+            raise self.refused(name, where, "the name is empty")
         if re.search(r"[^A-Za-z0-9_]", as_written):
             raise self.refused(
-                name, where, "it may hold only the letters A to Z, digits and underscores"
+                name, where, "a name may contain only the letters A to Z, digits and underscores"
             )
         if not re.match(self.start, as_written):
-            raise self.refused(name, where, Text("it must start with {}", self.starts))
+            raise self.refused(name, where, Text("a name must start with {}", self.starts))
         if len(as_written) > self.longest:
-            raise self.refused(name, where, Text("it has more than {} characters", self.longest))
+            raise self.refused(
+                name, where, Text("the name has more than {} characters", self.longest)
+            )
         if self._is_reserved(as_written):
-            raise self.refused(name, where, "it is a reserved word")
+            raise self.refused(name, where, "the name is a reserved word")
         return as_written
 
     def fits(self, name: str) -> bool:
@@ -124,7 +126,7 @@ class Naming:
                 name,
                 "name",
                 Text(
-                    "with the {} digits of its parts it has more than {} characters",
+                    "with the {} digits of its parts the name has more than {} characters",
                     digits,
                     self.longest,
                 ),

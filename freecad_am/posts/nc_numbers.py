@@ -49,8 +49,8 @@ def refuse_table(program: Program, post: str) -> None:
         raise InputError(
             "UNSUPPORTED_AXES",
             "cell.machine",
-            "the post {} writes linear axes X Y Z and rotary axes of A B C, one each; the machine has {}: name its joints "
-            "mx my mz and a, b or c",
+            "the post {} writes linear axes X Y Z and rotary axes A B C, each once, but the "
+            "machine has {}; name the joints of the machine mx my mz and a, b or c",
             post,
             " ".join(program.axis_names),
         )
@@ -81,7 +81,7 @@ def refuse_words(program: Program, reserved: frozenset[str]) -> None:
             raise InputError(
                 "DEPOSIT_WORD",
                 key,
-                "{!r} is not a word such as M7 or H2=1; give one for on and one for off",
+                "{!r} is not a word such as M7 or H2=1; give a word for on and a word for off",
                 word,
             )
         if re.sub(r"^([MH])0+(?=\d)", r"\1", word) in reserved or (
@@ -105,8 +105,8 @@ def refuse_wire_output(program: Program, highest: int) -> None:
         raise InputError(
             "WIRE_OUTPUT",
             "program.nc.wire_output",
-            "the controller program sets analogue outputs 1 to {}, not {}; choose one in this "
-            "range",
+            "the controller program sets analogue outputs 1 to {}, not {}; choose an output in "
+            "this range",
             highest,
             program.nc.wire_output,
         )

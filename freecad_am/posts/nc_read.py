@@ -119,7 +119,7 @@ class Track:
             UNREADABLE_PROGRAM for a second output.
         """
         if self.output not in (0, output):
-            raise unreadable(where, "it sets a second analogue output")
+            raise unreadable(where, "the program sets a second analogue output")
         self.output, self.wire = output, value
 
     def add(self, sort: str, words: dict[str, str], where: str, stops: bool = False) -> None:
@@ -142,7 +142,7 @@ class Track:
             UNREADABLE_PROGRAM for a move that cannot be understood.
         """
         if float(words.get("F", "0")) <= 0.0:
-            raise unreadable(where, "it moves without setting a feed")
+            raise unreadable(where, "the program moves without setting a feed")
         row = sort, tuple(words)
         if row not in self.checked_words:
             self._check_words(sort, tuple(name for name in words if name != "F"), where)
@@ -161,18 +161,16 @@ class Track:
         """Check that the words form a move; the first move sets the axes."""
         if sort == TIP:
             if not set(_LINEAR) <= set(names) or not self.axes:
-                raise unreadable(
-                    where, "a position needs X Y Z, and an earlier move in axis values"
-                )
+                raise unreadable(where, "a position needs X Y Z and a previous move in axis values")
         elif not self.axes and set(_LINEAR) <= set(names) and not set(names) & set(_VECTOR):
             self.axes = names
         elif names != self.axes:
-            raise unreadable(where, "the move names other axes than the first move")
+            raise unreadable(where, "the axes of the move differ from those of the first move")
 
     def moves(self) -> ReadMoves:
         """Return all moves. Raises InputError UNREADABLE_PROGRAM without moves."""
         if not self.rows:
-            raise unreadable("program", "it has no moves")
+            raise unreadable("program", "the program has no moves")
         sorts = np.array([sort for sort, _ in self.rows])
         tips = sorts == TIP
         linear = np.array([name in _LINEAR for name in self.axes])

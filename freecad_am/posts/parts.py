@@ -192,8 +192,8 @@ def continued(
             raise InputError(
                 "BEAD_TOO_LONG",
                 "program.max_points",
-                "{} is woven and has {} points with its approach, but it is unconfirmed that a weave continues in another program; allow more points per program, or a "
-                "larger chord error",
+                "{} is woven and has {} points with its approach, but the weave may not continue "
+                "in another program; allow more points per program, or a larger chord error",
                 place(runs[-1].moves),
                 sum(map(len, runs)),
             )
@@ -261,8 +261,8 @@ def unbroken(group: list[Piece], most_points: int, most_lines: int) -> Iterator[
     raise InputError(
         "BEAD_TOO_LONG",
         "program.max_points",
-        "{} has {} points with its approach, and loading another part within a bead would stop the robot while it deposits; "
-        "use at least {}",
+        "{} has {} points with its approach, and loading another part within a bead would stop "
+        "the robot while it deposits; use at least {}",
         place(moves),
         points,
         points + 1,

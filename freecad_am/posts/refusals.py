@@ -97,8 +97,8 @@ def refuse_cooling(program: Program, last_input: int, why: str = "") -> None:
         raise InputError(
             "ANALOGUE_INPUT",
             "process.cooling.input",
-            "the controller program reads analogue inputs 1 to {}, not {}; choose one in this "
-            "range",
+            "the controller program reads analogue inputs 1 to {}, not {}; choose an input in "
+            "this range",
             last_input,
             waits[0].number,
         )
@@ -135,14 +135,16 @@ def refuse_schedules(
         raise InputError(
             "SCHEDULE",
             "process.start.schedule",
-            "beads change their schedule, but this controller appears to set outputs before the motion reaches them; change only the speed at start and end, or use another controller",
+            "beads change their schedule, but the controller appears to set outputs before the "
+            "motion reaches the bead; change only the speed at start and end, or use another "
+            "controller",
         )
     numbers = [block.number for block in program.blocks if isinstance(block, Schedule)]
     if numbers and not 1 <= program.schedule_output <= last_output:
         raise InputError(
             "SCHEDULE",
             "program.schedule.output",
-            "schedule numbers need an output from 1 to {}, not {}; choose one in this range",
+            "schedule numbers need an output from 1 to {}, not {}; choose an output in this range",
             last_output,
             program.schedule_output,
         )
@@ -160,8 +162,8 @@ def refuse_schedules(
         raise InputError(
             "SCHEDULE",
             "process.schedule",
-            "the controller supports schedules up to {}, not {}; use another number, there or in "
-            "process.classes",
+            "the controller supports schedules up to {}, not {}; use a smaller number in "
+            "process.schedule and process.classes",
             max_schedule,
             largest,
         )
@@ -178,7 +180,7 @@ def refuse_weave(program: Program, max_weave: int) -> None:
         )
 
 
-JOINT_WEAVE = "controllers weave on linear moves only, and this program has joint moves"
+JOINT_WEAVE = "controllers weave on linear moves only, but the program has joint moves"
 
 
 def weave_refused(why: str, where: str = "process.weave") -> InputError:
@@ -206,7 +208,7 @@ def schedule_refused(by: str, why: str) -> InputError:
 def trigger_refused(why: str) -> InputError:
     """Return the error for a controller or program that cannot switch the deposit ahead of a point."""
     return InputError(
-        "TRIGGER", "program.trigger.lead", "{}; remove it, or use another controller", why
+        "TRIGGER", "program.trigger.lead", "{}; remove the setting, or use another controller", why
     )
 
 
@@ -350,7 +352,8 @@ def refuse_external(program: Program, last_axis: int, unit: str, form: str) -> N
         raise InputError(
             "UNSUPPORTED_AXES",
             "program.axes.first",
-            "external axes would be numbered up to {}, but the controller has only {}; use a smaller first number",
+            "external axes would be numbered up to {}, but the controller has only {}; use a "
+            "smaller first number",
             end,
             last_axis,
         )
@@ -374,7 +377,7 @@ def refuse_named_track(program: Program, what: str) -> None:
         raise InputError(
             "UNSUPPORTED_AXES",
             "program.axes.unit",
-            "this controller does not name tracks (the track is {}); remove unit",
+            "the controller does not name tracks, and {} is a track; remove program.axes.unit",
             what,
         )
 
@@ -388,7 +391,8 @@ def refuse_continuous(program: Program) -> None:
         raise InputError(
             "ENDLESS_AXIS",
             "cell.limits",
-            "axis {} has no limits, but the controller needs limits to count the turns of its joint values; use a limit set that limits axis {}",
+            "axis {} has no limits, but the controller needs limits to count the turns of its "
+            "joint values; use a limit set that limits axis {}",
             axis,
             axis,
         )
@@ -406,7 +410,8 @@ def refuse_without_speeds(program: Program, axes: int) -> None:
     raise InputError(
         "NO_JOINT_SPEED",
         "cell.machine" if axis < program.own_axes else "cell.external",
-        "this controller programs joint moves in percent of the maximum axis speeds, which the machine file of {} lacks; add {}",
+        "the controller programs joint moves in percent of the maximum axis speeds, which the "
+        "machine file of {} lacks; add {}",
         (program.axis_machines or (program.machine,) * axes)[axis],
         in_urdf if program.of_urdf and program.of_urdf[axis] else Text("`max_speed` to its joints"),
     )

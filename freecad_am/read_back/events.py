@@ -80,11 +80,11 @@ def _timed(event: Event, distance_before: float, speed: Array) -> Event:
 # error code and message, and the event kinds that they cover
 _FAMILIES = (
     ("VERIFY_DEPOSIT", "the program switches the deposit differently than planned", ("on", "off")),
-    ("VERIFY_SCHEDULE", "the program sends another schedule than planned", ("schedule",)),
+    ("VERIFY_SCHEDULE", "the schedule in the program differs from the plan", ("schedule",)),
     ("VERIFY_WEAVE", "the program weaves beads differently than planned", ("weave",)),
     ("VERIFY_WAIT", "the program waits differently than planned", ("wait", "input")),
-    ("VERIFY_COOLING", "the program waits for another temperature than planned", ("below",)),
-    ("VERIFY_CALL", "the program calls other programs than planned", ("call",)),
+    ("VERIFY_COOLING", "the temperature in the program differs from the plan", ("below",)),
+    ("VERIFY_CALL", "the programs called by the program differ from the plan", ("call",)),
     ("VERIFY_LAYER", "layers do not begin where planned", ("layer",)),
 )
 

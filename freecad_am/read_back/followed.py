@@ -106,7 +106,8 @@ def _arm(cell: Cell, text: ReadMoves, flanges: Array, rows: slice, previous: Arr
             raise InputError(
                 "NO_CONFIGURATION",
                 "program",
-                "the program starts with a position that has no arm configuration; set one in the cell, such as branch: [front, up, flip]",
+                "the program starts with a position without arm configuration; set the "
+                "configuration in the cell, such as branch: [front, up, flip]",
             )
         previous = joint_solutions[0, cell.branch]
     return _nearest(
@@ -152,7 +153,8 @@ def _as_named(cell: Cell, text: ReadMoves, solutions: Array, words: Index, rows:
         raise InputError(
             "NOT_YET",
             "program",
-            "the program gives turn numbers for axes other than the last one, which cannot be simulated; use joint values for these positions",
+            "the program gives turn numbers for axes other than the last axis, which cannot be "
+            "simulated; use joint values for these positions",
         )
     named_values = controller_values[np.arange(len(solutions)), named.argmax(axis=1)]
     named_values -= TURN * np.rint(named_values / TURN)

@@ -71,7 +71,7 @@ def time_issues(cell: Cell, planned: Planned, text: ReadMoves) -> list[Issue]:
     is_slow_first = (
         abs(share - FIRST_SHARE) <= 1e-6 or abs(text_times[0] - FIRST_TIME) <= allowed[0] + 1e-6
     )
-    message = "the first move, from the unknown start position, is too fast"
+    message = "the first move, from an unknown start position, is too fast"
     issues += planned.issue(
         "VERIFY_TIME", np.arange(len(timed)) == (-1 if is_slow_first else 0), message
     )
@@ -238,7 +238,7 @@ def _frame_issues(
     if text.tool_frame is not None:
         wrong |= text.tool_frame != program.tool_frame
     message = Text(
-        "the program selects another frame or tool than {} and {}",
+        "the program selects a frame or tool that differs from {} and {}",
         program.user_frame,
         program.tool_frame,
     )
@@ -292,7 +292,7 @@ def _configuration_issues(
             Issue(
                 ERROR,
                 "VERIFY_CONFIGURATION",
-                "the program names arm configurations, but the machine has none",
+                "the program names arm configurations, but the machine has no configurations",
             )
         ]
     names = np.array([spherical_wrist.branch_name(index) for index in range(8)])[
@@ -312,5 +312,5 @@ def _configuration_issues(
         named.up != (names[:, 1] == "up")
     )
     differs |= named.front != (names[:, 0] == "front")
-    message = "the program uses another arm configuration or other turns than planned"
+    message = "the arm configuration or the turns in the program differ from the plan"
     return planned.issue("VERIFY_CONFIGURATION", np.asarray(turned | differs), message)

@@ -246,12 +246,14 @@ def point_issues(planned: Planned, path: Path) -> list[Issue]:
     off = lengths(path.position - planned.position)
     tilted = lengths(path.tool - planned.tool)
     message = Text(
-        "the program moves the tip up to {} mm away from the planned point, more than its rounding explains",
+        "the program moves the tip up to {} mm away from the planned point, more than the "
+        "rounding of its numbers explains",
         format_deviation(float(off.max())),
     )
     issues = planned.issue("VERIFY_POINT", ~(off <= path.bound), message)
     message = Text(
-        "the program tilts the tool by up to {:.3g} deg off the plan, more than its rounding explains",
+        "the program tilts the tool by up to {:.3g} deg off the plan, more than the rounding of "
+        "its numbers explains",
         np.degrees(tilted.max()),
     )
     return issues + planned.issue("VERIFY_TOOL", ~(tilted <= path.tool_bound), message)
@@ -296,7 +298,7 @@ def second_opinion(
     For long texts, PyKDL computes some rows and a grid of joint values (docs/decisions/0022).
     """
     if not kdl_chain.available():
-        message = "PyKDL is not installed; the program was checked by one solver only"
+        message = "PyKDL is not installed, so only one solver checked the program"
         return [Issue(NOTE, "VERIFY_ONE_SOLVER", message)], ("chain",)
     arm, wrong = kdl_chain.KdlArm(cell.machine), np.zeros(len(controller_values), dtype=bool)
     grid = grid_of(cell.machine.chain, planned.joints)

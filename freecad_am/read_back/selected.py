@@ -89,7 +89,8 @@ def _numbers(
         changed = numbered[numbers[numbered] != first_number]
         if len(changed):
             message = Text(
-                "{} {:.0f} is selected after moves in {:.0f}, but only one can be simulated, so all moves use it; use a program with a single one",
+                "{0} {1:.0f} is selected after moves in {2:.0f}, but all moves are simulated in "
+                "one selection; use a program with a single selection",
                 kind,
                 numbers[changed[0]],
                 first_number,
@@ -97,7 +98,8 @@ def _numbers(
             yield _finding_at(ERROR, "FRAME_NUMBER", message, motion, int(rows[changed[0]]))
         elif number is not None and first_number != number:
             message = Text(
-                "the program selects {} {:.0f}, but the job has {}: the simulation uses that of the cell; compare the two, and correct the program or the job",
+                "the program selects {} {:.0f}, but the job has {}, which the simulation uses; "
+                "correct the number in the program or in the job",
                 kind,
                 first_number,
                 number,
@@ -115,7 +117,7 @@ def _calls(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
     for name, row in first_calls.items():
         message = Text(
             "the program calls {}, which is missing, so its motions and signals are not "
-            "simulated; add its file, or check it on the controller",
+            "simulated; add the file of the called program, or check its motion on the controller",
             name,
         )
         yield _finding_at(
@@ -150,7 +152,7 @@ def _findings(motion: Motion, text: ReadMoves) -> Iterator[Finding]:
         if event.kind not in ("on", "off"):
             continue
         if on and event.kind == "on":
-            message = Text("the program switches the deposit on although it is already on")
+            message = Text("the program switches the deposit on while the deposit is already on")
             yield _finding("DEPOSIT_SWITCH", message, motion, rows, event.row)
         on = event.kind == "on"
         seconds = _time_of_its_move(event, motion.duration[rows])
@@ -208,13 +210,11 @@ def into_platform(motion: Motion, cell: Cell) -> list[Finding]:
     low, count = int(np.where(below, points[:, 2], np.inf).argmin()), int(below.sum())
     text = Text(
         (
-            "the nozzle deposits at 1 point below the platform, by {1:.3g} mm; correct its height, "
-            "or the platform of the cell"
+            "the nozzle deposits at 1 point below the platform, by {1:.3g} mm; correct the height of the point, or the platform of the cell"
         )
         if count == 1
         else (
-            "the nozzle deposits at {0} points below the platform, here {1:.3g} mm; correct "
-            "their heights, or the platform of the cell"
+            "the nozzle deposits at {0} points below the platform, here by {1:.3g} mm; correct the heights of these points, or the platform of the cell"
         ),
         count,
         -points[low, 2],

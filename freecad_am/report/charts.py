@@ -69,7 +69,7 @@ def distance_charts(compared: Sequence[Compared], layer_height: float) -> list[C
             AROUND,
             DISTANCE,
             _layer_curves([360.0 * around for around in wall.around], wall.distance),
-            marks=((layer_height, Text("asked: {:g} mm", layer_height)),),
+            marks=((layer_height, Text("requested: {:g} mm", layer_height)),),
             span=(low - margin, high + margin),
         )
         for wall in compared
@@ -110,7 +110,7 @@ def deposit_chart(toolpath: Toolpath, local: Sequence[Array]) -> Chart:
         ALONG,
         DISTANCE,
         _layer_curves(positions, local, layers),
-        marks=((height, Text("asked: {:g} mm", height)),),
+        marks=((height, Text("requested: {:g} mm", height)),),
         span=(low - margin, high + margin),
     )
 
@@ -218,7 +218,7 @@ def _flat(group: Group, layer: Layer, index: int, height: float) -> tuple[Chart,
     pad = 0.03 * float((high - low).max())
     ratio = float((high[1] - low[1] + 2.0 * pad) / (high[0] - low[0] + 2.0 * pad))
     axes = AXES[isinstance(base.surface, (Plane, Guide))]
-    title = f"{group.base.name}, layer {index}, laid flat"
+    title = f"{group.base.name}, layer {index}, flattened"
     chart = Chart(title, *axes, _curves(layer, lines), plane=True)
     return chart, int(np.clip(MARGINS + ratio * FRAME_WIDTH, 140.0, TALLEST))
 

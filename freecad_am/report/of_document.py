@@ -84,12 +84,14 @@ def _stages(obj: Any) -> tuple[Any, Any, Any]:
     if stage is None or stage.kind not in KINDS:
         label = getattr(obj, "Label", repr(obj))
         raise InputError(
-            "BAD_INPUT", label, "it has no path; choose a toolpath, joint path or program"
+            "BAD_INPUT", label, "the object has no path; choose a toolpath, joint path or program"
         )
     program = obj if stage.kind == "program" else None
     path = obj if stage.kind == "joint path" else None if program is None else program.JointPath
     if program is not None and path is None:
-        raise InputError("NO_INPUT", obj.Label, "its joint path was deleted; choose a joint path")
+        raise InputError(
+            "NO_INPUT", obj.Label, "the joint path of the program was deleted; choose a joint path"
+        )
     toolpath = obj if path is None else path.Toolpath
     if path is not None:
         planned_of(path, obj.Label)

@@ -32,7 +32,7 @@ from .template import fill_page
 from .viewer_3d import columns
 from .viewer_3d.columns import build_viewer, policy, style
 
-NO_VIEWER = "A browser that runs scripts and has WebGL draws the path here in 3D."
+NO_VIEWER = "Open this page in a browser with scripts and WebGL to see the path in 3D."
 _PER_METHOD = (
     ("feasible", "feasible"),
     ("objective_value", "objective"),
@@ -141,7 +141,7 @@ def _select_rows(content: Content) -> columns.Shown:
 def _subtitle(content: Content) -> str:
     joints = content.report["joints"]
     if joints is None:
-        return "the path alone, without joints"
+        return "toolpath without joint values"
     return f"{content.report['machine']['title']}, limits {content.report['machine']['limits']}, joints {joints['method']}"
 
 
@@ -218,7 +218,7 @@ def _hub_layers(content: Content, pictures: Pictures) -> str:
     layers = layer_charts(content.solids, content.toolpath)
     plots = [plot for chart, height in layers for plot in draw_charts([chart], HALF, height)]
     plots += pictures.beads()
-    return f"<h2>Layers laid flat</h2>{grid_of(plots)}"
+    return f"<h2>Flattened layers</h2>{grid_of(plots)}"
 
 
 def _spacings(wall: OfFeature) -> str:
@@ -250,7 +250,7 @@ def _spacings(wall: OfFeature) -> str:
     )
     name = f": {escape(wall.name)}" if wall.name else ""
     return (
-        f'<h2>What spacing costs{name}</h2><p class="sub">Distance of each point to the nearest point of the layer below, '
+        f'<h2>Distances between layers{name}</h2><p class="sub">Distance of each point to the nearest point of the layer below, '
         f"around the wall; every curve is a layer, dark ones first.</p>{grid_of(plots)}{overlay}{table}{reasons}"
     )
 
@@ -270,7 +270,7 @@ def _spacing_motion(report: dict[str, Any]) -> str:
         for key, word in _MOTION_PER_AXIS
         for number, row in enumerate(rows)
     ]
-    return f"<h2>What spacing gains in motion</h2>{table_of(totals)}{table_of(axes)}"
+    return f"<h2>Joint motion by spacing</h2>{table_of(totals)}{table_of(axes)}"
 
 
 def _totals(report: dict[str, Any]) -> str:
@@ -304,7 +304,7 @@ def _criteria(report: dict[str, Any]) -> str:
         (name, [figure_text(entry["criteria"][name]) for entry in methods])
         for name in report["joints"]["criteria"]
     ]
-    text = f"Whichever was optimised; smaller is better.{_optimality(report)}"
+    text = f"All criteria of the joint path, whether optimised or not; smaller values are better.{_optimality(report)}"
     return f'<h2>Criteria</h2><p class="sub">{text}</p>{table_of(rows)}'
 
 

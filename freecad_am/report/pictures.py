@@ -18,7 +18,7 @@ from . import units
 from .figures import OfFeature
 
 HALF, FULL_WIDTH, TALL, MAP, TALLEST = 460, 940, 230, 330, 620  # pixels
-MISSING = "The plots are left out, because matplotlib is not installed here; install python3-matplotlib and plan again."
+MISSING = "The plots are missing, because matplotlib is not installed; install python3-matplotlib and plan again."
 
 
 @cache

@@ -30,7 +30,7 @@ def findings(issues: list[dict[str, Any]], path_rows: Shown) -> str:
             f'<td class="place">{link}</td><td class="text">{escape(units.message(issue["message"]))}</td></tr>'
         )
     note = (
-        f"<p>{len(issues) - len(rows)} more stand in report.json.</p>"
+        f"<p>{len(issues) - len(rows)} more findings are in report.json.</p>"
         if len(issues) > len(rows)
         else ""
     )

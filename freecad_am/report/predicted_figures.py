@@ -85,12 +85,12 @@ def section(shape: PredictedShape, pictures: Sequence[str], path_rows: Shown) ->
         {
             "Fed by the wire": f"{shape.fed / MM3:.4g} cm3",
             "Predicted deposit": f"{shape.laid / MM3:.4g} cm3 in cubes of {shape.edge:.3g} mm",
-            "Allowance asked for": f"{shape.allowance:g} mm",
+            "Requested allowance": f"{shape.allowance:g} mm",
             "Deposit beyond the faces, least": f"{shape.least:.3g} mm at {place(shape.worst)}, layer {shape.layer}",
             "mean and largest": f"{shape.mean:.3g} mm, {shape.most:.3g} mm",
             "Faces with less than the allowance": f"{100.0 * shape.short:.3g} % of {shape.places} places",
-            "Faces that stick out": f"{100.0 * shape.outside:.3g} %",
-            "Layers end off where the next begins": f"{drifts.min(initial=0.0):.3g} to {drifts.max(initial=0.0):.3g} mm",
+            "Faces beyond the deposit": f"{100.0 * shape.outside:.3g} %",
+            "Height error at the end of the layers": f"{drifts.min(initial=0.0):.3g} to {drifts.max(initial=0.0):.3g} mm",
         },
     )
     if shape.deviation is None:

@@ -57,10 +57,10 @@ def section(fitted: Fitted, frame: Array) -> str:
     """Return the page section with both charts, viewed along Z of the feature frame (4, 4)."""
     factor, unit = units.scale(TOLERANCE, "mm")
     planned = _map(f"Layer {fitted.layer} as planned", fitted.places, fitted.off, frame)
-    deposited = _map(f"Layer {fitted.layer} as laid", fitted.laid, fitted.left, frame)
+    deposited = _map(f"Layer {fitted.layer} as deposited", fitted.laid, fitted.left, frame)
     return (
         f"<h2>Fitted to {escape(fitted.file)}</h2>{grid_of(draw_charts([planned, deposited], HALF, MAP))}"
-        f'<p class="sub">How far the scan lies above the layer, {unit}: {key_of(factor * TOLERANCE)}</p>'
+        f'<p class="sub">Height of the scan above the layer, {unit}: {key_of(factor * TOLERANCE)}</p>'
     )
 
 

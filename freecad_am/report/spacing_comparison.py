@@ -38,14 +38,12 @@ _MOTION = (
     "jerk_max_deg_s3",
     "speed_ratio_max",
 )
-_LINES = "the wall is not one surface with one closed parameter, whose lines such layers follow"
-_FRONTS = (
-    "fronts follow no lines of the surface; leave strategy.method out to compare with such layers"
-)
-_NOT_PLANNED = "not planned; choose it as strategy.spacing"
+_LINES = "the wall has several surfaces, or no closed parameter for layers along its lines"
+_FRONTS = "fronts do not follow surface lines; remove strategy.method to compare with iso-parameter layers"
+_NOT_PLANNED = "not planned; set strategy.spacing to compare"
 _REASONS = {  # why a method does not apply to open, trimmed or multi-face walls
     "iso-parameter": _LINES,
-    NORMAL: "the wall is not a tube of one surface closed around, whose sections have a centreline",
+    NORMAL: "the wall is not a closed tube of a single surface, so its sections have no centreline",
     "constant-distance": _NOT_PLANNED,
     "smooth": _NOT_PLANNED,
 }

@@ -70,7 +70,7 @@ def unknown_key(dotted: str, key: str, names: tuple[str, ...]) -> InputError:
     hint = (
         Text("did you mean {}?", matches[0]) if matches else Text("use one of {}", ", ".join(names))
     )
-    return InputError("UNKNOWN_KEY", dotted, "there is no key {!r}; {}", key, Word(hint))
+    return InputError("UNKNOWN_KEY", dotted, "the key {!r} is unknown; {}", key, Word(hint))
 
 
 def text(value: Any, key: str) -> str:
@@ -79,7 +79,7 @@ def text(value: Any, key: str) -> str:
         raise InputError(
             "BAD_VALUE",
             key,
-            "{} is not a text; put numbers in quotes",
+            "{} is not a text; write numbers in quotes",
             quote(value),
         )
     return value
@@ -143,7 +143,7 @@ def _plain(spec: f.Spec, value: Any, key: str) -> Any:
         )
     if spec.kind == f.COUNT and (isinstance(value, bool) or not isinstance(value, int)):
         raise InputError(
-            "BAD_VALUE", key, "{} is not a whole number; give one such as 3", quote(value)
+            "BAD_VALUE", key, "{} is not a whole number; give a number such as 3", quote(value)
         )
     if spec.kind in (f.TEXT, f.RECORDS):
         return text(value, key)
@@ -172,7 +172,7 @@ def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: st
             raise InputError(
                 "BAD_VALUE",
                 key,
-                "a range has two {}, not {}; give [smallest, largest]",
+                "a range needs two {}, not {}; give [smallest, largest]",
                 Word(what),
                 len(value),
             )
@@ -181,7 +181,7 @@ def _list(spec: f.Spec, field: dataclasses.Field[Any], value: list[Any], key: st
         return tuple(text(word, key) for word in value)
     if spec.records is not None:
         return spec.records.read([text(word, key) for word in value])
-    raise InputError("BAD_VALUE", key, "{} is a list; give one value", quote(value))
+    raise InputError("BAD_VALUE", key, "{} is a list; give a single value", quote(value))
 
 
 def pose(value: Any, key: str, words: tuple[str, ...] = ()) -> tuple[float, ...]:
@@ -192,7 +192,7 @@ def pose(value: Any, key: str, words: tuple[str, ...] = ()) -> tuple[float, ...]
         raise InputError(
             "BAD_VALUE",
             key,
-            "a pose has six numbers, not {}; give [x, y, z, RX, RY, RZ]",
+            "a pose needs six numbers, not {}; give [x, y, z, RX, RY, RZ]",
             count,
         )
     if max(map(abs, result)) > _BOUND:

@@ -59,24 +59,26 @@ def read(path: str, example: str = "part: {file: ...}", keys: str = "part and st
         import yaml
     except ImportError:
         raise InputError(
-            "BAD_FILE", label, "this Python cannot read YAML; install PyYAML into it"
+            "BAD_FILE",
+            label,
+            "the Python of FreeCAD cannot read YAML; install PyYAML for this Python",
         ) from None
     loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
     try:
         node = yaml.compose(text, Loader=loader)
     except yaml.YAMLError as error:
         raise InputError(
-            "BAD_FILE", label, "this is not valid YAML: {}; correct it", _one_line(error)
+            "BAD_FILE", label, "the file is not valid YAML: {}; correct the file", _one_line(error)
         ) from None
     except RecursionError:
         raise InputError(
-            "BAD_FILE", label, "this is nested too deeply; give keys such as {}", keys
+            "BAD_FILE", label, "the file is nested too deeply; give keys such as {}", keys
         ) from None
     if node is None:
         raise InputError("EMPTY_FILE", label, "the file is empty; give at least {}", example)
     tree = Tree(label, {})
     if not isinstance(node, yaml.MappingNode):
-        raise InputError("BAD_FILE", label, "this is not a mapping; give keys such as {}", keys)
+        raise InputError("BAD_FILE", label, "the file is not a mapping; give keys such as {}", keys)
     tree.values = _Reader(yaml, tree).mapping(node, "")
     return tree
 
@@ -92,7 +94,7 @@ def scalar(text: str, where: str) -> Any:
         raise InputError(
             "BAD_VALUE",
             where,
-            "{!r} is not understood: {}; write it as in a job file",
+            "{!r} is not understood: {}; write the value as in a job file",
             text,
             _one_line(error),
         ) from None
@@ -112,11 +114,11 @@ def text_of(path: str, label: str) -> str:
     except UnicodeDecodeError as error:
         line = error.object[: error.start].count(b"\n") + 1
         raise InputError(
-            "BAD_FILE", label, "the text is not UTF-8 (line {}); save it as UTF-8", line
+            "BAD_FILE", label, "the file is not UTF-8 (line {}); save it as UTF-8", line
         ) from None
     except ValueError as error:
         raise InputError(
-            "NO_FILE", path, "no file can have this name ({}); check the path", error
+            "NO_FILE", path, "no file can have the name ({}); check the path", error
         ) from None
 
 
@@ -147,7 +149,7 @@ class _Reader:
                 raise InputError(
                     "BAD_FILE",
                     self.tree.where(prefix),
-                    "a key must be a word (line {}); write one before the colon",
+                    "a key must be a word (line {}); write a word before the colon",
                     line,
                 )
             key = key_node.value
@@ -157,7 +159,7 @@ class _Reader:
                 raise InputError(
                     "DUPLICATE_KEY",
                     self.tree.where(dotted),
-                    "the key appears twice (lines {} and {}); remove one",
+                    "the key appears twice (lines {} and {}); remove one entry",
                     first_line,
                     line,
                 )
@@ -172,7 +174,7 @@ class _Reader:
             raise InputError(
                 "BAD_FILE",
                 self.tree.where(key),
-                "there are too many values; give at most {:,}",
+                "the file has too many values; give at most {:,} values",
                 _MOST_VALUES,
             )
         if isinstance(node, self.yaml.MappingNode):
@@ -196,13 +198,13 @@ class _Reader:
             raise InputError(
                 "BAD_FILE",
                 self.tree.where(key),
-                "an alias refers to itself; write the value out",
+                "an alias refers to itself; write the value in full",
             )
         if len(self.open) >= _MOST_LEVELS:
             raise InputError(
                 "BAD_FILE",
                 self.tree.where(key),
-                "this is nested too deeply; give at most {} levels",
+                "the value is nested too deeply; give at most {} levels",
                 _MOST_LEVELS,
             )
         self.open.append(node)

@@ -15,13 +15,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
-        <source>A straight edge, sketch axis or datum line to turn about, where the shape has none. A sketch is turned about its vertical axis unless another one is chosen.</source>
-        <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence autour de laquelle tourner, si la forme n&apos;en a pas. Une esquisse tourne autour de son axe vertical, sauf si un autre est choisi.</translation>
+        <source>A straight edge, sketch axis or datum line as the axis of revolution, if the shape has no axis. A sketch turns about its vertical axis by default.</source>
+        <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence comme axe de révolution, si la forme n&apos;a pas d&apos;axe. Une esquisse tourne par défaut autour de son axe vertical.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Allowed rotation about the tool axis; a full turn means free, narrower for a torch that is not coaxial.</source>
-        <translation>Rotation permise autour de l&apos;axe de l&apos;outil ; un tour entier veut dire libre, moins pour une torche qui n&apos;est pas coaxiale.</translation>
+        <source>Allowed rotation about the tool axis: a full turn for a coaxial torch, a narrower range otherwise.</source>
+        <translation>Rotation permise autour de l&apos;axe de l&apos;outil : un tour entier pour une torche coaxiale, une plage plus étroite sinon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -30,8 +30,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Analogue output for the speed of the wire where it follows the travel speed.</source>
-        <translation>Sortie analogique qui dit la vitesse du fil là où elle suit la vitesse d&apos;avance.</translation>
+        <source>Analogue output for the wire speed, if the wire feed follows the travel speed.</source>
+        <translation>Sortie analogique pour la vitesse du fil, si l&apos;avance du fil suit la vitesse d&apos;avance.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -57,6 +57,11 @@
         <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Beads by strategy.fill, or one helix around faces of revolution that close around their axis.</source>
         <translation>Cordons selon strategy.fill, ou une hélice autour de faces de révolution fermées autour de leur axe.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Centre x y z of the base circle and direction i j k of the axis, towards the apex, in part coordinates.</source>
+        <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -155,13 +160,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Direction x y z from the deposit towards the tool, in part coordinates, used where neither the curves nor faces define one.</source>
-        <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, là où ni les courbes ni des faces n&apos;en indiquent.</translation>
+        <source>Direction x y z from the deposit towards the tool, in part coordinates, used where neither curves nor faces define a direction.</source>
+        <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, utilisée là où ni les courbes ni les faces ne définissent de direction.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Distance along Z from the flange, or from the face of a rotary table, to the mounting plane; or a pose relative to it. (mm)</source>
-        <translation>Distance selon Z de la bride, ou de la face d&apos;un axe rotatif, au plan de montage ; ou une pose relative à elle. (mm)</translation>
+        <source>Distance along Z from the flange, or from the face of a rotary table, to the mounting plane; or the pose of the mounting plane. (mm)</source>
+        <translation>Distance selon Z de la bride, ou de la face d&apos;un axe rotatif, au plan de montage ; ou la pose du plan de montage. (mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Distance along the axis from the base circle to the apex of the cone; inf: a cylinder. (mm)</source>
+        <translation>Distance le long de l&apos;axe du cercle de base au sommet du cône ; inf : un cylindre. (mm)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -200,8 +210,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>External axes. level: they turn only as far as the angle from the vertical requires; optimised: each follows one polynomial per bead, optimised together with the tool rotation for less motion and larger margins.</source>
-        <translation>Axes externes. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
+        <source>External axes. level: the axes turn only as far as the angle from the vertical requires; optimised: each axis follows one polynomial per bead, optimised together with the tool rotation for less motion and larger margins.</source>
+        <translation>Axes externes. level : les axes ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : chaque axe suit un polynôme par cordon, optimisé avec la rotation de l&apos;outil pour moins de mouvement et de plus grandes marges.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -225,8 +235,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Feed of joint moves: the time of each (G93), or the speed of the linear axes wherever they move (G94).</source>
-        <translation>Avance des mouvements articulaires : le temps de chacun (G93), ou la vitesse des axes linéaires partout où ils bougent (G94).</translation>
+        <source>Feed of joint moves: the time of each move (G93), or the speed of the linear axes wherever they move (G94).</source>
+        <translation>Avance des mouvements articulaires : le temps de chaque mouvement (G93), ou la vitesse des axes linéaires partout où ils bougent (G94).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -280,18 +290,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Frame to place on the platform: that of the feature, or that of the part file.</source>
+        <source>Frame to place on the platform: the frame of the feature, or of the part file.</source>
         <translation>Repère à poser sur le plateau : celui de l&apos;élément, ou celui du fichier de la pièce.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>From the base circle to the apex of the cone, along the axis; inf: a cylinder. (mm)</source>
-        <translation>Du cercle de base au sommet du cône, le long de l&apos;axe ; inf : un cylindre. (mm)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>Further features, deposited after it in this order.</source>
-        <translation>Autres éléments, déposés après lui dans cet ordre.</translation>
+        <source>Further features, deposited after the first feature in this order.</source>
+        <translation>Autres éléments, déposés après le premier élément dans cet ordre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -315,8 +320,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>G-code: meaning of the words A, B and C while X, Y and Z are the tip in the part: the head turns by C and then A (head-ac) or B (head-bc), or the part turns below it (table-ac, table-bc); none rejects them.</source>
-        <translation>G-code : sens des mots A, B et C alors que X, Y et Z sont la pointe dans la pièce : la tête tourne par C puis A (head-ac) ou B (head-bc), ou la pièce tourne dessous (table-ac, table-bc) ; none les rejette.</translation>
+        <source>G-code: meaning of the words A, B and C while X, Y and Z are the tip in the part: the head turns by C and then A (head-ac) or B (head-bc), or the part turns below the head (table-ac, table-bc); none rejects these words.</source>
+        <translation>G-code : sens des mots A, B et C alors que X, Y et Z sont la pointe dans la pièce : la tête tourne par C puis A (head-ac) ou B (head-bc), ou la pièce tourne sous la tête (table-ac, table-bc) ; none rejette ces mots.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -349,16 +354,6 @@
         <translation>Hauteurs au-dessus de la base de la pièce, en mm, où la circularité est évaluée ; aucune : un sixième, la moitié et cinq sixièmes de la hauteur mesurée.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How far lines and other patterns reach into the beads of the walls around them, as a share of the bead width; auto: as far as neighbouring beads overlap. (%)</source>
-        <translation>Pénétration des lignes et autres motifs dans les cordons des parois qui les entourent, en part de la largeur de cordon ; auto : comme les cordons voisins se recouvrent. (%)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How far the direction of lines and zigzags turns from layer to layer.</source>
-        <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Initial fit: three or more pairs of a measured point and the same point on the part, each x y z &gt; x y z in mm, separated by semicolons; empty: automatic.</source>
         <translation>Là où commence l&apos;ajustement : trois paires ou plus d&apos;un point mesuré et du même point de la pièce, chacune x y z &gt; x y z en mm, séparées par un point-virgule ; vide : il est cherché.</translation>
@@ -380,8 +375,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Largest change of the travel speed along a bead, in mm/s per second, where a bead model sets it.</source>
-        <translation>Plus grande variation de la vitesse d&apos;avance le long d&apos;un cordon, en mm/s par seconde, là où un modèle de cordon la règle.</translation>
+        <source>Largest change of the travel speed along a bead, in mm/s per second, if a bead model sets the speed.</source>
+        <translation>Plus grande variation de la vitesse d&apos;avance le long d&apos;un cordon, en mm/s par seconde, si un modèle de cordon règle la vitesse.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/scan.py"/>
@@ -400,13 +395,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Largest distance between a bead and the straight segments that approximate it. A new feature starts with 0.01 mm up to a size of 250 mm and with more for larger ones, at most a hundredth of the bead width.</source>
-        <translation>Plus grande distance entre un cordon et les segments droits qui l&apos;approchent. Un nouvel élément commence avec 0,01 mm jusqu&apos;à une taille de 250 mm et avec plus au-delà, au plus un centième de la largeur de cordon.</translation>
+        <source>Largest distance between a bead and the straight segments that approximate it. The default of a new feature is 0.01 mm up to a size of 250 mm, and more for larger features, at most a hundredth of the bead width.</source>
+        <translation>Plus grande distance entre un cordon et les segments droits qui l&apos;approchent. La valeur par défaut d&apos;un nouvel élément est 0,01 mm jusqu&apos;à une taille de 250 mm, et plus pour les éléments plus grands, au plus un centième de la largeur de cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/scan.py"/>
-        <source>Largest distance of the scan from the plan; beyond it, the scan is rejected as another part.</source>
-        <translation>Plus grande distance de la numérisation au plan ; au-delà, elle est rejetée comme une autre pièce.</translation>
+        <source>Largest distance of the scan from the plan; a scan farther away is rejected as a scan of another part.</source>
+        <translation>Plus grande distance de la numérisation au plan ; une numérisation plus éloignée est rejetée comme celle d&apos;une autre pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -424,11 +419,6 @@
         <translation>Plus grand angle entre la direction d&apos;empilement et une paroi en surplomb, avant un avertissement ; 90 deg : aucun.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Largest share of a plane layer&apos;s section without a bead before there is a warning; 100 %: no warning. (%)</source>
-        <translation>Plus grande part de la section d&apos;une couche plane sans cordon, avant un avertissement ; 100 % : aucun. (%)</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>Largest turn of build direction and tool axis along a bead, on walls on an existing part, on hubs and in curved layers; faster turns, as at corners, are spread out, and the deviation is reported. (deg/mm)</source>
         <translation>Plus grande rotation de la direction de dépôt et de l&apos;axe de l&apos;outil le long d&apos;un cordon, sur les parois d&apos;une pièce existante, sur les moyeux et dans les couches courbes ; là où ils tourneraient plus vite, aux angles, ils sont étalés, et leur écart est dit. (deg/mm)</translation>
@@ -439,19 +429,24 @@
         <translation>Plus grande variation de l&apos;écart entre cordons sur des faces à double courbure, en part ; ces faces sont divisées en morceaux qui la respectent. (%)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest void in the section of a planar layer without a warning, as a share of the section; 100 %: no warning. (%)</source>
+        <translation>Plus grand vide dans la section d&apos;une couche plane sans avertissement, en part de la section ; 100 % : aucun avertissement. (%)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Last layers trimmed at the upper edge of the wall, or whole layers only.</source>
         <translation>Dernières couches coupées au ras du bord supérieur de la paroi, ou couches entières seulement.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/scan.py"/>
-        <source>Layer after which the scan was made, counted from 0: the layers above are fitted to it; none: the scan shows the bare substrate.</source>
-        <translation>La numérisation a été faite après cette couche, comptée à partir de 0 : les couches au-dessus y sont ajustées ; aucune : elle est du substrat nu.</translation>
+        <source>Layer after which the scan was made, counted from 0, so that the layers above are fitted to the scan; none: the scan shows the bare substrate.</source>
+        <translation>Couche après laquelle la numérisation a été faite, comptée à partir de 0 : les couches au-dessus sont ajustées à la numérisation ; aucune : la numérisation montre le substrat nu.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Layers at the layer height from the nearest point below (constant-distance), within a band around it and without corners (smooth), or along the lines up the wall (iso-parameter).</source>
-        <translation>Couches à la hauteur de couche du point le plus proche de celle du dessous (constant-distance), dans une bande autour d&apos;elle et sans angles (smooth), ou le long des lignes qui montent la paroi (iso-parameter).</translation>
+        <source>Layers at the layer height from the nearest point below (constant-distance), within a band around this height and without corners (smooth), or along the lines up the wall (iso-parameter).</source>
+        <translation>Couches à la hauteur de couche du point le plus proche au-dessous (constant-distance), dans une bande autour de cette hauteur et sans angles (smooth), ou le long des lignes qui montent la paroi (iso-parameter).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -510,8 +505,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Length of the nozzle from its tip.</source>
-        <translation>Longueur de la buse à partir de son bout.</translation>
+        <source>Length of the nozzle, measured from the tip.</source>
+        <translation>Longueur de la buse, mesurée depuis la pointe.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -530,13 +525,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes only.</source>
-        <translation>LinuxCNC : M428 et M429 choisissent entre bout d&apos;outil et axes ; faux pour une machine qui n&apos;a que ses axes.</translation>
+        <source>LinuxCNC: tolerance for rounding corners (G64 P).</source>
+        <translation>LinuxCNC : tolérance pour arrondir les angles (G64 P).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>LinuxCNC: tolerance for rounding corners (G64 P).</source>
-        <translation>LinuxCNC : tolérance pour arrondir les angles (G64 P).</translation>
+        <source>LinuxCNC: whether M428 and M429 switch between tip and axis coordinates; false for machines that only move axes.</source>
+        <translation>LinuxCNC : M428 et M429 commutent entre les coordonnées de la pointe et des axes ; false pour les machines qui ne déplacent que des axes.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -550,13 +545,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>M or H word that switches the deposit on, such as M7 or H2=1; without one the digital output does.</source>
-        <translation>Mot M ou H qui met le dépôt en marche, comme M7 ou H2=1 ; sans lui la sortie logique le fait.</translation>
+        <source>M or H word that switches the deposit on, such as M7 or H2=1; if empty, the digital output switches the deposit.</source>
+        <translation>Mot M ou H qui met le dépôt en marche, comme M7 ou H2=1 ; si vide, la sortie logique commute le dépôt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Machining allowance on the sides of the part; on top, every layer that begins within this height above the last one.</source>
-        <translation>Surépaisseur d&apos;usinage sur les côtés de la pièce ; en haut, chaque couche qui commence à moins de cette hauteur au-dessus de la dernière.</translation>
+        <source>Machining allowance on the sides of the part; on top, further layers are added if they begin within this height above the last layer.</source>
+        <translation>Surépaisseur d&apos;usinage sur les côtés de la pièce ; en haut, d&apos;autres couches sont ajoutées si elles commencent à moins de cette hauteur au-dessus de la dernière.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/cell.py"/>
@@ -569,14 +564,14 @@
         <translation>Masse du dépôt (g).</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Maximum distance of a touched point from the best fit.</source>
+        <translation>Plus grande distance d&apos;un point touché au meilleur ajustement.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Maximum points per program file; longer programs are chained.</source>
         <translation>Nombre maximal de points d&apos;un fichier de programme ; les plus longs sont enchaînés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Maximum residual of a touched point against the best fit.</source>
-        <translation>Plus grand résidu d&apos;un point touché par rapport au meilleur ajustement.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -602,11 +597,6 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Method layer-by-layer: given polynomials instead of a search: layer/bead:constant:slope, or * for all other beads, in deg and deg per turn.</source>
         <translation>Méthode layer-by-layer : polynômes donnés, non cherchés : couche/cordon:constante:pente, ou * pour tout autre cordon, en deg et deg par tour.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the part&apos;s coordinates.</source>
-        <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -655,8 +645,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Motion allowed to fit the points to the part: best fit, shifts only, a turn about and a shift along the axis of the part, or only what pairs of points define.</source>
-        <translation>Comment les points peuvent être ramenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou rien que ce que disent les paires de points.</translation>
+        <source>Motion allowed to fit the points to the part: best fit, shifts only, a turn about and a shift along the axis of the part, or only the motion that pairs of points define.</source>
+        <translation>Mouvement permis pour ajuster les points à la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou seulement le mouvement que définissent les paires de points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -680,8 +670,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), MACHINE_DEF of KUKA (2), motion group of FANUC (2).</source>
-        <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2), groupe de mouvement de FANUC (2).</translation>
+        <source>Name or number of the positioner on the controller: mechanical unit of ABB (default STN1), MACHINE_DEF of KUKA (default 2), motion group of FANUC (default 2).</source>
+        <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (STN1 par défaut), MACHINE_DEF de KUKA (2 par défaut), groupe de mouvement de FANUC (2 par défaut).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -785,8 +775,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Order of several solids on a base: the same layer of each in turn, around the axis, the same ring of each, inner rings first; or solid by solid (feature).</source>
-        <translation>Ordre de plusieurs solides sur une base : la même couche de chacun à tour de rôle, autour de l&apos;axe, le même anneau de chacun, les anneaux intérieurs d&apos;abord ; ou solide par solide (feature).</translation>
+        <source>Order of several solids on a base: layer by layer around the axis, where each layer goes from the inner rings of all solids to the outer rings; or solid by solid (feature).</source>
+        <translation>Ordre de plusieurs solides sur une base : couche par couche autour de l&apos;axe, où chaque couche va des anneaux intérieurs de tous les solides aux anneaux extérieurs ; ou solide par solide (feature).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -795,13 +785,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Overlap of lines and other patterns with the surrounding contours, as a share of the bead width; auto: the overlap of neighbouring beads. (%)</source>
+        <translation>Recouvrement des lignes et autres motifs avec les contours qui les entourent, en part de la largeur de cordon ; auto : le recouvrement des cordons voisins. (%)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Overlap of neighbouring beads as a share of the bead width; replaces the bead spacing. (%)</source>
         <translation>Recouvrement de cordons voisins en part de la largeur de cordon ; tient lieu de la distance des cordons. (%)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Parallel contours, parallel lines, or the two linked: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
-        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
+        <source>Parallel contours, parallel lines, or linked patterns: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
+        <translation>Contours parallèles, lignes parallèles, ou motifs reliés : connected, spiral, zigzag ; au-dessous de 100 % aussi grid, triangles, honeycomb, gyroid.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/curves_feature.py"/>
@@ -825,13 +820,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Points within this height of an evaluated height are used, moved to it along the planned surface.</source>
-        <translation>Les points à moins de cette distance d&apos;une hauteur évaluée sont utilisés, amenés à elle le long de la surface prévue.</translation>
+        <source>Points within this distance of an evaluated height are used, shifted to that height along the planned surface.</source>
+        <translation>Les points à moins de cette distance d&apos;une hauteur évaluée sont utilisés, ramenés à cette hauteur le long de la surface prévue.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Position of the locked axis; auto: the position with the smallest residual angle. (deg)</source>
         <translation>Position de l&apos;axe bloqué ; auto : la position où l&apos;angle restant est le plus petit. (deg)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/views/joint_path.py"/>
+        <source>Quantity shown by the colours of the beads.</source>
+        <translation>Grandeur que montrent les couleurs des cordons.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -865,8 +865,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Robots with a positioner: largest angle between the tool axis and the vertical of the cell while depositing; the positioner turns the part to keep it. 180 deg: it does not move.</source>
-        <translation>Robots avec positionneur : plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la cellule pendant le dépôt ; le positionneur tourne la pièce pour le tenir. 180 deg : il ne bouge pas.</translation>
+        <source>Robots with a positioner: largest angle between the tool axis and the vertical of the cell while depositing; the positioner turns the part to keep this limit. 180 deg: the positioner does not move.</source>
+        <translation>Robots avec positionneur : plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la cellule pendant le dépôt ; le positionneur tourne la pièce pour respecter cette limite. 180 deg : le positionneur ne bouge pas.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -875,7 +875,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, the base frame of the robot; separate several with ;.</source>
+        <source>Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, the base frame of the robot; separate several mechanisms with semicolons.</source>
         <translation>Robots : axes à côté d&apos;eux qui portent la pièce ou le robot, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
     </message>
     <message>
@@ -895,8 +895,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: smallest distance between the links and part, deposit, platform, fixtures and nozzle, rapids included; without it, planning ignores the links. (mm)</source>
-        <translation>Robots : plus petite distance entre les corps et pièce, dépôt, plateau, montages et buse, rapides compris ; sans elle, la planification ignore les corps. (mm)</translation>
+        <source>Robots: smallest distance between the links and part, deposit, platform, fixtures and nozzle, rapids included; if not set, planning ignores the links. (mm)</source>
+        <translation>Robots : plus petite distance entre les corps et pièce, dépôt, plateau, montages et buse, rapides compris ; si elle n&apos;est pas donnée, la planification ignore les corps. (mm)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Rotation of lines and zigzags from layer to layer.</source>
+        <translation>Rotation des lignes et des zigzags d&apos;une couche à l&apos;autre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -915,8 +920,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Schedule number with which the welder or extruder deposits beads; program.schedule defines how it is sent.</source>
-        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
+        <source>Schedule number with which the welder or extruder deposits beads; program.schedule defines the transmission.</source>
+        <translation>Numéro avec lequel le poste de soudage ou l&apos;extrudeuse dépose les cordons ; program.schedule définit la transmission.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -940,8 +945,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Shape of the layers: parallel planes; surfaces at equal distances from the support, measured through the part, so that no support material is needed (geodesic); surfaces at equal straight distances from it (offset); or planes normal to a guide curve (along).</source>
-        <translation>Forme des couches : plans parallèles ; surfaces à égale distance de l&apos;appui, mesurée à travers la pièce, si bien qu&apos;aucun support n&apos;est nécessaire (geodesic) ; surfaces à égale distance droite de lui (offset) ; ou plans normaux à une courbe guide (along).</translation>
+        <source>Shape of the layers: parallel planes; surfaces at equal distances from the support, measured through the part, so that no support material is needed (geodesic); surfaces at equal straight distances from the support (offset); or planes normal to a guide curve (along).</source>
+        <translation>Forme des couches : plans parallèles ; surfaces à égale distance de l&apos;appui, mesurée à travers la pièce, si bien qu&apos;aucun support n&apos;est nécessaire (geodesic) ; surfaces à égale distance droite de l&apos;appui (offset) ; ou plans normaux à une courbe guide (along).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -984,11 +989,6 @@
         <translation>Épaule, coude et poignet de la trajectoire articulaire ; cell : comme dans la cellule.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/inspection/view.py"/>
-        <source>Show in the corner of the view what the colours mean.</source>
-        <translation>Montrer dans le coin de la vue ce que veulent dire les couleurs.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
         <source>Show the build direction at every n-th point.</source>
         <translation>Montrer la direction de dépôt tous les n points.</translation>
@@ -997,6 +997,11 @@
         <location filename="../../freecad_am/gui/path/path_view.py"/>
         <source>Show the build directions as short lines.</source>
         <translation>Montrer les directions de dépôt par de courtes lignes.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/view.py"/>
+        <source>Show the legend of the colours in the corner of the view.</source>
+        <translation>Montrer la légende des couleurs dans le coin de la vue.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/views/cell.py"/>
@@ -1089,6 +1094,11 @@
         <translation>Début des cordons fermés : à l&apos;angle, au plus près du point, au coin le plus vif, réparti à distance des autres débuts, ou caché à un observateur.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/stage.py"/>
+        <source>State of the result: up to date, stale, infeasible or failed.</source>
+        <translation>État du résultat : à jour, périmé, infaisable ou échoué.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Temperature in degrees Celsius below which a solid or a wall must cool before its next layer; the torch waits above the start of that layer.</source>
         <translation>Température en degrés Celsius sous laquelle un solide, ou une paroi, doit être avant sa couche suivante ; la torche attend au-dessus de son départ.</translation>
@@ -1105,8 +1115,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>The cell that runs it.</source>
-        <translation>La cellule qui l&apos;exécute.</translation>
+        <source>The cell that runs the toolpath.</source>
+        <translation>La cellule qui exécute la trajectoire d&apos;outil.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -1170,13 +1180,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>The problem and its remedy.</source>
+        <source>The problem and the remedy.</source>
         <translation>Le problème et son remède.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>The schedule number is set on a group output; or arc instructions name it and switch the deposit; or it selects the program to call.</source>
-        <translation>Le numéro de programme de soudage est mis sur une sortie groupée ; ou les instructions d&apos;arc le nomment et commutent le dépôt ; ou il choisit le programme à appeler.</translation>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>The robot carries the tool or the part, or the machine has rotary axes.</source>
+        <translation>Le robot porte l&apos;outil ou la pièce, ou la machine a des axes rotatifs.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -1215,8 +1225,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Time by which the deposit is switched ahead, during the motion, to compensate the delay of the equipment. None: the robot stops to switch. (s)</source>
-        <translation>Durée d&apos;avance de la commutation du dépôt, pendant le mouvement, pour compenser le retard de l&apos;équipement. Aucune : le robot s&apos;arrête pour commuter. (s)</translation>
+        <source>Time by which the deposit is switched early, during the motion, to compensate for the delay of the equipment. None: the robot stops to switch. (s)</source>
+        <translation>Durée dont le dépôt est commuté en avance, pendant le mouvement, pour compenser le retard de l&apos;équipement. Aucune : le robot s&apos;arrête pour commuter. (s)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -1284,6 +1294,11 @@
         <translation>Outil sur le robot seulement : pose du bout sur la bride, son Z pointant hors de la buse. mm, RX RY RZ.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Transmission of the schedule number: on a group output, in arc instructions that also switch the deposit, or as the number of the program to call.</source>
+        <translation>Transmission du numéro de programme de soudage : par une sortie groupée, dans les instructions d&apos;arc qui commutent aussi le dépôt, ou comme numéro du programme à appeler.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
         <source>Travel speed in this length. (mm/s)</source>
         <translation>Vitesse de la torche sur cette longueur. (mm/s)</translation>
@@ -1344,21 +1359,6 @@
         <translation>Numéro du balayage propre à la commande avec lequel les cordons sont déposés ; 0 ou aucun : droits.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/views/joint_path.py"/>
-        <source>What the colours of the beads show.</source>
-        <translation>Ce que disent les couleurs des cordons.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>What the robot carries, tool or part; or a machine with rotary axes.</source>
-        <translation>Ce que porte le robot, l&apos;outil ou la pièce ; ou une machine à axes rotatifs.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/stage.py"/>
-        <source>Whether the result matches its inputs.</source>
-        <translation>Si le résultat correspond à ses entrées.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Which wall of a solid is deposited; middle runs halfway between outer and inner.</source>
         <translation>Quelle paroi d&apos;un solide est déposée ; middle court à mi-chemin entre l&apos;extérieure et l&apos;intérieure.</translation>
@@ -1370,13 +1370,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Width of contours in planes: it follows the thickness of the region where that covers the region better (adaptive), or is the usual width (fixed).</source>
-        <translation>Largeur des contours dans les plans : elle suit l&apos;épaisseur de la région là où cela couvre mieux la région (adaptatif), ou c&apos;est la largeur habituelle (fixe).</translation>
+        <source>Width of contours in planes: adaptive contours follow the thickness of a region if this covers the region better; fixed contours have the usual width.</source>
+        <translation>Largeur des contours dans les plans : les contours adaptatifs suivent l&apos;épaisseur d&apos;une région si cela la couvre mieux ; les contours fixes ont la largeur habituelle.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Width of the bead; the bead model keeps it. Solids on hubs are filled with beads of this width.</source>
-        <translation>Largeur du cordon ; tenue par le modèle de cordon. Les solides sur moyeux sont remplis de cordons de cette largeur.</translation>
+        <source>Width of the bead; a bead model keeps this width. Solids on hubs are filled with beads of this width.</source>
+        <translation>Largeur du cordon ; un modèle de cordon tient cette largeur. Les solides sur moyeux sont remplis de cordons de cette largeur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
@@ -1400,7 +1400,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Wire feed; auto: the feed for the bead width and layer height at the travel speed, or that of the bead model. 0: no wire. (mm/s)</source>
+        <source>Wire feed; auto: the feed for the bead width and layer height at the travel speed, or the feed of the bead model. 0: no wire. (mm/s)</source>
         <translation>Vitesse du fil ; auto : celle qui fait des cordons de leur largeur et de la hauteur de couche à la vitesse d&apos;avance, ou celle des cordons du modèle de cordon. 0 : pas de fil. (mm/s)</translation>
     </message>
     <message>
@@ -1438,8 +1438,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>(others are on the bend of {0}: as the substrate it shapes their layers)</source>
-        <translation>(d&apos;autres sont sur la courbure de {0} : comme substrat il donne sa forme à leurs couches)</translation>
+        <source>(other solids are on the bend of {0}: as the substrate it shapes their layers)</source>
+        <translation>(d&apos;autres solides sont sur la courbure de {0} : comme substrat celui-ci donne sa forme à leurs couches)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -1453,8 +1453,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>, as its content is not part of the shape ({0})</source>
-        <translation>, car son contenu ne fait pas partie de la forme ({0})</translation>
+        <source>, as all objects are excluded from the shape ({0})</source>
+        <translation>, car tous les objets sont exclus de la forme ({0})</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/vectors.py"/>
@@ -1468,8 +1468,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>. Multiplied by {0} it would reach {1}: is its file in {2}? If so, export it in mm, or set scale: {3} mm, as part.scale (in the window: Meshes, Scale)</source>
-        <translation>. Multiplié par {0} il atteindrait {1} : son fichier est-il en {2} ? Alors exportez-le en mm, ou donnez `scale: {3} mm` avec lui, comme part.scale (dans la fenêtre : Maillages, Échelle)</translation>
+        <source>. Multiplied by {0} the solid would reach {1}: is its file in {2}? If so, export the file in mm, or set scale: {3} mm, as part.scale (in the window: Meshes, Scale)</source>
+        <translation>. Multiplié par {0} le solide atteindrait {1} : son fichier est-il en {2} ? Alors exportez le fichier en mm, ou fixez `scale: {3} mm`, comme part.scale (dans la fenêtre : Maillages, Échelle)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model_notes.py"/>
@@ -1552,29 +1552,29 @@
         <translation>: le modèle de cordon prédit jusqu&apos;à {0} mm de plus en largeur ; au-dessous de {1} mm/s il n&apos;y a pas de mesures</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/kernel/limits.py"/>
+        <source>; all {0} face(s), about {1}, are valid</source>
+        <translation>; toutes les {0} face(s), autour de {1}, sont valables</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
-        <source>; and rows with the same settings have different results: {0}; measure them again</source>
-        <translation>; et des lignes déposées de la même façon ont été mesurées différemment : {0} ; mesurez-les à nouveau</translation>
+        <source>; and rows with the same settings have different results: {0}; measure these beads again</source>
+        <translation>; et des lignes aux mêmes réglages ont des résultats différents : {0} ; mesurez ces cordons de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>; between the mesh edges it is smoothed, by up to {0} mm, about the error of the mesh itself</source>
-        <translation>; entre les arêtes du maillage elle est lissée, de {0} mm au plus, à peu près l&apos;erreur du maillage lui-même</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>; each of its {0} face(s), about {1}, is valid</source>
-        <translation>; ses {0} face(s), autour de {1}, sont saines une à une</translation>
+        <source>; between the mesh edges the curve is smoothed by up to {0} mm, about the error of the mesh</source>
+        <translation>; entre les arêtes du maillage la courbe est lissée de {0} mm au plus, à peu près l&apos;erreur du maillage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>; it was rotated by {0} deg and its origin moved by {1} mm to match the plan</source>
-        <translation>; il a été tourné de {0} deg et son origine déplacée de {1} mm pour venir sur le plan</translation>
+        <source>; the scan was rotated by {0} deg and its origin moved by {1} mm to match the plan</source>
+        <translation>; la numérisation a été tournée de {0} deg et son origine déplacée de {1} mm pour correspondre au plan</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>; it was used as measured, in part coordinates</source>
-        <translation>; il a été pris tel que mesuré, dans les coordonnées de la pièce</translation>
+        <source>; the scan was used as measured, in part coordinates</source>
+        <translation>; la numérisation a été utilisée telle que mesurée, dans les coordonnées de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
@@ -1593,23 +1593,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>&lt;{0}&gt; has no &lt;{1}&gt;; add it</source>
-        <translation>&lt;{0}&gt; n&apos;a pas de &lt;{1}&gt; ; ajoutez-le</translation>
+        <source>&lt;{0}&gt; has no &lt;{1}&gt;; add this element</source>
+        <translation>&lt;{0}&gt; n&apos;a pas de &lt;{1}&gt; ; ajoutez cet élément</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>&lt;{0}&gt; has no attribute {1}; remove it</source>
-        <translation>&lt;{0}&gt; n&apos;a pas d&apos;attribut {1} ; supprimez-le</translation>
+        <source>&lt;{0}&gt; has no attribute {1}; remove the attribute</source>
+        <translation>&lt;{0}&gt; n&apos;a pas d&apos;attribut {1} ; supprimez l&apos;attribut</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>&lt;{0}&gt; has no {1}; add it</source>
-        <translation>&lt;{0}&gt; n&apos;a pas de {1} ; ajoutez-le</translation>
+        <source>&lt;{0}&gt; has no {1}; add the attribute</source>
+        <translation>&lt;{0}&gt; n&apos;a pas de {1} ; ajoutez l&apos;attribut</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>&lt;{0}&gt; {1} has no &lt;{2}&gt;; add it</source>
-        <translation>&lt;{0}&gt; {1} n&apos;a pas de &lt;{2}&gt; ; ajoutez-le</translation>
+        <source>&lt;{0}&gt; {1} has no &lt;{2}&gt;; add this element</source>
+        <translation>&lt;{0}&gt; {1} n&apos;a pas de &lt;{2}&gt; ; ajoutez cet élément</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
@@ -1653,8 +1653,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
-        <source>A straight edge, sketch axis or datum line to turn about, where the shape has none. A sketch is turned about its vertical axis unless another one is chosen.</source>
-        <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence autour de laquelle tourner, si la forme n&apos;en a pas. Une esquisse tourne autour de son axe vertical, sauf si un autre est choisi.</translation>
+        <source>A straight edge, sketch axis or datum line as the axis of revolution, if the shape has no axis. A sketch turns about its vertical axis by default.</source>
+        <translation>Une arête droite, un axe d&apos;esquisse ou une ligne de référence comme axe de révolution, si la forme n&apos;a pas d&apos;axe. Une esquisse tourne par défaut autour de son axe vertical.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
@@ -1688,8 +1688,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences_page.py"/>
-        <source>Additional folder of machine files, such as a shared one; your own are in {} as well</source>
-        <translation>Un autre dossier de fichiers machine, comme un dossier partagé ; les vôtres sont aussi dans {}</translation>
+        <source>Additional folder of machine files, such as a shared folder; your own machine files are in {}</source>
+        <translation>Dossier supplémentaire de fichiers machine, comme un dossier partagé ; vos propres fichiers machine sont dans {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
@@ -1698,8 +1698,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
-        <source>Adds the selected features, or the next one in the document</source>
-        <translation>Ajoute les éléments sélectionnés, sinon le suivant du document</translation>
+        <source>Adds the selected features, or the next feature in the document</source>
+        <translation>Ajoute les éléments sélectionnés, ou l&apos;élément suivant du document</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
@@ -1738,8 +1738,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>Allowed rotation about the tool axis; a full turn means free, narrower for a torch that is not coaxial.</source>
-        <translation>Rotation permise autour de l&apos;axe de l&apos;outil ; un tour entier veut dire libre, moins pour une torche qui n&apos;est pas coaxiale.</translation>
+        <source>Allowed rotation about the tool axis: a full turn for a coaxial torch, a narrower range otherwise.</source>
+        <translation>Rotation permise autour de l&apos;axe de l&apos;outil : un tour entier pour une torche coaxiale, une plage plus étroite sinon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
@@ -1763,13 +1763,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/families/window.py"/>
-        <source>Also Ctrl+click the part it grows on.</source>
-        <translation>Sélectionnez aussi, avec Ctrl, la pièce sur laquelle il croît.</translation>
+        <source>Also Ctrl+click the substrate, the part below.</source>
+        <translation>Sélectionnez aussi, avec Ctrl, le substrat, la pièce au-dessous.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
-        <source>Also write the moves between beads, on their own layer; toolpaths have none</source>
-        <translation>Écrire aussi les mouvements entre les cordons, sur un calque à eux ; les trajectoires d&apos;outil n&apos;en ont pas</translation>
+        <source>Also write the moves between beads, on a separate layer; toolpaths have no such moves</source>
+        <translation>Écrire aussi les mouvements entre les cordons, sur un calque à part ; les trajectoires d&apos;outil n&apos;ont pas de tels mouvements</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
@@ -1783,8 +1783,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Analogue output for the speed of the wire where it follows the travel speed.</source>
-        <translation>Sortie analogique qui dit la vitesse du fil là où elle suit la vitesse d&apos;avance.</translation>
+        <source>Analogue output for the wire speed, if the wire feed follows the travel speed.</source>
+        <translation>Sortie analogique pour la vitesse du fil, si l&apos;avance du fil suit la vitesse d&apos;avance.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/new_job.py"/>
@@ -1838,8 +1838,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>ArcL is a linear move, but this program has joint moves; motion: cartesian has linear ones</source>
-        <translation>ArcL est un mouvement linéaire, mais ce programme a des mouvements articulaires ; motion: cartesian a des mouvements linéaires</translation>
+        <source>ArcL is a linear move, but the program has joint moves; use motion: cartesian for linear moves</source>
+        <translation>ArcL est un mouvement linéaire, mais le programme a des mouvements articulaires ; utilisez motion: cartesian pour des mouvements linéaires</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>ArcL may not weave when the robot moves the part below a fixed torch</source>
+        <translation>ArcL ne balaie peut-être pas quand le robot déplace la pièce sous une torche fixe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/text.py"/>
@@ -1848,8 +1853,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>ArcTech has no such line here, or it names other data than the lines before it</source>
-        <translation>ArcTech n&apos;a pas de telle ligne ici, ou elle nomme d&apos;autres données que les lignes précédentes</translation>
+        <source>ArcTech has no such line here, or the line names other data than the previous lines</source>
+        <translation>ArcTech n&apos;a pas de telle ligne ici, ou la ligne nomme d&apos;autres données que les lignes précédentes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
@@ -2113,8 +2118,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/new_job.py"/>
-        <source>Cell, feature, toolpath, joint path and program are created with their defaults; double-click one in the tree to change it.</source>
-        <translation>Cellule, élément, trajectoire d&apos;outil, trajectoire articulaire et programme sont faits avec leurs valeurs par défaut ; double-cliquez sur l&apos;un d&apos;eux dans l&apos;arbre pour le modifier.</translation>
+        <source>Cell, feature, toolpath, joint path and program are created with their defaults; double-click a stage in the tree to change it.</source>
+        <translation>Cellule, élément, trajectoire d&apos;outil, trajectoire articulaire et programme sont créés avec leurs valeurs par défaut ; double-cliquez sur une étape dans l&apos;arbre pour la modifier.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/context_menu.py"/>
@@ -2125,6 +2130,11 @@
         <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Cell…</source>
         <translation>Cellule…</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Centre x y z of the base circle and direction i j k of the axis, towards the apex, in part coordinates.</source>
+        <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -2168,8 +2178,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/program.py"/>
-        <source>Checks of this program, how they were made and their worst points; click one to show it</source>
-        <translation>Vérifications de ce programme, leur méthode et leurs pires points ; cliquez-en une pour la montrer</translation>
+        <source>Checks of the program with method and worst point; click a check to show its worst point</source>
+        <translation>Vérifications du programme avec leur méthode et leur pire point ; cliquez sur une vérification pour montrer son pire point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
@@ -2243,8 +2253,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
-        <source>Clears it</source>
-        <translation>Efface le choix</translation>
+        <source>Clears the field</source>
+        <translation>Efface le champ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program_window.py"/>
@@ -2432,6 +2442,11 @@
         <translation>Cliquez, avec Ctrl, sur les faces à couvrir.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
+        <source>Ctrl+click the object</source>
+        <translation>cliquez sur l&apos;objet avec Ctrl</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Cubic</source>
         <translation>Cubique</translation>
@@ -2483,8 +2498,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences_page.py"/>
-        <source>Defaults and appearance of the window for new objects. Existing documents, jobs and macros do not depend on them.</source>
-        <translation>Valeurs par défaut et apparence de la fenêtre pour les nouveaux objets. Les documents, travaux et macros existants n&apos;en dépendent pas.</translation>
+        <source>Defaults and appearance of the window for new objects. Existing documents, jobs and macros do not depend on these settings.</source>
+        <translation>Valeurs par défaut et apparence de la fenêtre pour les nouveaux objets. Les documents, travaux et macros existants ne dépendent pas de ces réglages.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
@@ -2673,8 +2688,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Direction x y z from the deposit towards the tool, in part coordinates, used where neither the curves nor faces define one.</source>
-        <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, là où ni les courbes ni des faces n&apos;en indiquent.</translation>
+        <source>Direction x y z from the deposit towards the tool, in part coordinates, used where neither curves nor faces define a direction.</source>
+        <translation>Direction x y z du dépôt vers l&apos;outil, dans les coordonnées de la pièce, utilisée là où ni les courbes ni les faces ne définissent de direction.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -2683,8 +2698,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Distance along Z from the flange, or from the face of a rotary table, to the mounting plane; or a pose relative to it.</source>
-        <translation>Distance selon Z de la bride, ou de la face d&apos;un axe rotatif, au plan de montage ; ou une pose relative à elle.</translation>
+        <source>Distance along Z from the flange, or from the face of a rotary table, to the mounting plane; or the pose of the mounting plane.</source>
+        <translation>Distance selon Z de la bride, ou de la face d&apos;un axe rotatif, au plan de montage ; ou la pose du plan de montage.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Distance along the axis from the base circle to the apex of the cone; inf: a cylinder.</source>
+        <translation>Distance le long de l&apos;axe du cercle de base au sommet du cône ; inf : un cylindre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -2878,13 +2898,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>External axes. level: they turn only as far as the angle from the vertical requires; optimised: each follows one polynomial per bead, optimised together with the tool rotation for less motion and larger margins.</source>
-        <translation>Axes externes. level : ils ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : un polynôme par cordon pour chacun, avec la rotation autour de l&apos;outil, pour moins de mouvement et de plus grandes marges.</translation>
+        <source>External axes. level: the axes turn only as far as the angle from the vertical requires; optimised: each axis follows one polynomial per bead, optimised together with the tool rotation for less motion and larger margins.</source>
+        <translation>Axes externes. level : les axes ne tournent pas plus que l&apos;angle à la verticale ne le demande ; optimised : chaque axe suit un polynôme par cordon, optimisé avec la rotation de l&apos;outil pour moins de mouvement et de plus grandes marges.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>FANUC sets AO[] between two moves when it reads the line, ahead of the motion</source>
-        <translation>FANUC règle AO[] entre deux mouvements à la lecture de la ligne, avant le mouvement</translation>
+        <source>FANUC sets AO[] between two moves when the controller reads the line, ahead of the motion</source>
+        <translation>FANUC règle AO[] entre deux mouvements quand la commande lit la ligne, avant le mouvement</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cladding.py"/>
@@ -2918,8 +2938,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cladding.py"/>
-        <source>Faces to cover; if none is selected and the object is not a solid, all its faces.</source>
-        <translation>Faces à couvrir ; si aucune n&apos;est choisie et que l&apos;objet n&apos;est pas un solide, toutes ses faces.</translation>
+        <source>Faces to cover; if no face is selected, all faces of an object that is not a solid.</source>
+        <translation>Faces à couvrir ; si aucune n&apos;est sélectionnée, toutes les faces d&apos;un objet qui n&apos;est pas un solide.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
@@ -2963,8 +2983,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Feed of joint moves: the time of each (G93), or the speed of the linear axes wherever they move (G94).</source>
-        <translation>Avance des mouvements articulaires : le temps de chacun (G93), ou la vitesse des axes linéaires partout où ils bougent (G94).</translation>
+        <source>Feed of joint moves: the time of each move (G93), or the speed of the linear axes wherever they move (G94).</source>
+        <translation>Avance des mouvements articulaires : le temps de chaque mouvement (G93), ou la vitesse des axes linéaires partout où ils bougent (G94).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
@@ -3037,6 +3057,11 @@
         <translation>Première couche : {}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/panels/program.py"/>
+        <source>First lines of the program to be written</source>
+        <translation>Premières lignes du programme à écrire</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/tools/whats_this.py"/>
         <source>First make a cell: Cell….</source>
         <translation>Faites d&apos;abord une cellule : Cellule….</translation>
@@ -3058,8 +3083,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/whats_this.py"/>
-        <source>First open a part with faces, such as a STEP file; a mesh has none.</source>
-        <translation>Ouvrez d&apos;abord une pièce à faces, comme un fichier STEP ; un maillage n&apos;en a pas.</translation>
+        <source>First open a part with faces, such as a STEP file; a mesh has no faces.</source>
+        <translation>Ouvrez d&apos;abord une pièce à faces, comme un fichier STEP ; un maillage n&apos;a pas de faces.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/tool.py"/>
@@ -3068,8 +3093,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/whats_this.py"/>
-        <source>First open a part, or import one into this document.</source>
-        <translation>Ouvrez d&apos;abord une pièce, ou importez-en une dans ce document.</translation>
+        <source>First open a part, or import a part into this document.</source>
+        <translation>Ouvrez d&apos;abord une pièce, ou importez une pièce dans ce document.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
@@ -3168,7 +3193,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Frame to place on the platform: that of the feature, or that of the part file.</source>
+        <source>Frame to place on the platform: the frame of the feature, or of the part file.</source>
         <translation>Repère à poser sur le plateau : celui de l&apos;élément, ou celui du fichier de la pièce.</translation>
     </message>
     <message>
@@ -3193,8 +3218,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
-        <source>FreeCAD left it out of the recompute; unfreeze it (Toggle Freeze in the tree) if it is frozen, then recompute</source>
-        <translation>FreeCAD l&apos;a omis du recalcul ; dégelez-le s&apos;il est gelé (Basculer le gel dans l&apos;arborescence), puis recalculez</translation>
+        <source>FreeCAD left the object out of the recompute; if the object is frozen, unfreeze it (Toggle Freeze in the tree), then recompute</source>
+        <translation>FreeCAD a omis l&apos;objet du recalcul ; si l&apos;objet est gelé, dégelez-le (Basculer le gel dans l&apos;arborescence), puis recalculez</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop.py"/>
@@ -3217,19 +3242,14 @@
         <translation>Du corps</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>From the base circle to the apex of the cone, along the axis; inf: a cylinder.</source>
-        <translation>Du cercle de base au sommet du cône, le long de l&apos;axe ; inf : un cylindre.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
         <source>Further</source>
         <translation>Autres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>Further features, deposited after it in this order.</source>
-        <translation>Autres éléments, déposés après lui dans cet ordre.</translation>
+        <source>Further features, deposited after the first feature in this order.</source>
+        <translation>Autres éléments, déposés après le premier élément dans cet ordre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -3263,8 +3283,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>G-code: meaning of the words A, B and C while X, Y and Z are the tip in the part: the head turns by C and then A (head-ac) or B (head-bc), or the part turns below it (table-ac, table-bc); none rejects them.</source>
-        <translation>G-code : sens des mots A, B et C alors que X, Y et Z sont la pointe dans la pièce : la tête tourne par C puis A (head-ac) ou B (head-bc), ou la pièce tourne dessous (table-ac, table-bc) ; none les rejette.</translation>
+        <source>G-code: meaning of the words A, B and C while X, Y and Z are the tip in the part: the head turns by C and then A (head-ac) or B (head-bc), or the part turns below the head (table-ac, table-bc); none rejects these words.</source>
+        <translation>G-code : sens des mots A, B et C alors que X, Y et Z sont la pointe dans la pièce : la tête tourne par C puis A (head-ac) ou B (head-bc), ou la pièce tourne sous la tête (table-ac, table-bc) ; none rejette ces mots.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -3273,8 +3293,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>G53 with relative moves (G91) is not supported; write G90 before it</source>
-        <translation>G53 en déplacements relatifs (G91) n&apos;est pas pris en charge ; écrivez G90 avant</translation>
+        <source>G53 with relative moves (G91) is not supported; write G90 before G53</source>
+        <translation>G53 en déplacements relatifs (G91) n&apos;est pas pris en charge ; écrivez G90 avant G53</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -3402,34 +3422,29 @@
         <translation>Axe horizontal</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How far lines and other patterns reach into the beads of the walls around them, as a share of the bead width; auto: as far as neighbouring beads overlap.</source>
-        <translation>Pénétration des lignes et autres motifs dans les cordons des parois qui les entourent, en part de la largeur de cordon ; auto : comme les cordons voisins se recouvrent.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>How far the direction of lines and zigzags turns from layer to layer.</source>
-        <translation>De combien la direction des lignes et des zigzags tourne d&apos;une couche à l&apos;autre.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
         <source>Hub</source>
         <translation>Moyeu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/post.py"/>
-        <source>H{0} switches the deposit; use another one for schedules</source>
-        <translation>H{0} commute le dépôt ; prenez-en un autre pour les programmes de soudage</translation>
+        <source>H{0} switches the deposit; use another H word for schedules</source>
+        <translation>H{0} commute le dépôt ; utilisez un autre mot H pour les programmes de soudage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>INFORM sets AOUT between two moves when it reaches the line, and rounded corners shift that moment</source>
-        <translation>INFORM règle AOUT entre deux mouvements quand il atteint la ligne, et les coins arrondis décalent ce moment</translation>
+        <source>INFORM has no confirmed way to switch an output ahead of a point</source>
+        <translation>INFORM n&apos;a pas de moyen confirmé de commuter une sortie en avance sur un point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
+        <source>INFORM sets AOUT between two moves when the controller reaches the line, and rounded corners shift that moment</source>
+        <translation>INFORM règle AOUT entre deux mouvements quand la commande atteint la ligne, et les coins arrondis décalent ce moment</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
-        <source>If empty, it is sized for the first layer.</source>
-        <translation>Laissé vide, il est aussi grand que la première couche le demande.</translation>
+        <source>If empty, the platform is sized for the first layer.</source>
+        <translation>Si vide, le plateau est dimensionné pour la première couche.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
@@ -3440,11 +3455,6 @@
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
         <source>In a job file: {}; in macros: {}.</source>
         <translation>Dans un fichier de travail : {} ; dans les macros : {}.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
-        <source>In planar layers, as curved ones were infeasible. {}</source>
-        <translation>En couches planes, car des couches courbes n’étaient pas réalisables. {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -3505,11 +3515,6 @@
         <location filename="../../freecad_am/gui/tools/commands.py"/>
         <source>Inspect…</source>
         <translation>Contrôler…</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/widgets/fields.py"/>
-        <source>It may follow an expression: {}.</source>
-        <translation>Peut suivre une expression : {}.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -3608,13 +3613,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cell.py"/>
-        <source>Kept as entered; for {} it would be {}.</source>
-        <translation>Laissé comme saisi ; pour {} ce serait {}.</translation>
+        <source>Kept as entered; the job of {} is feasible with {}.</source>
+        <translation>Laissé comme saisi ; la tâche de {} peut se faire avec {}.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/cell.py"/>
-        <source>Kept as entered; the job of {} is feasible with {}.</source>
-        <translation>Laissé comme saisi ; la tâche de {} peut se faire avec {}.</translation>
+        <source>Kept as entered; the proposal for {} is {}.</source>
+        <translation>Laissé comme saisi ; la proposition pour {} est {}.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/new_job.py"/>
@@ -3643,8 +3648,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Largest change of the travel speed along a bead, in mm/s per second, where a bead model sets it.</source>
-        <translation>Plus grande variation de la vitesse d&apos;avance le long d&apos;un cordon, en mm/s par seconde, là où un modèle de cordon la règle.</translation>
+        <source>Largest change of the travel speed along a bead, in mm/s per second, if a bead model sets the speed.</source>
+        <translation>Plus grande variation de la vitesse d&apos;avance le long d&apos;un cordon, en mm/s par seconde, si un modèle de cordon règle la vitesse.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/place.py"/>
@@ -3693,13 +3698,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Largest distance between a bead and the straight segments that approximate it. A new feature starts with 0.01 mm up to a size of 250 mm and with more for larger ones, at most a hundredth of the bead width.</source>
-        <translation>Plus grande distance entre un cordon et les segments droits qui l&apos;approchent. Un nouvel élément commence avec 0,01 mm jusqu&apos;à une taille de 250 mm et avec plus au-delà, au plus un centième de la largeur de cordon.</translation>
+        <source>Largest distance between a bead and the straight segments that approximate it. The default of a new feature is 0.01 mm up to a size of 250 mm, and more for larger features, at most a hundredth of the bead width.</source>
+        <translation>Plus grande distance entre un cordon et les segments droits qui l&apos;approchent. La valeur par défaut d&apos;un nouvel élément est 0,01 mm jusqu&apos;à une taille de 250 mm, et plus pour les éléments plus grands, au plus un centième de la largeur de cordon.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/scan.py"/>
-        <source>Largest distance of the scan from the plan; beyond it, the scan is rejected as another part.</source>
-        <translation>Plus grande distance de la numérisation au plan ; au-delà, elle est rejetée comme une autre pièce.</translation>
+        <source>Largest distance of the scan from the plan; a scan farther away is rejected as a scan of another part.</source>
+        <translation>Plus grande distance de la numérisation au plan ; une numérisation plus éloignée est rejetée comme celle d&apos;une autre pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -3717,14 +3722,14 @@
         <translation>Plus grande vitesse articulaire : {0:.0f} % du maximum de {1}, dans la couche {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Largest overhang angle between the stacking direction and a wall without a warning; 90 deg: no warning.</source>
-        <translation>Plus grand angle entre la direction d&apos;empilement et une paroi en surplomb, avant un avertissement ; 90 deg : aucun.</translation>
+        <location filename="../../freecad_am/core/parameters/place.py"/>
+        <source>Largest number of poses that are planned with all points to find a feasible pose, best poses first.</source>
+        <translation>Plus grand nombre de poses planifiées avec tous les points pour trouver une pose faisable, les meilleures d&apos;abord.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Largest share of a plane layer&apos;s section without a bead before there is a warning; 100 %: no warning.</source>
-        <translation>Plus grande part de la section d&apos;une couche plane sans cordon, avant un avertissement ; 100 % : aucun.</translation>
+        <source>Largest overhang angle between the stacking direction and a wall without a warning; 90 deg: no warning.</source>
+        <translation>Plus grand angle entre la direction d&apos;empilement et une paroi en surplomb, avant un avertissement ; 90 deg : aucun.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -3742,6 +3747,11 @@
         <translation>Plus grande variation de l&apos;écart entre cordons sur des faces à double courbure, en part ; ces faces sont divisées en morceaux qui la respectent.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Largest void in the section of a planar layer without a warning, as a share of the section; 100 %: no warning.</source>
+        <translation>Plus grand vide dans la section d&apos;une couche plane sans avertissement, en part de la section ; 100 % : aucun avertissement.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Last layers trimmed at the upper edge of the wall, or whole layers only.</source>
         <translation>Dernières couches coupées au ras du bord supérieur de la paroi, ou couches entières seulement.</translation>
@@ -3753,8 +3763,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/scan.py"/>
-        <source>Layer after which the scan was made, counted from 0: the layers above are fitted to it; none: the scan shows the bare substrate.</source>
-        <translation>La numérisation a été faite après cette couche, comptée à partir de 0 : les couches au-dessus y sont ajustées ; aucune : elle est du substrat nu.</translation>
+        <source>Layer after which the scan was made, counted from 0, so that the layers above are fitted to the scan; none: the scan shows the bare substrate.</source>
+        <translation>Couche après laquelle la numérisation a été faite, comptée à partir de 0 : les couches au-dessus sont ajustées à la numérisation ; aucune : la numérisation montre le substrat nu.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/deviation.py"/>
@@ -3793,8 +3803,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>Layers at the layer height from the nearest point below (constant-distance), within a band around it and without corners (smooth), or along the lines up the wall (iso-parameter).</source>
-        <translation>Couches à la hauteur de couche du point le plus proche de celle du dessous (constant-distance), dans une bande autour d&apos;elle et sans angles (smooth), ou le long des lignes qui montent la paroi (iso-parameter).</translation>
+        <source>Layers at the layer height from the nearest point below (constant-distance), within a band around this height and without corners (smooth), or along the lines up the wall (iso-parameter).</source>
+        <translation>Couches à la hauteur de couche du point le plus proche au-dessous (constant-distance), dans une bande autour de cette hauteur et sans angles (smooth), ou le long des lignes qui montent la paroi (iso-parameter).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -3883,8 +3893,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Length of the nozzle from its tip.</source>
-        <translation>Longueur de la buse à partir de son bout.</translation>
+        <source>Length of the nozzle, measured from the tip.</source>
+        <translation>Longueur de la buse, mesurée depuis la pointe.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -3898,13 +3908,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
-        <source>Lengths are in mm, angles in degrees. Robots need six revolute axes, machine tools three prismatic and two revolute axes; the wizard checks this when you continue. Tracks, turntables and positioners next to a robot have one axis or two.</source>
-        <translation>Les longueurs sont en mm, les angles en degrés. Les robots demandent six axes rotatifs, les machines-outils trois axes linéaires et deux rotatifs ; l&apos;assistant le vérifie quand vous continuez. Les rails, plateaux et positionneurs à côté d&apos;un robot ont un ou deux axes.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/widgets/quantity.py"/>
-        <source>Let it follow an expression, such as {}Spreadsheet.height / 2</source>
-        <translation>Le faire suivre une expression, comme {}Spreadsheet.height / 2</translation>
+        <source>Lengths are in mm, angles in degrees. Robots need six revolute axes, machine tools three prismatic and two revolute axes; the wizard checks the axes when you continue. Tracks, turntables and positioners next to a robot have one or two axes.</source>
+        <translation>Les longueurs sont en mm, les angles en degrés. Les robots demandent six axes rotatifs, les machines-outils trois axes linéaires et deux rotatifs ; l&apos;assistant vérifie les axes quand vous continuez. Les rails, plateaux et positionneurs à côté d&apos;un robot ont un ou deux axes.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -3915,6 +3920,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>Let the rotation about the tool axis vary at every point of a bead if this needs less motion than a polynomial: the best rotation found for the objective displacement. Takes up to seconds per bead.</source>
         <translation>Là où le mouvement est moindre qu’avec un polynôme, la rotation autour de l’axe de l’outil est libre en chaque point d’un cordon : le meilleur parcours trouvé, pour l’objectif displacement. Prend jusqu’à quelques secondes par cordon.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/widgets/quantity.py"/>
+        <source>Let the value follow an expression, such as {}Spreadsheet.height / 2</source>
+        <translation>Faire suivre à la valeur une expression, comme {}Spreadsheet.height / 2</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -3928,8 +3938,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
-        <source>Limits from the data sheet; leave them empty if unknown. The limits on the previous page are relative to link 2.</source>
-        <translation>Limites de la fiche technique ; laissez vide si elles sont inconnues. Les limites de la page précédente sont relatives au corps 2.</translation>
+        <source>Limits from the data sheet; leave unknown limits empty. The limits on the previous page are relative to link 2.</source>
+        <translation>Limites de la fiche technique ; laissez vides les limites inconnues. Les limites de la page précédente sont relatives au corps 2.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
@@ -3948,13 +3958,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes only.</source>
-        <translation>LinuxCNC : M428 et M429 choisissent entre bout d&apos;outil et axes ; faux pour une machine qui n&apos;a que ses axes.</translation>
+        <source>LinuxCNC: tolerance for rounding corners (G64 P).</source>
+        <translation>LinuxCNC : tolérance pour arrondir les angles (G64 P).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>LinuxCNC: tolerance for rounding corners (G64 P).</source>
-        <translation>LinuxCNC : tolérance pour arrondir les angles (G64 P).</translation>
+        <source>LinuxCNC: whether M428 and M429 switch between tip and axis coordinates; false for machines that only move axes.</source>
+        <translation>LinuxCNC : M428 et M429 commutent entre les coordonnées de la pointe et des axes ; false pour les machines qui ne déplacent que des axes.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -4003,13 +4013,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>M or H word that switches the deposit on, such as M7 or H2=1; without one the digital output does.</source>
-        <translation>Mot M ou H qui met le dépôt en marche, comme M7 ou H2=1 ; sans lui la sortie logique le fait.</translation>
+        <source>M or H word that switches the deposit on, such as M7 or H2=1; if empty, the digital output switches the deposit.</source>
+        <translation>Mot M ou H qui met le dépôt en marche, comme M7 ou H2=1 ; si vide, la sortie logique commute le dépôt.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>M121 restores the modes before M120 on RepRapFirmware, but keeps the current ones on Marlin; write G90 or G91, M82 or M83 instead</source>
-        <translation>M121 rétablit les modes d&apos;avant M120 sur RepRapFirmware et garde ceux du moment sur Marlin ; écrivez à sa place G90 ou G91, M82 ou M83</translation>
+        <source>M121 restores the modes before M120 on RepRapFirmware, but keeps the current modes on Marlin; write G90 or G91, and M82 or M83 instead</source>
+        <translation>M121 rétablit les modes d&apos;avant M120 sur RepRapFirmware, mais garde les modes actuels sur Marlin ; écrivez plutôt G90 ou G91, et M82 ou M83</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
@@ -4018,7 +4028,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>M82 and G91 are both on: Klipper counts E from the position before, Marlin from zero; write M83, or G90</source>
+        <source>M82 and G91 are both on: Klipper counts E from the previous position, Marlin from zero; write M83, or G90</source>
         <translation>M82 et G91 sont actifs ensemble : Klipper compte E depuis la position précédente, Marlin depuis zéro ; écrivez M83 ou G90</translation>
     </message>
     <message>
@@ -4043,8 +4053,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Machining allowance on the sides of the part; on top, every layer that begins within this height above the last one.</source>
-        <translation>Surépaisseur d&apos;usinage sur les côtés de la pièce ; en haut, chaque couche qui commence à moins de cette hauteur au-dessus de la dernière.</translation>
+        <source>Machining allowance on the sides of the part; on top, further layers are added if they begin within this height above the last layer.</source>
+        <translation>Surépaisseur d&apos;usinage sur les côtés de la pièce ; en haut, d&apos;autres couches sont ajoutées si elles commencent à moins de cette hauteur au-dessus de la dernière.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/export_path.py"/>
@@ -4127,14 +4137,14 @@
         <translation>Vide max.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>Maximum distance of a touched point from the best fit.</source>
+        <translation>Plus grande distance d&apos;un point touché au meilleur ajustement.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Maximum points per program file; longer programs are chained.</source>
         <translation>Nombre maximal de points d&apos;un fichier de programme ; les plus longs sont enchaînés.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Maximum residual of a touched point against the best fit.</source>
-        <translation>Plus grand résidu d&apos;un point touché par rapport au meilleur ajustement.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/table.py"/>
@@ -4200,11 +4210,6 @@
         <location filename="../../freecad_am/gui/panels/new_job.py"/>
         <source>Method of cutting the part into layers; proposed from the selection</source>
         <translation>Comment la pièce est découpée en couches ; proposé d&apos;après la sélection</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the part&apos;s coordinates.</source>
-        <translation>Centre x y z du cercle de base et direction i j k de l&apos;axe, vers le sommet, dans les coordonnées de la pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -4278,8 +4283,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Motion allowed to fit the points to the part: best fit, shifts only, a turn about and a shift along the axis of the part, or only what pairs of points define.</source>
-        <translation>Comment les points peuvent être ramenés sur la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou rien que ce que disent les paires de points.</translation>
+        <source>Motion allowed to fit the points to the part: best fit, shifts only, a turn about and a shift along the axis of the part, or only the motion that pairs of points define.</source>
+        <translation>Mouvement permis pour ajuster les points à la pièce : meilleur ajustement, translations seules, rotation autour de l&apos;axe de la pièce et translation le long de celui-ci, ou seulement le mouvement que définissent les paires de points.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -4338,8 +4343,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), MACHINE_DEF of KUKA (2), motion group of FANUC (2).</source>
-        <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (sans indication STN1), MACHINE_DEF de KUKA (2), groupe de mouvement de FANUC (2).</translation>
+        <source>Name or number of the positioner on the controller: mechanical unit of ABB (default STN1), MACHINE_DEF of KUKA (default 2), motion group of FANUC (default 2).</source>
+        <translation>Nom ou numéro du positionneur sur la commande : unité mécanique d&apos;ABB (STN1 par défaut), MACHINE_DEF de KUKA (2 par défaut), groupe de mouvement de FANUC (2 par défaut).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -4377,6 +4382,11 @@
         <translation>Nouvelle machine</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>Next</source>
+        <translation>Suivant</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/simulation/fields.py"/>
         <source>Next finding</source>
         <translation>Remarque suivante</translation>
@@ -4393,8 +4403,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
-        <source>No findings: no limit, singularity or speed is near, and no link of the robot touches anything</source>
-        <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche, et aucun corps du robot ne touche rien</translation>
+        <source>No findings: no limit, singularity or speed is near, and no link of the robot touches an obstacle</source>
+        <translation>Rien à signaler : aucune limite, singularité ou vitesse n&apos;est proche, et aucun corps du robot ne touche d&apos;obstacle</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
@@ -4502,11 +4512,6 @@
         <translation>Numéro de l&apos;entrée analogique du capteur.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>Number of the best poses to plan with all points, until one is feasible.</source>
-        <translation>Nombre des meilleures poses à planifier avec tous les points, jusqu&apos;à ce qu&apos;une soit faisable.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
         <source>Number of the controller&apos;s external axis for e1; further axes follow. eax_a and E1 are 1.</source>
         <translation>Numéro de l&apos;axe externe de la commande pour e1 ; les autres suivent. eax_a et E1 sont 1.</translation>
@@ -4533,7 +4538,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/place.py"/>
-        <source>Object to move: the deposition point (with the tool on the robot the fixed platform), the platform on the flange or the table, or the base of the positioner; auto: whichever places the part.</source>
+        <source>Object to move: the deposition point (with the tool on the robot the fixed platform), the platform on the flange or the table, or the base of the positioner; auto: the object that places the part.</source>
         <translation>Objet à déplacer : le point de dépôt (avec l&apos;outil sur le robot le plateau fixe), le plateau sur la bride ou la table, ou la base du positionneur ; auto : celui qui place la pièce.</translation>
     </message>
     <message>
@@ -4568,18 +4573,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/dock.py"/>
-        <source>One back</source>
-        <translation>Un en arrière</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>One layer only</source>
         <translation>Une seule couche</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/path/dock.py"/>
-        <source>One on</source>
-        <translation>Un en avant</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/fields.py"/>
@@ -4623,8 +4618,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Opens a part or mesh from a file in a separate process, even if it is damaged</source>
-        <translation>Ouvre une pièce ou un maillage d&apos;un fichier, qui peut être abîmé : il est lu dans un processus à part</translation>
+        <source>Opens a part or mesh from a file in a separate process, even if the file is damaged</source>
+        <translation>Ouvre une pièce ou un maillage d&apos;un fichier dans un processus à part, même si le fichier est endommagé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/whats_this.py"/>
@@ -4648,8 +4643,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Order of several solids on a base: the same layer of each in turn, around the axis, the same ring of each, inner rings first; or solid by solid (feature).</source>
-        <translation>Ordre de plusieurs solides sur une base : la même couche de chacun à tour de rôle, autour de l&apos;axe, le même anneau de chacun, les anneaux intérieurs d&apos;abord ; ou solide par solide (feature).</translation>
+        <source>Order of several solids on a base: layer by layer around the axis, where each layer goes from the inner rings of all solids to the outer rings; or solid by solid (feature).</source>
+        <translation>Ordre de plusieurs solides sur une base : couche par couche autour de l&apos;axe, où chaque couche va des anneaux intérieurs de tous les solides aux anneaux extérieurs ; ou solide par solide (feature).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -4698,12 +4693,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Overlap of lines and other patterns with the surrounding contours, as a share of the bead width; auto: the overlap of neighbouring beads.</source>
+        <translation>Recouvrement des lignes et autres motifs avec les contours qui les entourent, en part de la largeur de cordon ; auto : le recouvrement des cordons voisins.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
         <source>Overlap of neighbouring beads as a share of the bead width; replaces the bead spacing.</source>
         <translation>Recouvrement de cordons voisins en part de la largeur de cordon ; tient lieu de la distance des cordons.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>P asks for several turns, which are not supported; write out each turn</source>
+        <source>P requests several turns, which are not supported; write out each turn</source>
         <translation>P demande plusieurs tours, ce qui n&apos;est pas pris en charge ; écrivez chaque tour</translation>
     </message>
     <message>
@@ -4733,8 +4733,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Parallel contours, parallel lines, or the two linked: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
-        <translation>Contours parallèles, lignes parallèles, ou l&apos;un ou l&apos;autre reliés : contours reliés, spirale, zigzag ; au-dessous de 100 % aussi grille, triangles, nid d&apos;abeilles, gyroïde.</translation>
+        <source>Parallel contours, parallel lines, or linked patterns: connected, spiral, zigzag; below 100 % also grid, triangles, honeycomb, gyroid.</source>
+        <translation>Contours parallèles, lignes parallèles, ou motifs reliés : connected, spiral, zigzag ; au-dessous de 100 % aussi grid, triangles, honeycomb, gyroid.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/curves.py"/>
@@ -4815,6 +4815,11 @@
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>Plan the joint path again layer by layer, without a given curve</source>
         <translation>Replanifier la trajectoire articulaire couche par couche, sans courbe donnée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
+        <source>Planar layers are used, as curved layers were infeasible. {}</source>
+        <translation>Des couches planes sont utilisées, car les couches courbes étaient infaisables. {}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -4923,8 +4928,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>Points within this height of an evaluated height are used, moved to it along the planned surface.</source>
-        <translation>Les points à moins de cette distance d&apos;une hauteur évaluée sont utilisés, amenés à elle le long de la surface prévue.</translation>
+        <source>Points within this distance of an evaluated height are used, shifted to that height along the planned surface.</source>
+        <translation>Les points à moins de cette distance d&apos;une hauteur évaluée sont utilisés, ramenés à cette hauteur le long de la surface prévue.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
@@ -5022,6 +5027,11 @@
         <translation>Aperçu d&apos;un point sur {0} ; OK contrôle aussi les points entre eux et les rapides.</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/path/dock.py"/>
+        <source>Previous</source>
+        <translation>Précédent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
         <source>Probe radius</source>
         <translation>Rayon du palpeur</translation>
@@ -5058,8 +5068,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/suggestions.py"/>
-        <source>Programs for this machine need the pulses per degree, which only its controller knows, in your own machine file. Without it the job is planned, checked and simulated; Export Path… writes its points as a table.</source>
-        <translation>Les programmes pour cette machine demandent les impulsions par degré, que seule sa commande connaît, dans votre propre fichier machine. Sans cela le travail est planifié, vérifié et simulé ; Exporter la trajectoire… écrit ses points en tableau.</translation>
+        <source>Programs for this machine need the pulses per degree, known only to its controller, in your own machine file. Without this file the job is planned, checked and simulated; Export Path… writes its points as a table.</source>
+        <translation>Les programmes pour cette machine demandent les impulsions par degré, que seule sa commande connaît, dans votre propre fichier machine. Sans ce fichier le travail est planifié, vérifié et simulé ; Exporter la trajectoire… écrit ses points en tableau.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
@@ -5093,8 +5103,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
-        <source>PyKDL is not installed; the program was checked by one solver only</source>
-        <translation>PyKDL n&apos;est pas installé ; le programme a été vérifié par un seul solveur</translation>
+        <source>PyKDL is not installed, so only one solver checked the program</source>
+        <translation>PyKDL n&apos;est pas installé, donc un seul solveur a vérifié le programme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -5313,8 +5323,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
-        <source>Robots with a positioner: largest angle between the tool axis and the vertical of the cell while depositing; the positioner turns the part to keep it. 180 deg: it does not move.</source>
-        <translation>Robots avec positionneur : plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la cellule pendant le dépôt ; le positionneur tourne la pièce pour le tenir. 180 deg : il ne bouge pas.</translation>
+        <source>Robots with a positioner: largest angle between the tool axis and the vertical of the cell while depositing; the positioner turns the part to keep this limit. 180 deg: the positioner does not move.</source>
+        <translation>Robots avec positionneur : plus grand angle entre l&apos;axe de l&apos;outil et la verticale de la cellule pendant le dépôt ; le positionneur tourne la pièce pour respecter cette limite. 180 deg : le positionneur ne bouge pas.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -5323,7 +5333,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, the base frame of the robot; separate several with ;.</source>
+        <source>Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, the base frame of the robot; separate several mechanisms with semicolons.</source>
         <translation>Robots : axes à côté d&apos;eux qui portent la pièce ou le robot, par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part. x y z en mm, RX RY RZ en deg de la base dans le monde, qui est le repère de base du robot ; plusieurs séparés par ;.</translation>
     </message>
     <message>
@@ -5343,8 +5353,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>Robots: smallest distance between the links and part, deposit, platform, fixtures and nozzle, rapids included; without it, planning ignores the links.</source>
-        <translation>Robots : plus petite distance entre les corps et pièce, dépôt, plateau, montages et buse, rapides compris ; sans elle, la planification ignore les corps.</translation>
+        <source>Robots: smallest distance between the links and part, deposit, platform, fixtures and nozzle, rapids included; if not set, planning ignores the links.</source>
+        <translation>Robots : plus petite distance entre les corps et pièce, dépôt, plateau, montages et buse, rapides compris ; si elle n&apos;est pas donnée, la planification ignore les corps.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
@@ -5360,6 +5370,11 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Rotary</source>
         <translation>Rotatif</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>Rotation of lines and zigzags from layer to layer.</source>
+        <translation>Rotation des lignes et des zigzags d&apos;une couche à l&apos;autre.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -5463,8 +5478,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Schedule number with which the welder or extruder deposits beads; program.schedule defines how it is sent.</source>
-        <translation>Numéro qui dit au poste de soudage ou à l&apos;extrudeuse comment déposer les cordons ; program.schedule dit comment il est transmis.</translation>
+        <source>Schedule number with which the welder or extruder deposits beads; program.schedule defines the transmission.</source>
+        <translation>Numéro avec lequel le poste de soudage ou l&apos;extrudeuse dépose les cordons ; program.schedule définit la transmission.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -5513,8 +5528,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Shape of the layers: parallel planes; surfaces at equal distances from the support, measured through the part, so that no support material is needed (geodesic); surfaces at equal straight distances from it (offset); or planes normal to a guide curve (along).</source>
-        <translation>Forme des couches : plans parallèles ; surfaces à égale distance de l&apos;appui, mesurée à travers la pièce, si bien qu&apos;aucun support n&apos;est nécessaire (geodesic) ; surfaces à égale distance droite de lui (offset) ; ou plans normaux à une courbe guide (along).</translation>
+        <source>Shape of the layers: parallel planes; surfaces at equal distances from the support, measured through the part, so that no support material is needed (geodesic); surfaces at equal straight distances from the support (offset); or planes normal to a guide curve (along).</source>
+        <translation>Forme des couches : plans parallèles ; surfaces à égale distance de l&apos;appui, mesurée à travers la pièce, si bien qu&apos;aucun support n&apos;est nécessaire (geodesic) ; surfaces à égale distance droite de l&apos;appui (offset) ; ou plans normaux à une courbe guide (along).</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -5768,8 +5783,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
-        <source>Solids or closed meshes to deposit, one after the other; click one again to remove it.</source>
-        <translation>Les solides ou maillages fermés à déposer, l&apos;un après l&apos;autre ; un nouveau clic sur l&apos;un le retire.</translation>
+        <source>Solids or closed meshes to deposit, one after the other; click an object again to remove it.</source>
+        <translation>Les solides ou maillages fermés à déposer, l&apos;un après l&apos;autre ; un nouveau clic sur un objet le retire.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -6063,8 +6078,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
-        <source>The bead whose polynomial is shown; click the map to choose one</source>
-        <translation>Le cordon dont le polynôme est montré ; un clic sur la carte en choisit un</translation>
+        <source>The bead whose polynomial is shown; click the map to choose a bead</source>
+        <translation>Le cordon dont le polynôme est montré ; cliquez sur la carte pour choisir un cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
@@ -6073,8 +6088,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>The cell that runs it.</source>
-        <translation>La cellule qui l&apos;exécute.</translation>
+        <source>The cell that runs the toolpath.</source>
+        <translation>La cellule qui exécute la trajectoire d&apos;outil.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -6125,6 +6140,16 @@
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
         <source>The displacement of the joints (Chalvin 2020, eq. 17), and its ratio to the plan</source>
         <translation>Le déplacement des articulations (Chalvin 2020, éq. 17), et son rapport au plan</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/inspection/panel.py"/>
+        <source>The document has no object to compare with; open the part first.</source>
+        <translation>Le document n&apos;a pas d&apos;objet de comparaison ; ouvrez d&apos;abord la pièce.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
+        <source>The document has no other feature; create another feature first.</source>
+        <translation>Le document n&apos;a pas d&apos;autre élément ; créez d&apos;abord un autre élément.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program_window.py"/>
@@ -6180,11 +6205,6 @@
         <location filename="../../freecad_am/gui/path/dock.py"/>
         <source>The first layer shown</source>
         <translation>La première couche montrée</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/program.py"/>
-        <source>The first lines of the program as it would be written</source>
-        <translation>Les premières lignes du programme tel qu&apos;il serait écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
@@ -6263,18 +6283,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
-        <source>The machine does not reproduce these poses, and no single sign, zero, coupling or frame explains it. Check for typing errors, the angle convention, the tool frame, and lengths.</source>
-        <translation>La machine ne donne pas ces poses, et aucun signe, zéro, couplage ou repère ne l&apos;explique à lui seul. Cherchez des fautes de frappe, et vérifiez la convention d&apos;angles, le repère outil et les longueurs.</translation>
+        <source>The machine does not reproduce these poses, and no single sign, zero, coupling or frame explains the deviation. Check for typing errors, the angle convention, the tool frame, and lengths.</source>
+        <translation>La machine ne reproduit pas ces poses, et aucun signe, zéro, couplage ou repère n&apos;explique à lui seul l&apos;écart. Cherchez des fautes de frappe, et vérifiez la convention d&apos;angles, le repère outil et les longueurs.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
-        <source>The machine does not reproduce these poses. It would if:</source>
-        <translation>La machine ne donne pas ces poses. Elle le ferait si :</translation>
+        <source>The machine does not reproduce these poses. Possible causes:</source>
+        <translation>La machine ne reproduit pas ces poses. Causes possibles :</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
-        <source>The machine does not reproduce these poses; enter at least three to locate the error.</source>
-        <translation>La machine ne donne pas ces poses ; entrez-en au moins trois pour localiser l&apos;erreur.</translation>
+        <source>The machine does not reproduce these poses; enter at least three poses to locate the error.</source>
+        <translation>La machine ne reproduit pas ces poses ; saisissez au moins trois poses pour localiser l&apos;erreur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
@@ -6308,8 +6328,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
-        <source>The next page compares these values with poses of your controller and points out likely errors: leave unknown values as they are.</source>
-        <translation>La page suivante compare ces valeurs avec des poses de votre commande et indique les erreurs probables : laissez les valeurs inconnues telles quelles.</translation>
+        <source>The next page compares these values with poses of your controller and points out likely errors; leave unknown values unchanged.</source>
+        <translation>La page suivante compare ces valeurs avec des poses de votre commande et indique les erreurs probables ; laissez les valeurs inconnues telles quelles.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -6323,8 +6343,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/inspection/panel.py"/>
-        <source>The object to compare with (Planned) was deleted; choose another one</source>
-        <translation>L&apos;objet de comparaison (Planned) a été supprimé ; choisissez-en un autre</translation>
+        <source>The object to compare with (Planned) was deleted; choose another object</source>
+        <translation>L&apos;objet de comparaison (Planned) a été supprimé ; choisissez un autre objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
@@ -6382,6 +6402,16 @@
         <translation>Le programme amène l’outil aux points planifiés</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell.py"/>
+        <source>The robot carries the tool or the part, or the machine has rotary axes.</source>
+        <translation>Le robot porte l&apos;outil ou la pièce, ou la machine a des axes rotatifs.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
+        <source>The robot carries the tool or the part. If the job is infeasible in the proposed cell, another position, another branch or a positioner is proposed and shown.</source>
+        <translation>Le robot porte l&apos;outil ou la pièce. Si le travail est infaisable dans la cellule proposée, un autre emplacement, une autre branche ou un positionneur est proposé et montré.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
         <source>The robot keeps the time of every move through its blends</source>
         <translation>Le robot tient la durée de chaque mouvement à travers ses lissages</translation>
@@ -6390,11 +6420,6 @@
         <location filename="../../freecad_am/gui/placement/dock.py"/>
         <source>The robot reaches {} points of a grid of {:.0f} mm.</source>
         <translation>Le robot atteint {} points d&apos;une grille de {:.0f} mm.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>The schedule number is set on a group output; or arc instructions name it and switch the deposit; or it selects the program to call.</source>
-        <translation>Le numéro de programme de soudage est mis sur une sortie groupée ; ou les instructions d&apos;arc le nomment et commutent le dépôt ; ou il choisit le programme à appeler.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
@@ -6410,6 +6435,11 @@
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
         <source>The simulation has ended: {why}.</source>
         <translation>La simulation est terminée : {why}.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/fields.py"/>
+        <source>The simulation shows an earlier plan; recompute the document to update the simulation.</source>
+        <translation>La simulation montre une planification antérieure ; recalculez le document pour mettre la simulation à jour.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
@@ -6492,6 +6522,11 @@
         <translation>La trajectoire d&apos;outil, trajectoire articulaire ou programme à tracer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/widgets/fields.py"/>
+        <source>The value may follow an expression: {}.</source>
+        <translation>La valeur peut suivre une expression : {}.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
         <source>The wall to deposit, or its faces.</source>
         <translation>La paroi à déposer, ou ses faces.</translation>
@@ -6503,8 +6538,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
-        <source>The whole of {} is used. To use single faces, click several with Ctrl; for a single one, use the panel of Feature or Wall on Part.</source>
-        <translation>{} est pris en entier. Pour des faces seules, cliquez-en plusieurs avec Ctrl ; pour une seule, utilisez le panneau d’Élément ou de Paroi sur pièce.</translation>
+        <source>The whole of {} is used. Ctrl+click several faces to use only these faces; for a single face, use the panel of Feature or Wall on Part.</source>
+        <translation>{} est pris en entier. Cliquez sur plusieurs faces avec Ctrl pour n&apos;utiliser que ces faces ; pour une seule face, utilisez le panneau d’Élément ou de Paroi sur pièce.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/wall.py"/>
@@ -6543,27 +6578,32 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
-        <source>There is no 3D view to show the poses in; open one.</source>
-        <translation>Il n&apos;y a pas de vue 3D où montrer les poses ; ouvrez-en une.</translation>
+        <source>There is no 3D view for the poses; open a 3D view.</source>
+        <translation>Il n&apos;y a pas de vue 3D pour les poses ; ouvrez une vue 3D.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
-        <source>There is no 3D view to simulate in; open one.</source>
-        <translation>Il n&apos;y a pas de vue 3D où simuler ; ouvrez-en une.</translation>
+        <source>There is no 3D view for the simulation; open a 3D view.</source>
+        <translation>Il n&apos;y a pas de vue 3D pour la simulation ; ouvrez une vue 3D.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
-        <source>There is no joint path to map; make one first.</source>
-        <translation>Il n&apos;y a pas de trajectoire articulaire à cartographier ; faites-en d&apos;abord une.</translation>
+        <source>There is no joint path to map; make a joint path first.</source>
+        <translation>Il n&apos;y a pas de trajectoire articulaire à cartographier ; faites d&apos;abord une trajectoire articulaire.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
-        <source>There is no joint path to simulate; make one first.</source>
-        <translation>Il n&apos;y a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une.</translation>
+        <source>There is no joint path to simulate; make a joint path first.</source>
+        <translation>Il n&apos;y a pas de trajectoire articulaire à simuler ; faites d&apos;abord une trajectoire articulaire.</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/dock.py"/>
+        <source>There is no path to plot yet; make a toolpath or a joint path.</source>
+        <translation>Il n&apos;y a pas encore de trajectoire à tracer ; faites une trajectoire d&apos;outil ou articulaire.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/dock.py"/>
-        <source>There is no path to show yet: make a toolpath or a joint path.</source>
+        <source>There is no path to show yet; make a toolpath or a joint path.</source>
         <translation>Il n&apos;y a pas encore de trajectoire à montrer : créez une trajectoire d&apos;outil ou une trajectoire articulaire.</translation>
     </message>
     <message>
@@ -6573,18 +6613,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
-        <source>There is no toolpath with a cell to place; make one first.</source>
-        <translation>Il n&apos;y a pas de trajectoire d&apos;outil avec une cellule à placer ; faites-en d&apos;abord une.</translation>
+        <source>There is no toolpath with a cell to place; make a toolpath first.</source>
+        <translation>Il n&apos;y a pas de trajectoire d&apos;outil avec une cellule à placer ; faites d&apos;abord une trajectoire d&apos;outil.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/infill_dock.py"/>
-        <source>There is no toolpath yet: make one of a solid.</source>
-        <translation>Il n&apos;y a pas encore de trajectoire d&apos;outil : créez-en une pour un solide.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/plots/dock.py"/>
-        <source>There is nothing to plot yet: make a toolpath or a joint path.</source>
-        <translation>Il n&apos;y a encore rien à tracer : faites une trajectoire d&apos;outil ou articulaire.</translation>
+        <source>There is no toolpath yet; make a toolpath of a solid.</source>
+        <translation>Il n&apos;y a pas encore de trajectoire d&apos;outil ; créez une trajectoire d&apos;outil pour un solide.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -6602,29 +6637,14 @@
         <translation>Cette courbe</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/toolpath.py"/>
-        <source>This document has no other feature; create it first.</source>
-        <translation>Il n&apos;y a pas d&apos;autre élément dans ce document ; créez-le d&apos;abord.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/inspection/panel.py"/>
-        <source>This document has nothing to compare with; open the part first.</source>
-        <translation>Il n&apos;y a rien à quoi comparer dans ce document ; ouvrez d&apos;abord la pièce.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/simulation/fields.py"/>
-        <source>This is an earlier plan; recompute the document to update it.</source>
-        <translation>C&apos;est une planification antérieure ; recalculez le document pour l&apos;actuelle.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/path/infill_dock.py"/>
         <source>This layer is not measured.</source>
         <translation>Cette couche n&apos;est pas mesurée.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/program_window.py"/>
-        <source>This text belongs to an earlier plan; do not run it.</source>
-        <translation>Ce texte est d&apos;une planification antérieure ; ne l&apos;exécutez pas.</translation>
+        <source>This program belongs to an earlier plan; do not run it.</source>
+        <translation>Ce programme est d&apos;une planification antérieure ; ne l&apos;exécutez pas.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
@@ -6643,8 +6663,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
-        <source>Time by which the deposit is switched ahead, during the motion, to compensate the delay of the equipment. None: the robot stops to switch.</source>
-        <translation>Durée d&apos;avance de la commutation du dépôt, pendant le mouvement, pour compenser le retard de l&apos;équipement. Aucune : le robot s&apos;arrête pour commuter.</translation>
+        <source>Time by which the deposit is switched early, during the motion, to compensate for the delay of the equipment. None: the robot stops to switch.</source>
+        <translation>Durée dont le dépôt est commuté en avance, pendant le mouvement, pour compenser le retard de l&apos;équipement. Aucune : le robot s&apos;arrête pour commuter.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -6767,6 +6787,11 @@
         <translation>Rail</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/program.py"/>
+        <source>Transmission of the schedule number: on a group output, in arc instructions that also switch the deposit, or as the number of the program to call.</source>
+        <translation>Transmission du numéro de programme de soudage : par une sortie groupée, dans les instructions d&apos;arc qui commutent aussi le dépôt, ou comme numéro du programme à appeler.</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
         <source>Travel speed</source>
         <translation>Vitesse d&apos;avance</translation>
@@ -6783,8 +6808,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>TriggSpeed follows the speed of linear moves, but this program has joint moves</source>
-        <translation>TriggSpeed suit la vitesse de mouvements linéaires, mais ce programme a des mouvements articulaires</translation>
+        <source>TriggSpeed follows the speed of linear moves, but the program has joint moves</source>
+        <translation>TriggSpeed suit la vitesse de mouvements linéaires, mais le programme a des mouvements articulaires</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/process.py"/>
+        <source>TriggSpeed may not follow the speed relative to a moving part</source>
+        <translation>TriggSpeed ne suit peut-être pas la vitesse relative à une pièce mobile</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -6818,7 +6848,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
-        <source>Type the pose as this controller&apos;s pendant shows it, X Y Z in mm first</source>
+        <source>Type the pose as shown on the pendant of this controller, X Y Z in mm first</source>
         <translation>Saisissez la pose telle que le pupitre de cette commande l&apos;affiche, X Y Z en mm d&apos;abord</translation>
     </message>
     <message>
@@ -7042,16 +7072,6 @@
         <translation>Numéro du balayage propre à la commande avec lequel les cordons sont déposés ; 0 ou aucun : droits.</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/cell.py"/>
-        <source>What the robot carries, tool or part; or a machine with rotary axes.</source>
-        <translation>Ce que porte le robot, l&apos;outil ou la pièce ; ou une machine à axes rotatifs.</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
-        <source>What the robot carries. If the job is infeasible in the proposed cell, another position, another branch or a positioner is proposed and shown.</source>
-        <translation>Ce que porte le robot. Si le travail ne peut se faire dans la cellule qui convient au robot, un autre emplacement, une autre branche ou un positionneur est proposé, et le robot y est montré.</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>Which wall of a solid is deposited; middle runs halfway between outer and inner.</source>
         <translation>Quelle paroi d&apos;un solide est déposée ; middle court à mi-chemin entre l&apos;extérieure et l&apos;intérieure.</translation>
@@ -7078,13 +7098,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Width of contours in planes: it follows the thickness of the region where that covers the region better (adaptive), or is the usual width (fixed).</source>
-        <translation>Largeur des contours dans les plans : elle suit l&apos;épaisseur de la région là où cela couvre mieux la région (adaptatif), ou c&apos;est la largeur habituelle (fixe).</translation>
+        <source>Width of contours in planes: adaptive contours follow the thickness of a region if this covers the region better; fixed contours have the usual width.</source>
+        <translation>Largeur des contours dans les plans : les contours adaptatifs suivent l&apos;épaisseur d&apos;une région si cela la couvre mieux ; les contours fixes ont la largeur habituelle.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Width of the bead; the bead model keeps it. Solids on hubs are filled with beads of this width.</source>
-        <translation>Largeur du cordon ; tenue par le modèle de cordon. Les solides sur moyeux sont remplis de cordons de cette largeur.</translation>
+        <source>Width of the bead; a bead model keeps this width. Solids on hubs are filled with beads of this width.</source>
+        <translation>Largeur du cordon ; un modèle de cordon tient cette largeur. Les solides sur moyeux sont remplis de cordons de cette largeur.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -7123,7 +7143,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
-        <source>Wire feed; auto: the feed for the bead width and layer height at the travel speed, or that of the bead model. 0: no wire.</source>
+        <source>Wire feed; auto: the feed for the bead width and layer height at the travel speed, or the feed of the bead model. 0: no wire.</source>
         <translation>Vitesse du fil ; auto : celle qui fait des cordons de leur largeur et de la hauteur de couche à la vitesse d&apos;avance, ou celle des cordons du modèle de cordon. 0 : pas de fil.</translation>
     </message>
     <message>
@@ -7233,28 +7253,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
-        <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm elsewhere, and the robot slows down there; use a wider strategy.band to round the layers</source>
+        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm ailleurs, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm. The robot slows down there; a wider strategy.band rounds them</source>
-        <translation>une bande de {0} % ne suffit pas : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, first layer {4}, by up to {5} deg/mm, and the robot slows down there; use a wider strategy.band to round the layers</source>
+        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, d&apos;abord la couche {4}, jusqu&apos;à {5} deg/mm, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} in corners, first layer {5}, by up to {6} deg/mm elsewhere. The robot slows down there; a wider strategy.band rounds them</source>
-        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm ailleurs. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} in corners, first layer {5}, by up to {6} deg/mm elsewhere, and the robot slows down there; use a wider strategy.band to round the layers</source>
+        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm ailleurs, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} in corners, first layer {5}, by up to {6} deg/mm. The robot slows down there; a wider strategy.band rounds them</source>
-        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm. Le robot y ralentit ; un strategy.band plus large les arrondit</translation>
+        <source>a band of {0} % is too narrow: within the wall {1} of {2} layers turn by more than {3} deg/mm, {4} in corners, first layer {5}, by up to {6} deg/mm, and the robot slows down there; use a wider strategy.band to round the layers</source>
+        <translation>une bande de {0} % est trop étroite : dans la paroi {1} de {2} couches tournent de plus de {3} deg/mm, {4} à des angles, d&apos;abord la couche {5}, jusqu&apos;à {6} deg/mm, et le robot y ralentit ; utilisez un strategy.band plus large pour arrondir les couches</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/curves.py"/>
-        <source>a bead runs parallel to its tool direction, at {0}, so the nozzle would hit it; set another strategy.direction, choose faces, or give directions in the table</source>
-        <translation>un cordon est parallèle à la direction de son outil, en {0}, si bien que la buse le heurterait ; fixez un autre strategy.direction, choisissez des faces, ou donnez des directions dans le tableau</translation>
+        <source>a bead runs parallel to its tool direction, at {0}, so the nozzle would hit the bead; set another strategy.direction, choose faces, or give directions in the table</source>
+        <translation>un cordon est parallèle à la direction de son outil, en {0}, donc la buse heurterait le cordon ; fixez un autre strategy.direction, choisissez des faces, ou donnez des directions dans le tableau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/wall_directions.py"/>
@@ -7265,11 +7285,6 @@
         <location filename="../../freecad_am/sections/cell.py"/>
         <source>a calibration needs its machine; write machine: {{name: ur-ur10e, calibration: my_robot.yaml}}</source>
         <translation>un étalonnage demande sa machine ; écrivez machine: {{name: ur-ur10e, calibration: my_robot.yaml}}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/placement/place.py"/>
-        <source>a cell with {0} has no {1} that places the part; use {2}</source>
-        <translation>une cellule avec {0} n&apos;a pas de {1} qui place la pièce ; utilisez {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
@@ -7283,8 +7298,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>a coordinate is not a number, or is larger than {0} mm; export it again</source>
-        <translation>une coordonnée n&apos;est pas un nombre, ou dépasse {0} mm ; exportez-le à nouveau</translation>
+        <source>a coordinate is not a number, or is larger than {0} mm; export the toolpath again</source>
+        <translation>une coordonnée n&apos;est pas un nombre, ou dépasse {0} mm ; exportez la trajectoire de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/curves.py"/>
@@ -7323,7 +7338,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>a full ring has no end to start from; cut it at the substrate</source>
+        <source>a full ring has no end to start from; cut the ring at the substrate</source>
         <translation>un anneau entier n&apos;a pas de bout d&apos;où partir ; coupez-le au substrat</translation>
     </message>
     <message>
@@ -7343,13 +7358,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
-        <source>a key must be a word (line {0}); write one before the colon</source>
-        <translation>une clé doit être un mot (ligne {0}) ; écrivez-en un devant les deux-points</translation>
+        <source>a key must be a word (line {0}); write a word before the colon</source>
+        <translation>une clé doit être un mot (ligne {0}) ; écrivez un mot devant les deux-points</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/tubes/iso_parameter.py"/>
-        <source>a layer height of {0} mm is too large for the bend of the wall; lower it</source>
-        <translation>une hauteur de couche de {0} mm est plus que ne permet le coude de la paroi ; réduisez-la</translation>
+        <source>a layer height of {0} mm is too large for the bend of the wall; reduce the layer height</source>
+        <translation>une hauteur de couche de {0} mm est trop grande pour le coude de la paroi ; réduisez la hauteur de couche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/helix.py"/>
@@ -7383,8 +7398,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
-        <source>a mesh has no selectable faces; remove them</source>
-        <translation>un maillage n&apos;a pas de faces à choisir ; omettez-les</translation>
+        <source>a mesh has no selectable faces; remove the faces</source>
+        <translation>un maillage n&apos;a pas de faces à choisir ; retirez les faces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -7402,9 +7417,19 @@
         <translation>un mouvement ne convient pas à la forme dans laquelle sa position est enregistrée (articulaire ou cartésienne)</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>a move extrudes after {0}, the end of the program; remove the lines that follow</source>
+        <translation>un déplacement extrude après {0}, la fin du programme ; retirez les lignes qui suivent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>a move extrudes before its position is defined; set X, Y and Z first; {0}</source>
+        <translation>un déplacement extrude avant que sa position ne soit définie ; donnez d&apos;abord X, Y et Z ; {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>a move of ArcTech must be linear and stop, and follow all lines that belong to it</source>
-        <translation>un mouvement d&apos;ArcTech doit être linéaire et s&apos;arrêter, et suivre toutes les lignes qui en font partie</translation>
+        <source>a move of ArcTech must be linear, stop, and follow all lines of its instruction</source>
+        <translation>un mouvement d&apos;ArcTech doit être linéaire, s&apos;arrêter, et suivre toutes les lignes de son instruction</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_numbers.py"/>
@@ -7437,6 +7462,16 @@
         <translation>un mouvement demanderait {0} % de la plus grande vitesse articulaire, qui se dit par pas de {1} % ; utilisez une autre vitesse, pour qu&apos;il soit de {2} à 100 %</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
+        <source>a name may contain only the letters A to Z, digits and underscores</source>
+        <translation>un nom ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
+        <source>a name must start with {0}</source>
+        <translation>un nom doit commencer par {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>a number without a unit such as 0.1</source>
         <translation>un nombre sans unité comme 0.1</translation>
@@ -7463,12 +7498,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
-        <source>a pose has six numbers, not {0}; give [x, y, z, RX, RY, RZ]</source>
+        <source>a pose needs six numbers, not {0}; give [x, y, z, RX, RY, RZ]</source>
         <translation>une pose a six nombres, et non {0} ; donnez [x, y, z, RX, RY, RZ]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
-        <source>a position needs X Y Z, and an earlier move in axis values</source>
+        <source>a position needs X Y Z and a previous move in axis values</source>
         <translation>une position demande X Y Z, et auparavant un mouvement en valeurs d&apos;axes</translation>
     </message>
     <message>
@@ -7483,8 +7518,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
-        <source>a prismatic axis has two ends; enter both</source>
-        <translation>un axe de translation a deux bouts ; saisissez les deux</translation>
+        <source>a prismatic axis needs a range; enter both ends</source>
+        <translation>un axe prismatique a besoin d&apos;une plage ; saisissez les deux bouts</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/catalogue.py"/>
@@ -7493,8 +7528,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
-        <source>a quaternion cannot be all zeros; enter the one shown on the controller</source>
-        <translation>un quaternion n&apos;est pas tout à zéro ; saisissez celui que la commande affiche</translation>
+        <source>a quaternion cannot be all zeros; enter the quaternion shown on the controller</source>
+        <translation>un quaternion ne peut pas être tout à zéro ; saisissez le quaternion que la commande affiche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -7508,13 +7543,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
-        <source>a range has two angles, not {0}; give [smallest, largest]</source>
-        <translation>une plage a deux angles, et non {0} ; donnez [le plus petit, le plus grand]</translation>
+        <source>a range needs two angles, not {0}; give [smallest, largest]</source>
+        <translation>une plage demande deux angles, et non {0} ; donnez [le plus petit, le plus grand]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
-        <source>a range has two percentages, not {0}; give [smallest, largest]</source>
-        <translation>une plage a deux pourcentages, et non {0} ; donnez [le plus petit, le plus grand]</translation>
+        <source>a range needs two percentages, not {0}; give [smallest, largest]</source>
+        <translation>une plage demande deux pourcentages, et non {0} ; donnez [le plus petit, le plus grand]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/text.py"/>
@@ -7523,8 +7558,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/filling/fill.py"/>
-        <source>a region around the hub is narrower than a bead ({0} mm) everywhere; use thin = single, a narrower bead or a margin</source>
+        <source>a region around the hub is narrower than a bead ({0} mm) everywhere; use strategy.thin: single, a narrower bead or a margin</source>
         <translation>une région autour du moyeu n&apos;est nulle part aussi large qu&apos;un cordon ({0} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>a rotation about the centre of the sphere</source>
+        <translation>une rotation autour du centre de la sphère</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
@@ -7538,13 +7578,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>a second analogue output follows the speed, or one does so on a joint move or without deposit</source>
-        <translation>une seconde sortie analogique suit la vitesse, ou l&apos;une le fait sur un mouvement articulaire ou sans dépôt</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
-        <source>a solid was inside out and was turned</source>
-        <translation>un solide était à l’envers et a été retourné</translation>
+        <source>a second analogue output follows the speed, or an analogue output follows the speed of a joint move or without deposit</source>
+        <translation>une seconde sortie analogique suit la vitesse, ou une sortie analogique suit la vitesse d&apos;un mouvement articulaire ou sans dépôt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
@@ -7563,13 +7598,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>a spiral has no layers to wait between; use path: layers, a slower process.travel_speed, or remove it</source>
-        <translation>une spirale n&apos;a pas de couches entre lesquelles attendre ; utilisez path: layers, une process.travel_speed plus lente, ou retirez cette clé</translation>
+        <source>a spiral has no layers to wait between; use path: layers, a slower process.travel_speed, or remove the waiting time</source>
+        <translation>une spirale n&apos;a pas de couches entre lesquelles attendre ; utilisez path: layers, une process.travel_speed plus lente, ou retirez l&apos;attente</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
-        <source>a spiral needs a continuous axis, but this set of limits bounds it; use path: layers, or a limit set with a continuous axis</source>
-        <translation>une spirale tourne un axe sans fin, et ce jeu de limites l&apos;arrête ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
+        <source>a spiral needs a continuous axis, but the limit set bounds this axis; use path: layers, or a limit set with a continuous axis</source>
+        <translation>une spirale demande un axe sans fin, mais le jeu de limites borne cet axe ; utilisez path: layers, ou un jeu de limites à axe sans fin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -7580,6 +7615,11 @@
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
         <source>a straight line</source>
         <translation>une droite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>a switch of the machine decides whether a line with a slash runs; remove the line, or the slash</source>
+        <translation>un commutateur de la machine décide si une ligne avec une barre oblique s&apos;exécute ; retirez la ligne, ou la barre oblique</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
@@ -7603,8 +7643,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>a triangle in it has a point with a number of more than 64 bits</source>
-        <translation>un triangle y a un point dont le numéro dépasse 64 bits</translation>
+        <source>a triangle refers to a point by a number of more than 64 bits</source>
+        <translation>un triangle désigne un point par un numéro de plus de 64 bits</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
@@ -7633,13 +7673,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>a value of {0} is set, but {1} does not depend on it; check the names</source>
-        <translation>une valeur de {0} est fixée, mais {1} n&apos;en dépend pas ; vérifiez les noms</translation>
+        <source>a value of {0} is set, but {1} does not depend on this value; check the names</source>
+        <translation>une valeur de {0} est fixée, mais {1} ne dépend pas de cette valeur ; vérifiez les noms</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>a vertex coordinate is not a number; export it again</source>
-        <translation>une coordonnée de ses sommets n&apos;est pas un nombre ; exportez-le de nouveau</translation>
+        <source>a vertex coordinate is not a number; export the file again</source>
+        <translation>une coordonnée de sommet n&apos;est pas un nombre ; exportez le fichier de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
@@ -7653,8 +7693,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>a wire or sketch needs an axis of revolution; choose one</source>
-        <translation>un fil ou une esquisse demande un axe de rotation ; donnez-en un</translation>
+        <source>a wire or sketch needs an axis of revolution; choose an axis</source>
+        <translation>un fil ou une esquisse demande un axe de révolution ; choisissez un axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
@@ -7673,7 +7713,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>a {0} {1} already exists, in line {2}; rename one</source>
+        <source>a {0} {1} already exists, in line {2}; rename one of them</source>
         <translation>il y a déjà un {0} {1}, à la ligne {2} ; renommez l&apos;un des deux</translation>
     </message>
     <message>
@@ -7748,13 +7788,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>all its faces are flat and across the axis; select the faces of the wall</source>
-        <translation>il n&apos;a que des faces planes en travers de l&apos;axe ; nommez les faces de la paroi</translation>
+        <source>all edges are on the axis; choose another axis</source>
+        <translation>toutes les arêtes sont sur l&apos;axe ; choisissez un autre axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>all edges of the guide have zero length; choose edges, a wire or a sketch</source>
+        <translation>toutes les arêtes du guide ont une longueur nulle ; choisissez des arêtes, un fil ou une esquisse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>all its faces are flat; choose a part or faces of revolution</source>
-        <translation>toutes ses faces sont planes ; choisissez une pièce, ou des faces, de révolution</translation>
+        <source>all faces are flat and across the axis; select the faces of the wall</source>
+        <translation>toutes les faces sont planes et en travers de l&apos;axe ; sélectionnez les faces de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>all faces are flat; choose a part or faces of revolution</source>
+        <translation>toutes les faces sont planes ; choisissez une pièce ou des faces de révolution</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/figures.py"/>
@@ -7775,6 +7825,11 @@
         <location filename="../../freecad_am/core/inspection/figures.py"/>
         <source>all points are in one plane, and no sphere fits; measure over a wider arc</source>
         <translation>tous les points sont dans un plan, auquel aucune sphère ne convient ; mesurez sur un arc plus large</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>all shapes in the file are marked as invisible and therefore not read; show the part and export it again</source>
+        <translation>toutes les formes du fichier sont marquées comme invisibles et ne sont donc pas lues ; affichez la pièce et exportez-la de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
@@ -7808,7 +7863,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
-        <source>an alias refers to itself; write the value out</source>
+        <source>an alias refers to itself; write the value in full</source>
         <translation>un alias renvoie à lui-même ; écrivez la valeur</translation>
     </message>
     <message>
@@ -7818,13 +7873,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/current.py"/>
-        <source>an earlier version computed it; read Migrating in the changelog</source>
-        <translation>une version antérieure l&apos;a calculé ; lisez Migrating dans le journal des modifications</translation>
+        <source>an earlier version computed the result; read Migrating in the changelog</source>
+        <translation>une version antérieure a calculé le résultat ; lisez Migrating dans le journal des modifications</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>an edge of the face crosses itself at {0}; redraw it without crossings, or divide the face there and deposit its parts in turn</source>
-        <translation>une arête de la face se croise elle-même en {0} ; dessinez-la sans croisement, ou divisez-la à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
+        <source>an edge of the face crosses itself at {0}; redraw the edge without crossings, or divide the face there and deposit its parts in turn</source>
+        <translation>une arête de la face se croise elle-même en {0} ; redessinez l&apos;arête sans croisement, ou divisez la face à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -7838,8 +7893,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>an input changed while it was computed; recompute</source>
-        <translation>une entrée a changé pendant le calcul ; recalculez</translation>
+        <source>an input changed during the computation; recompute the object</source>
+        <translation>une entrée a changé pendant le calcul ; recalculez l&apos;objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
+        <source>an inside-out solid was reversed</source>
+        <translation>un solide était à l’envers et a été retourné</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -7852,14 +7912,14 @@
         <translation>une orientation n&apos;est pas un quaternion unitaire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <source>an output switches the deposit too, or the arc is already on or still off</source>
+        <translation>une sortie commute aussi le dépôt, ou l&apos;arc est déjà allumé ou encore éteint</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
         <source>an output switches the deposit too, or the arc is started or ended twice</source>
         <translation>une sortie commute aussi le dépôt, ou l&apos;arc est amorcé ou terminé deux fois</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>an output switches the deposit too, the arc is already on, or it is not on yet</source>
-        <translation>une sortie commute aussi le dépôt, l&apos;arc est déjà allumé, ou il ne l&apos;est pas encore</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
@@ -7868,8 +7928,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>analogue output {0} carries the wire feed; use another one for schedules</source>
-        <translation>la sortie analogique {0} transmet la vitesse du fil ; prenez-en une autre pour les programmes de soudage</translation>
+        <source>analogue output {0} carries the wire feed; use another analogue output for schedules</source>
+        <translation>la sortie analogique {0} transmet la vitesse du fil ; utilisez une autre sortie analogique pour les programmes de soudage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/joint_path.py"/>
@@ -7888,13 +7948,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>another computation is running; wait until it ends, or cancel it</source>
-        <translation>autre chose est en cours de calcul ; attendez que ce soit fini, ou annulez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>another mechanical unit is active than in earlier moves</source>
-        <translation>une autre unité mécanique est active que dans les mouvements précédents</translation>
+        <source>another computation is running; wait for its end, or cancel it</source>
+        <translation>un autre calcul est en cours ; attendez sa fin, ou annulez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/placement/place.py"/>
@@ -7943,7 +7998,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>as high as their layer is there, {0} mm</source>
+        <source>as high as the layer there, {0} mm</source>
         <translation>la hauteur que leur couche a là, {0} mm</translation>
     </message>
     <message>
@@ -7963,13 +8018,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/surface_patch.py"/>
-        <source>at ({0}) the face has an inner crease of {1} deg; round it, or divide the face there and deposit its parts in turn</source>
-        <translation>en ({0}) la face a une arête en son sein, de {1} deg ; arrondissez-la, ou divisez la face à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
+        <source>at ({0}) the face has an inner crease of {1} deg; round the crease, or divide the face there and deposit its parts in turn</source>
+        <translation>en ({0}) la face a une arête intérieure de {1} deg ; arrondissez l&apos;arête, ou divisez la face à cet endroit et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/surface_patch.py"/>
-        <source>at ({0}) the spline that approximates it is {1} mm off, more than {2} mm; rebuild the face, for instance as a loft or a sweep</source>
-        <translation>en ({0}) la spline qui l&apos;approche s&apos;écarte de {1} mm, plus que {2} mm ; reconstruisez la face, par exemple par un lissage ou un balayage</translation>
+        <source>at ({0}) the spline that approximates the face is {1} mm off, more than {2} mm; rebuild the face, for instance as a loft or a sweep</source>
+        <translation>en ({0}) la spline qui approche la face s&apos;écarte de {1} mm, plus que {2} mm ; reconstruisez la face, par exemple par un lissage ou un balayage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
@@ -7993,8 +8048,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
-        <source>at the requested tool axes the nozzle touches beads of {0} points; the search for clear tilts takes about {1} min of processor time, several times that where the tool would turn too fast; a smaller build_direction.lead and build_direction.tilt, or clearance: none, avoids it</source>
-        <translation>avec les axes d&apos;outil demandés, la buse touche des cordons de {0} points ; trouver des inclinaisons qui la dégagent prend environ {1} min de processeur, plusieurs fois plus là où l&apos;outil tournerait trop vite ; un build_direction.lead et un build_direction.tilt plus petits, ou clearance: none, l&apos;évitent</translation>
+        <source>at the requested tool axes the nozzle touches beads of {0} points, and the search for clear tilts takes about {1} min of processor time, several times as long where the tool would turn too fast; use a smaller build_direction.lead and build_direction.tilt, or clearance: none, to avoid the search</source>
+        <translation>avec les axes d&apos;outil demandés, la buse touche des cordons de {0} points, et la recherche d&apos;inclinaisons qui dégagent la buse prend environ {1} min de processeur, plusieurs fois plus là où l&apos;outil tournerait trop vite ; utilisez un build_direction.lead et un build_direction.tilt plus petits, ou clearance: none, pour éviter la recherche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/process.py"/>
@@ -8003,8 +8058,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
-        <source>at {0} bead ends the retract of {1} mm would violate limits, reach or the condition; it is {2} to {3} mm there, {4} times off the tool axis and {5} times with the tool turned</source>
-        <translation>à {0} extrémités de cordons le retrait de {1} mm sortirait des limites, de l&apos;atteinte ou du conditionnement ; il y est de {2} à {3} mm, {4} fois dans une autre direction que le long de l&apos;axe de l&apos;outil et {5} fois avec l&apos;outil tourné</translation>
+        <source>at {0} bead ends the retract of {1} mm would violate joint limits, reach or the condition number; the retract is {2} to {3} mm there, {4} times off the tool axis and {5} times with the tool turned</source>
+        <translation>à {0} extrémités de cordons le retrait de {1} mm violerait les limites, l&apos;atteinte ou le conditionnement ; le retrait y est de {2} à {3} mm, {4} fois hors de l&apos;axe de l&apos;outil et {5} fois avec l&apos;outil tourné</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
@@ -8073,13 +8128,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/directed.py"/>
-        <source>axis {0} is locked at {1} deg; the tool is up to {2} deg off the requested direction</source>
-        <translation>l&apos;axe {0} est bloqué à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée</translation>
+        <source>axis {0} is locked at {1} deg, and the tool is up to {2} deg off the requested direction</source>
+        <translation>l&apos;axe {0} est bloqué à {1} deg, et l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/directed.py"/>
-        <source>axis {0} is locked at {1} deg; the tool is up to {2} deg off the requested direction, more than joints.max_residual allows ({3} deg); lock the other axis, use another position or none</source>
-        <translation>l&apos;axe {0} est bloqué à {1} deg ; l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée, plus que joints.max_residual ne permet ({3} deg) ; bloquez l&apos;autre axe, à une autre position, ou aucun</translation>
+        <source>axis {0} is locked at {1} deg, and the tool is up to {2} deg off the requested direction, more than joints.max_residual allows ({3} deg); lock the other axis, use another position or none</source>
+        <translation>l&apos;axe {0} est bloqué à {1} deg, et l&apos;outil s&apos;écarte jusqu&apos;à {2} deg de la direction demandée, plus que joints.max_residual ne permet ({3} deg) ; bloquez l&apos;autre axe, utilisez une autre position, ou none</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
@@ -8093,8 +8148,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>axis {0} turns {1} deg in one move; a continuous axis moves less than 180 deg per move: add points, or limit the axis</source>
-        <translation>l&apos;axe {0} tourne de {1} deg en un mouvement ; un axe sans fin fait moins de 180 deg par mouvement : ajoutez des points, ou limitez l&apos;axe</translation>
+        <source>axis {0} turns {1} deg in one move, but a continuous axis moves less than 180 deg per move; add points, or limit the axis</source>
+        <translation>l&apos;axe {0} tourne de {1} deg en un mouvement, mais un axe sans fin fait moins de 180 deg par mouvement ; ajoutez des points, ou limitez l&apos;axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
@@ -8148,7 +8203,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
-        <source>bead {0} starts a second time; keep the lines of a bead together</source>
+        <source>bead {0} starts a second time; keep all lines of a bead together</source>
         <translation>le cordon {0} recommence ; gardez ensemble les lignes d&apos;un cordon</translation>
     </message>
     <message>
@@ -8173,8 +8228,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>beads change their schedule, but this controller appears to set outputs before the motion reaches them; change only the speed at start and end, or use another controller</source>
-        <translation>les cordons changent de programme de soudage, mais cette commande semble régler les sorties avant que le mouvement ne les atteigne ; ne changez que la vitesse dans start et end, ou utilisez une autre commande</translation>
+        <source>beads change their schedule, but the controller appears to set outputs before the motion reaches the bead; change only the speed at start and end, or use another controller</source>
+        <translation>les cordons changent de programme de soudage, mais la commande semble régler les sorties avant que le mouvement n&apos;atteigne le cordon ; ne changez que la vitesse dans start et end, ou utilisez une autre commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/void_and_double.py"/>
@@ -8188,13 +8243,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program_beads.py"/>
-        <source>beads of the class {0} have no schedule, and would use the schedule of the previous bead; set process.schedule, or one in process.classes.{1}</source>
-        <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, et prendraient celui du cordon précédent ; donnez process.schedule, ou un dans process.classes.{1}</translation>
+        <source>beads of the class {0} have no schedule, and would use the schedule of the previous bead; set process.schedule, or a schedule in process.classes.{1}</source>
+        <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, et prendraient celui du cordon précédent ; fixez process.schedule, ou un programme dans process.classes.{1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program_beads.py"/>
-        <source>beads of the class {0} have no schedule, which arc instructions need; set process.schedule, or one in process.classes.{1}</source>
-        <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, que les instructions d&apos;arc nomment ; donnez process.schedule, ou un dans process.classes.{1}</translation>
+        <source>beads of the class {0} have no schedule, which arc instructions need; set process.schedule, or a schedule in process.classes.{1}</source>
+        <translation>les cordons de la classe {0} n&apos;ont pas de programme de soudage, dont les instructions d&apos;arc ont besoin ; fixez process.schedule, ou un programme dans process.classes.{1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
@@ -8232,14 +8287,9 @@
         <translation>avant {0} cordons l&apos;outil est retiré jusqu&apos;à {1} mm au lieu de {2} mm pour passer sans toucher</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/clad_faces.py"/>
-        <source>behind {0} is the material of {1}; use front, the outside</source>
-        <translation>derrière {0} se trouve la matière de {1} ; utilisez front, l&apos;extérieur</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
-        <source>besides the robot the file has {0} chains ({1}), and only one can carry the part; name it in `{2}`, with base and tip</source>
-        <translation>outre le robot le fichier a {0} chaînes ({1}), et une seule peut porter la pièce ; nommez-la dans `{2}`, avec base et bout</translation>
+        <source>besides the robot the file has {0} chains ({1}), but only one can carry the part; name this chain in `{2}`, with base and tip</source>
+        <translation>outre le robot le fichier a {0} chaînes ({1}), mais une seule peut porter la pièce ; nommez cette chaîne dans `{2}`, avec base et bout</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -8293,8 +8343,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
-        <source>both sides of a wall need its thickness; add it</source>
-        <translation>entre les deux côtés d&apos;une paroi il y a une épaisseur ; donnez-la</translation>
+        <source>both sides of a wall need its thickness; add the thickness</source>
+        <translation>les deux côtés d&apos;une paroi demandent son épaisseur ; ajoutez l&apos;épaisseur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -8313,7 +8363,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/wall_directions.py"/>
-        <source>build directions still turn faster than {0} deg/mm on a bead of {1} mm: allow a faster turn, or use the mode fixed</source>
+        <source>build directions still turn faster than {0} deg/mm on a bead of {1} mm; allow a faster turn, or use the mode fixed</source>
         <translation>les directions de dépôt ne peuvent pas être ramenées sous {0} deg/mm sur un cordon de {1} mm : permettez une rotation plus rapide, ou utilisez le mode fixed</translation>
     </message>
     <message>
@@ -8328,23 +8378,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>cancelled; recompute</source>
-        <translation>annulé ; recalculez</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>cannot be read as a calibration: {0}; use the file as ur_calibration wrote it</source>
-        <translation>ne peut pas être lu comme étalonnage : {0} ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>cannot be read as a machine file: {0}; correct it, or choose another file</source>
-        <translation>ne peut pas être lu comme un fichier machine : {0} ; corrigez cet endroit, ou choisissez un autre fichier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>cannot be read: {0}; choose another file</source>
-        <translation>ne peut pas être lu : {0} ; choisissez un fichier qui peut l&apos;être</translation>
+        <source>cancelled; recompute the object</source>
+        <translation>annulé ; recalculez l&apos;objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/program.py"/>
@@ -8367,8 +8402,13 @@
         <translation>cordon central</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/simulation/payload.py"/>
+        <source>check process.density, and the payload in the machine file</source>
+        <translation>process.density donne son poids ; la charge est dans le fichier machine</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
-        <source>check it in the CAD system or by Part, Check geometry, and redraw or sew those faces</source>
+        <source>check the solid in the CAD system or by Part, Check geometry, and redraw or sew those faces</source>
         <translation>vérifiez-le dans le système de CAO ou par Part, Vérifier la géométrie, et redessinez ou cousez ces faces</translation>
     </message>
     <message>
@@ -8393,7 +8433,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>choose a robot with six revolute axes; if a gripper follows them, name the last link of the arm as `tip`; further axes belong in `cell.external`</source>
+        <source>choose a robot with six revolute axes; if a gripper follows these axes, name the last link of the arm as `tip`; further axes belong in `cell.external`</source>
         <translation>choisissez un robot qui en a six rotatifs ; ceux d&apos;à côté sont dans `cell.external`</translation>
     </message>
     <message>
@@ -8432,19 +8472,14 @@
         <translation>cliquez sur des faces ou un objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
-        <source>click it</source>
-        <translation>cliquez dessus</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
-        <source>click it with Ctrl</source>
-        <translation>cliquez avec Ctrl</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/widgets/pick_field.py"/>
         <source>click objects</source>
         <translation>cliquez sur des objets</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/panels/proposed_job.py"/>
+        <source>click the object</source>
+        <translation>cliquez sur l&apos;objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -8478,8 +8513,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>commas separate both columns and decimals; export it with decimal points, or with semicolons between columns</source>
-        <translation>les virgules séparent à la fois les colonnes et les décimales ; exportez-le avec des points décimaux, ou des points-virgules entre les colonnes</translation>
+        <source>commas separate both columns and decimals; export the file with decimal points, or with semicolons between columns</source>
+        <translation>les virgules séparent à la fois les colonnes et les décimales ; exportez le fichier avec des points décimaux, ou des points-virgules entre les colonnes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
@@ -8518,8 +8553,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>configuration supervision (ConfL) is on, but its positions name no configurations</source>
-        <translation>la surveillance des configurations (ConfL) est active, mais ses positions ne nomment pas de configurations</translation>
+        <source>configuration supervision (ConfL) is on, but the positions name no configurations</source>
+        <translation>la surveillance de configuration (ConfL) est active, mais les positions ne nomment pas de configurations</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -8568,8 +8603,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>controllers weave on linear moves only, and this program has joint moves</source>
-        <translation>les commandes ne balaient que sur des mouvements linéaires, et ce programme a des mouvements articulaires</translation>
+        <source>controllers weave on linear moves only, but the program has joint moves</source>
+        <translation>les commandes ne balaient que sur des mouvements linéaires, mais le programme a des mouvements articulaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -8673,28 +8708,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>digital inputs are 1 to {0} (1 to 8 are digital_in[0] to [7], 9 to {1} the configurable ones), not {2}; choose one in this range</source>
-        <translation>les entrées numériques vont de 1 à {0} (1 à 8 sont digital_in[0] à [7], 9 à {1} les configurables), pas {2} ; utilisez l&apos;une de celles-ci</translation>
+        <source>digital inputs are 1 to {0} (1 to 8 are digital_in[0] to [7], 9 to {1} the configurable inputs), not {2}; choose an input in this range</source>
+        <translation>les entrées numériques vont de 1 à {0} (1 à 8 sont digital_in[0] à [7], 9 à {1} les entrées configurables), pas {2} ; choisissez une entrée dans cette plage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>digital inputs are 1 to {0} (motion.digital-in-00 is number 1), not {1}; choose one in this range</source>
-        <translation>les entrées logiques vont de 1 à {0} (motion.digital-in-00 est le numéro 1), et non {1} ; utilisez l&apos;une de celles-ci</translation>
+        <source>digital inputs are 1 to {0} (motion.digital-in-00 is number 1), not {1}; choose an input in this range</source>
+        <translation>les entrées logiques vont de 1 à {0} (motion.digital-in-00 est le numéro 1), et non {1} ; choisissez une entrée dans cette plage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/post.py"/>
-        <source>digital outputs are 1 to {0} (1 to 8 are digital_out[0] to [7], 9 to {1} the configurable ones), not {2}; choose one in this range</source>
-        <translation>les sorties numériques vont de 1 à {0} (1 à 8 sont digital_out[0] à [7], 9 à {1} les configurables), pas {2} ; utilisez l&apos;une de celles-ci</translation>
+        <source>digital outputs are 1 to {0} (1 to 8 are digital_out[0] to [7], 9 to {1} the configurable outputs), not {2}; choose an output in this range</source>
+        <translation>les sorties numériques vont de 1 à {0} (1 à 8 sont digital_out[0] à [7], 9 à {1} les sorties configurables), pas {2} ; choisissez une sortie dans cette plage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>digital outputs are 1 to {0} (motion.digital-out-00 is number 1), not {1}; choose one in this range</source>
-        <translation>les sorties logiques vont de 1 à {0} (motion.digital-out-00 est le numéro 1), et non {1} ; utilisez l&apos;une de celles-ci</translation>
+        <source>digital outputs are 1 to {0} (motion.digital-out-00 is number 1), not {1}; choose an output in this range</source>
+        <translation>les sorties logiques vont de 1 à {0} (motion.digital-out-00 est le numéro 1), et non {1} ; choisissez une sortie dans cette plage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>digital outputs are 1 to {0}, not {1}; choose one in this range</source>
-        <translation>les sorties numériques vont de 1 à {0}, pas {1} ; utilisez l&apos;une d&apos;elles</translation>
+        <source>digital outputs are 1 to {0}, not {1}; choose an output in this range</source>
+        <translation>les sorties numériques vont de 1 à {0}, et non {1} ; choisissez une sortie dans cette plage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -8733,8 +8768,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/cladding.py"/>
-        <source>doubly curved faces cannot be flattened without distortion: the bead spacing varies by up to {0} %; strategy.distortion limits it</source>
-        <translation>les faces à double courbure ne peuvent pas être mises à plat sans distorsion : l&apos;écart entre cordons varie jusqu&apos;à {0} % ; strategy.distortion le limite</translation>
+        <source>doubly curved faces cannot be flattened without distortion: the bead spacing varies by up to {0} %, within the limit strategy.distortion</source>
+        <translation>les faces à double courbure ne peuvent pas être mises à plat sans distorsion : l&apos;écart entre cordons varie jusqu&apos;à {0} %, dans la limite strategy.distortion</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -8762,6 +8797,16 @@
         <translation>chaque hélice commence et finit contre un tour complet, où environ {0} cm3 au total sont déposés deux fois</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/slicing/tubes/normal_layers.py"/>
+        <source>each plane normal to the centre line must cut the wall in one curve; choose other layers for the wall</source>
+        <translation>chaque plan normal à la ligne médiane doit couper la paroi en une courbe ; choisissez d&apos;autres couches pour la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/preflight/clearance.py"/>
+        <source>each point of the motion, rapids included, compared with the limits in the machine file</source>
+        <translation>chaque point du mouvement, rapides compris, comparé aux limites du fichier de machine</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
         <source>earlier deposit, at its actual width, or an existing part below each short piece of a bead, against the build direction</source>
         <translation>dépôt antérieur, à sa largeur réelle, ou pièce existante sous chaque court morceau de cordon, contre la direction de dépôt</translation>
@@ -8783,8 +8828,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
-        <source>enter positive values for speed, acceleration and jerk, or leave them empty</source>
-        <translation>saisissez une vitesse, une accélération et un jerk supérieurs à 0, ou laissez-les vides</translation>
+        <source>enter positive values for speed, acceleration and jerk, or leave the fields empty</source>
+        <translation>saisissez une vitesse, une accélération et un jerk supérieurs à 0, ou laissez les champs vides</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
@@ -8805,16 +8850,6 @@
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>events between moves are out of order compared with the plan</source>
         <translation>les événements entre les mouvements ne sont pas dans l&apos;ordre du plan</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>every point of the motion, rapids included, compared with the machine file</source>
-        <translation>chaque point du mouvement, rapides compris, comparé au fichier machine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>everything in it is marked as invisible and therefore not read; show the part and export it again</source>
-        <translation>tout son contenu est marqué invisible et n&apos;est pas lu ; affichez la pièce et exportez-la de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
@@ -8848,13 +8883,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/triangle_mesh.py"/>
-        <source>faces of the wall mesh have opposite orientations; orient them consistently</source>
-        <translation>des faces du maillage de la paroi sont tournées en sens opposés : orientez-les pareillement</translation>
+        <source>faces of the wall mesh have opposite orientations; orient all faces consistently</source>
+        <translation>des faces du maillage de la paroi ont des orientations opposées ; orientez toutes les faces de la même façon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
-        <source>facets meet at sharp angles along about {0} mm of edges; computing layers around them takes about {1} min of processor time; a larger strategy.layer_height, or a mesh with rounded edges, takes less</source>
-        <translation>des facettes se rejoignent à angle vif le long d&apos;environ {0} mm d&apos;arêtes ; y trouver les couches prend environ {1} min de processeur ; un strategy.layer_height plus grand, ou un maillage aux arêtes arrondies, en prend moins</translation>
+        <source>facets meet at sharp angles along about {0} mm of edges, and computing layers around these edges takes about {1} min of processor time; use a larger strategy.layer_height, or a mesh with rounded edges, to save time</source>
+        <translation>des facettes se rejoignent à angle vif le long d&apos;environ {0} mm d&apos;arêtes, et calculer les couches autour de ces arêtes prend environ {1} min de processeur ; utilisez un plus grand strategy.layer_height, ou un maillage aux arêtes arrondies, pour gagner du temps</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
@@ -8937,6 +8972,11 @@
         <translation>machine à cinq axes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
+        <source>five-axis machines have no arc instructions</source>
+        <translation>les machines à cinq axes n&apos;ont pas d&apos;instructions d&apos;arc</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
         <source>fixed</source>
         <translation>fixe</translation>
@@ -8968,18 +9008,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/simulation/payload.py"/>
-        <source>from here on the part weighs more than {0} kg, {1} kg when finished including {2} kg of substrate, above the payload of {3}; {4}</source>
-        <translation>à partir d&apos;ici la pièce pèse plus de {0} kg, {1} kg finie dont {2} kg de substrat, plus que la charge de {3} ; {4}</translation>
+        <source>from here on the part weighs more than {0} kg ({1} kg when finished, including {2} kg of substrate), the payload of {3}; {4}</source>
+        <translation>à partir d&apos;ici la pièce pèse plus de {0} kg ({1} kg une fois finie, dont {2} kg de substrat), la charge utile de {3} ; {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>from here the flat last turn descends from {0} to 0 mm above the previous turn, so the second half of it is over-deposited. Machine the top, or use path: layers</source>
-        <translation>à partir d&apos;ici le dernier tour plat descend de {0} à 0 mm au-dessus du tour précédent, si bien que sa deuxième moitié reçoit trop de matière. Usinez le haut, ou utilisez path: layers</translation>
+        <source>from here the flat last turn descends from {0} to 0 mm above the previous turn, so the second half of the last turn is over-deposited; machine the top, or use path: layers</source>
+        <translation>à partir d&apos;ici le dernier tour plat descend de {0} à 0 mm au-dessus du tour précédent, donc la deuxième moitié du dernier tour reçoit trop de matière ; usinez le haut, ou utilisez path: layers</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>from here the second turn rises from 0 to {0} mm above the flat first turn, so the first half of it is over-deposited; the end of the turn is correct. Machine the foot, or use path: layers</source>
-        <translation>à partir d&apos;ici le deuxième tour monte de 0 à {0} mm au-dessus du premier tour plat, si bien que sa première moitié reçoit trop de matière ; la fin du tour est juste. Usinez le pied, ou utilisez path: layers</translation>
+        <source>from here the second turn rises from 0 to {0} mm above the flat first turn, so the first half of the second turn is over-deposited; machine the foot, or use path: layers</source>
+        <translation>à partir d&apos;ici le deuxième tour monte de 0 à {0} mm au-dessus du premier tour plat, donc la première moitié du deuxième tour reçoit trop de matière ; usinez le pied, ou utilisez path: layers</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
@@ -8995,11 +9035,6 @@
         <location filename="../../freecad_am/gui/preferences_page.py"/>
         <source>from the controller of the machine</source>
         <translation>ce que lit la commande de la machine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>from {0} points {1} are kept, evenly</source>
-        <translation>de {0} points {1} sont gardés, également répartis</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
@@ -9035,11 +9070,6 @@
         <location filename="../../freecad_am/core/parameters/strategy.py"/>
         <source>fronts</source>
         <translation>fronts</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/strategy.py"/>
-        <source>fronts do not follow surface lines, as iso-parameter layers do; remove strategy.method, or use constant-distance or smooth</source>
-        <translation>les fronts ne suivent pas les lignes d&apos;une surface comme le font les couches iso-parameter ; retirez strategy.method, ou utilisez constant-distance ou smooth</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
@@ -9078,7 +9108,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/links/bodies.py"/>
-        <source>give sizes larger than 0: of a box along x, y and z, of a cylinder its diameter and length</source>
+        <source>give sizes larger than 0: for a box along x, y and z, for a cylinder the diameter and the length</source>
         <translation>donnez des dimensions supérieures à 0 : d&apos;un pavé selon x, y et z, d&apos;un cylindre son diamètre et sa longueur</translation>
     </message>
     <message>
@@ -9158,13 +9188,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/nozzle_check.py"/>
-        <source>in layer {0}, tool axes are tilted back for clearance, by up to {1} deg</source>
-        <translation>dans la couche {0}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {1} deg</translation>
+        <source>in layer {0}, tool axes are tilted back by up to {1} deg for clearance</source>
+        <translation>dans la couche {0}, les axes de l&apos;outil sont redressés jusqu&apos;à {1} deg pour dégager la buse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/nozzle_check.py"/>
-        <source>in layers {0} to {1}, tool axes are tilted back for clearance, by up to {2} deg</source>
-        <translation>dans les couches {0} à {1}, les axes de l&apos;outil sont redressés pour tenir la buse éloignée, jusqu&apos;à {2} deg</translation>
+        <source>in layers {0} to {1}, tool axes are tilted back by up to {2} deg for clearance</source>
+        <translation>dans les couches {0} à {1}, les axes de l&apos;outil sont redressés jusqu&apos;à {2} deg pour dégager la buse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -9252,1139 +9282,14 @@
         <translation>paramètre constant</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/shapes/cell_obstacles.py"/>
-        <source>it already touches the nozzle at the first point of the job, in every arm configuration; its pose is in the manufacturer&apos;s base frame, and its file in mm: move it, or the deposition point</source>
-        <translation>il touche déjà la buse au premier point du travail, dans toute configuration du bras ; sa pose est dans le repère de base du fabricant, et son fichier en mm : déplacez-le, ou le point de dépôt</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>it and {0} overlap, as at {1}, and the overlap would be deposited twice; fuse them into one solid, or move one</source>
-        <translation>lui et {0} remplissent le même endroit, comme en {1}, qui serait déposé deux fois ; fusionnez-les en un solide, ou déplacez-en un</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>it applies to the whole program, not to one feature; set it at the top level</source>
-        <translation>cela vaut pour tout le programme, non pour un de ses éléments ; donnez-le au premier niveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it calls a subprogram; write out its moves</source>
-        <translation>il appelle un sous-programme ; écrivez ses déplacements</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>it calls another program within a bead</source>
-        <translation>il appelle un autre programme au sein d&apos;un cordon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>it calls itself</source>
-        <translation>il s&apos;appelle lui-même</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it cancels an object while the program runs; remove the object in the slicer</source>
-        <translation>il abandonne un objet pendant le programme ; retirez l&apos;objet dans le trancheur</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/planned.py"/>
-        <source>it cannot be aligned with {0}: {1}</source>
-        <translation>elle ne peut pas être alignée avec {0} : {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/shapes/linked_files.py"/>
-        <source>it cannot be read as a FreeCAD document; save it again</source>
-        <translation>il ne peut pas être lu comme un document FreeCAD ; enregistrez-le de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it cannot be read: {0}; choose another file</source>
-        <translation>il ne peut pas être lu : {0} ; choisissez un fichier qui peut l&apos;être</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/user_machines.py"/>
-        <source>it cannot be written: {0}; check the folder</source>
-        <translation>il ne peut pas être écrit : {0} ; vérifiez le dossier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>it cannot follow an expression; enter a plain value</source>
-        <translation>il ne peut pas suivre une expression ; donnez une valeur simple</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>it closes on itself both ways; choose a tube that is closed around</source>
-        <translation>elle se ferme sur elle-même dans les deux sens ; choisissez un tube fermé sur son tour</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>it contains characters other than ASCII</source>
-        <translation>il contient d&apos;autres caractères que l&apos;ASCII</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it contains more than holds itself; simplify it</source>
-        <translation>il construit plus que ce qui se contient soi-même ; simplifiez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it contains more than is not in it; simplify it</source>
-        <translation>il construit plus que ce qui n&apos;y est pas ; simplifiez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it contains more than {0} objects, or objects nested {1} times; simplify it</source>
-        <translation>il construit plus de {0} objets, ou des objets imbriqués {1} fois ; simplifiez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it contains more than {0} points; simplify it</source>
-        <translation>il construit plus de {0} points ; simplifiez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it contains more than {0} triangles; simplify it</source>
-        <translation>il construit plus de {0} triangles ; simplifiez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it contains no model ({0})</source>
-        <translation>il n&apos;y a pas de modèle dedans ({0})</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it contains no triangles{0}; export the part again</source>
-        <translation>il ne construit aucun triangle{0} ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/shapes/bodies.py"/>
-        <source>it contains shapes and meshes, which cannot be used together; choose its objects one by one</source>
-        <translation>il contient des formes et des maillages, et une seule sorte est utilisable à la fois ; choisissez ses objets un par un</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>it crosses the axis by {0} mm; keep it on one side</source>
-        <translation>il croise l&apos;axe de {0} mm ; gardez-le d&apos;un seul côté</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>it declares a document type, which controllers never write</source>
-        <translation>il déclare un type de document, ce que les commandes n&apos;écrivent jamais</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>it does not contain the code of a program {0}</source>
-        <translation>il ne contient pas le code d&apos;un programme {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>it does not end the motion and switch the deposit off</source>
-        <translation>il ne termine pas le mouvement et ne coupe pas le dépôt</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>it does not end with M17, or calls itself</source>
-        <translation>il ne finit pas par M17, ou s&apos;appelle lui-même</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>it does not end with M30, or calls itself</source>
-        <translation>il ne finit pas par M30, ou s&apos;appelle lui-même</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>it does not set the axes to which the feed applies (FGROUP)</source>
-        <translation>il ne règle pas les axes auxquels l&apos;avance s&apos;applique (FGROUP)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/patch.py"/>
-        <source>it does not turn about the axis</source>
-        <translation>elle ne tourne pas autour de l&apos;axe</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>it ends before its last move</source>
-        <translation>il finit avant son dernier mouvement</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>it ends with the deposit on</source>
-        <translation>il finit avec le dépôt en marche</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>it ends with the deposit on, or within a loop</source>
-        <translation>il finit avec le dépôt en marche, ou dans une boucle</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>it ends within a loop</source>
-        <translation>il finit dans une boucle</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it extends to {0} mm, farther than {1} mm; a coordinate is damaged or the unit is wrong; export the part again</source>
-        <translation>il s&apos;étend jusqu&apos;à {0} mm, plus loin que {1} mm ; une coordonnée est endommagée ou son unité est fausse ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/torch.py"/>
-        <source>it extends {0} mm beyond its origin along Z, into the deposit; point Z of the file out of the nozzle, away from the torch, with the origin at the tip</source>
-        <translation>elle dépasse de {0} mm son origine selon Z, là où est le dépôt ; faites pointer le Z du fichier hors de la buse, à l&apos;opposé de la torche, et mettez l&apos;origine à sa pointe</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it extrudes after {0}, which ends the program; remove the lines after it</source>
-        <translation>il extrude après {0}, qui termine le programme ; retirez les lignes qui suivent</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it extrudes before its position is defined; set X, Y and Z first; {0}</source>
-        <translation>il extrude avant que le programme ne dise où : X, Y et Z doivent être donnés d&apos;abord ; {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/planned.py"/>
-        <source>it fits equally well on the part rotated by {0} deg, so its orientation is ambiguous; give three pairs of points as substrate.scan_pairs, or measure in part coordinates</source>
-        <translation>elle convient aussi bien à la pièce tournée de {0} deg, si bien que son orientation est ambiguë ; donnez trois paires de points comme substrate.scan_pairs, ou mesurez dans les coordonnées de la pièce</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
-        <source>it has 1 row; measure at least {0} beads</source>
-        <translation>il a 1 ligne ; mesurez au moins {0} cordons</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
-        <source>it has a corner of {0} deg at {1}, where layers would have zero height on the inside; round it with a radius, or choose guide: auto</source>
-        <translation>il a un angle vif de {0} deg en {1}, où les couches n&apos;auraient pas de hauteur à l&apos;intérieur ; arrondissez-le par un rayon, ou choisissez guide: auto</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>it has a crease along its seam, which cannot be deposited yet; smooth it there</source>
-        <translation>elle a une arête le long de sa couture, ce qui ne peut pas encore être déposé ; rendez-la lisse à cet endroit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it has a document type, which 3MF does not allow</source>
-        <translation>il a un type de document, ce que 3MF ne permet pas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/patch.py"/>
-        <source>it has an edge but no area, so the file is damaged or it does not turn about the axis</source>
-        <translation>elle a une arête mais pas d&apos;aire, donc le fichier est endommagé ou elle ne tourne pas autour de l&apos;axe</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
-        <source>it has an edge that is neither a straight end of the tube nor below the first layer, which cannot be deposited yet; fill openings, and cut ends straight</source>
-        <translation>elle a une arête qui n&apos;est ni droite en travers du tube à son extrémité ni sous la première couche, ce qui ne peut pas encore être déposé ; comblez les ouvertures, et coupez droit les extrémités</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
-        <source>it has free-form surfaces ({0} in line {1}), which are not read; export triangles, or STEP</source>
-        <translation>il a des surfaces libres ({0} à la ligne {1}), qui ne sont pas lues ; exportez des triangles ou du STEP</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/catalogue.py"/>
-        <source>it has more than {0} characters</source>
-        <translation>il a plus de {0} caractères</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>it has neither faces nor edges; choose another object</source>
-        <translation>il n&apos;a ni faces ni arêtes ; choisissez un autre objet</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it has no DEF</source>
-        <translation>il n’a pas de DEF</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>it has no arc instructions</source>
-        <translation>elle n&apos;a pas d&apos;instructions d&apos;arc</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>it has no closed direction; choose a tube that is closed around</source>
-        <translation>elle n&apos;a pas de direction fermée ; choisissez un tube fermé sur son tour</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
-        <source>it has no cross-section at its base</source>
-        <translation>il n&apos;a pas de section à sa base</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/curves.py"/>
-        <source>it has no edges to deposit as beads; choose edges, a wire or a sketch</source>
-        <translation>il n&apos;a pas d&apos;arêtes à déposer en cordons ; choisissez des arêtes, un fil ou une esquisse</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/shapes/places.py"/>
-        <source>it has no element {0}; its {1} elements are numbered from 0</source>
-        <translation>il n&apos;a pas d&apos;élément {0} ; ses {1} éléments sont numérotés à partir de 0</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>it has no face of measurable width; choose another object</source>
-        <translation>il n&apos;a aucune face de quelque largeur ; choisissez un autre objet</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/shapes/tessellate.py"/>
-        <source>it has no faces for the clearance check; choose a solid or a mesh</source>
-        <translation>il n&apos;a pas de face dont tenir la buse éloignée ; choisissez un solide ou un maillage</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/shapes/tessellate.py"/>
-        <source>it has no faces to compare points with; choose a solid or a surface</source>
-        <translation>il n&apos;a pas de face à laquelle comparer les points ; choisissez un solide ou une surface</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>it has no faces; choose a part with wall faces</source>
-        <translation>il n&apos;a pas de faces ; choisissez une pièce avec les faces de la paroi</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>it has no moves</source>
-        <translation>il n&apos;a pas de mouvements</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/interop.py"/>
-        <source>it has no path; choose a toolpath, joint path or program</source>
-        <translation>il n&apos;a pas de trajectoire ; choisissez une trajectoire d&apos;outil, une trajectoire articulaire ou un programme</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/simulation/player.py"/>
-        <source>it has no points to play; choose another path</source>
-        <translation>elle n&apos;a pas de points à jouer ; choisissez une autre trajectoire</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
-        <source>it has no points; {0}</source>
-        <translation>il n&apos;a pas de points ; {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/shapes/bodies.py"/>
-        <source>it has no shape; choose an object with a shape</source>
-        <translation>il n&apos;a pas de forme ; choisissez un objet qui a une forme</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
-        <source>it has no types</source>
-        <translation>il n&apos;a pas de types</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/curves.py"/>
-        <source>it has no {0}, only {1} {2}(s); choose others, starting with {3}1</source>
-        <translation>il n&apos;a pas de {0}, mais {1} {2}(s) ; nommez-en d&apos;autres, à partir de {3}1</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/curves.py"/>
-        <source>it has no {0}; choose from Edge1 to Edge{1}</source>
-        <translation>il n&apos;a pas de {0} ; choisissez de Edge1 à Edge{1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>it has no {0}; choose from Face1 to Face{1}</source>
-        <translation>il n&apos;a pas de {0} ; choisissez de Face1 à Face{1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
-        <source>it has no {0}; choose from the open ends of the mesh, sorted by height: {1}</source>
-        <translation>il n&apos;a pas de {0} ; choisissez parmi les extrémités ouvertes du maillage, par hauteur : {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>it has solids by constructive geometry ({0}), which are not supported; {1}</source>
-        <translation>il a des solides par géométrie constructive ({0}), qui ne sont pas lus ; {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it has {0}</source>
-        <translation>il a {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>it has {0} axes, {1} prismatic</source>
-        <translation>il a {0} axes, dont {1} prismatiques</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
-        <source>it has {0} columns; {1}</source>
-        <translation>il a {0} colonnes ; {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/curves.py"/>
-        <source>it has {0} edges, and a guide uses only some; choose them, as in edges: [Edge1]</source>
-        <translation>il a {0} arêtes, et un guide n&apos;en utilise que quelques-unes ; choisissez-les, comme dans edges: [Edge1]</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>it has {0} faces that are not flat; name the wall faces in part.faces</source>
-        <translation>il a {0} faces qui ne sont pas planes ; nommez celles de la paroi dans part.faces</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
-        <source>it has {0} numbers in place of {1}; fill the gap, or remove the line</source>
-        <translation>elle a {0} nombres au lieu de {1} ; remplissez le vide, ou enlevez la ligne</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/bead_model.py"/>
-        <source>it has {0} rows; measure at least {1} beads</source>
-        <translation>il a {0} lignes ; mesurez au moins {1} cordons</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
-        <source>it has {0} separate pieces, and no layer starts on the piece at {1}, {2} mm from the start of the layers; choose its start edge too, or deposit it as a separate feature</source>
-        <translation>ce sont {0} morceaux qui ne tiennent pas ensemble, et aucune couche ne commence sur celui en {1}, à {2} mm du départ des couches ; choisissez aussi son arête comme départ, ou déposez-le seul</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>it holds no shape, only annotations; export the part again</source>
-        <translation>il ne contient aucune forme, seulement des annotations ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it holds no shape, only product data or annotations; export the part again</source>
-        <translation>il ne contient aucune forme, seulement des données de produit ou des annotations ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it holds no shape; export the part again</source>
-        <translation>il ne contient pas de forme ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it holds no triangles; export the part again</source>
-        <translation>il ne contient pas de triangles ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it interrupts the lines of another instruction</source>
-        <translation>il interrompt les lignes d&apos;une autre instruction</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
-        <source>it is a closed mesh without selectable faces; cut out the surface to cover (Mesh, Cutting), or use the original CAD file</source>
-        <translation>c&apos;est un maillage fermé sans faces à choisir ; découpez la surface à couvrir (Mesh, Découper), ou prenez le fichier CAO d&apos;origine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it is a folder; choose the file of the part</source>
-        <translation>c&apos;est un dossier ; nommez le fichier de la pièce</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/catalogue.py"/>
-        <source>it is a reserved word</source>
-        <translation>c&apos;est un mot réservé</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it is a sliced file: it contains G-code ({0}) and no triangles; export the project with its meshes, or unpack the G-code and plan it as curves</source>
-        <translation>c&apos;est un fichier tranché : il contient du G-code ({0}) et aucun triangle ; exportez le projet avec ses maillages, ou extrayez le G-code et planifiez-le comme courbes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/families/revolution.py"/>
-        <source>it is a solid of revolution, but a wall of one bead would leave out {0} of its {1} cm3</source>
-        <translation>c&apos;est un solide de révolution, mais une paroi d&apos;un cordon laisserait de côté {0} de ses {1} cm3</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
-        <source>it is a solid whose curved faces ({0}) do not form one wall; select the wall faces, or name them in part.faces of a job</source>
-        <translation>c&apos;est un solide dont les faces non planes ({0}) ne sont pas une seule paroi ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/clad_faces.py"/>
-        <source>it is a solid with {0} face(s), and none is selected; select the faces to cover, or name them in part.faces of a job</source>
-        <translation>c&apos;est un solide de {0} face(s), et aucune n&apos;est choisie ; nommez celles à recouvrir : part.faces d&apos;une tâche, ou sélectionnez-les</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>it is a solid without an {0} wall; use wall: outer</source>
-        <translation>il est plein et n&apos;a pas de paroi {0} ; utilisez wall: outer</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it is binary G-code; export G-code as text from the slicer</source>
-        <translation>c&apos;est du G-code binaire ; faites exporter le G-code en texte par le trancheur</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it is compressed in a way that 3MF does not allow</source>
-        <translation>il est comprimé d&apos;une façon que 3MF ne permet pas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/patch.py"/>
-        <source>it is cut out or slanted: an edge runs neither around nor along it</source>
-        <translation>elle est découpée ou oblique : une arête n&apos;en fait pas le tour et ne court pas le long d&apos;elle</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it is damaged, or its extension does not match its content; export the part again</source>
-        <translation>il est endommagé ou n&apos;est pas ce que dit son extension ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/sandbox.py"/>
-        <source>it is damaged: FreeCAD crashes on it; export it again</source>
-        <translation>il est endommagé : FreeCAD plante en le lisant ; exportez-le de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/sandbox.py"/>
-        <source>it is damaged: reading it takes more than {0} MB of memory, the limit for a file of its size; export it again</source>
-        <translation>il est endommagé : sa lecture demande plus de {0} Mo de mémoire, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/sandbox.py"/>
-        <source>it is damaged: reading it takes more than {0} s of processor time, the limit for a file of its size; export it again</source>
-        <translation>il est endommagé : sa lecture demande plus de {0} s de processeur, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it is declared after an instruction; declarations come first</source>
-        <translation>il est déclaré après une instruction ; les déclarations viennent d&apos;abord</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/catalogue.py"/>
-        <source>it is empty</source>
-        <translation>il est vide</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
-        <source>it is empty; fill the gap, or remove the line</source>
-        <translation>elle est vide ; remplissez le vide, ou enlevez la ligne</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it is encrypted; export it without protection</source>
-        <translation>il est chiffré ; exportez-le sans protection</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/macro/suit.py"/>
-        <source>it is for kind: solid, not for {0}; remove it</source>
-        <translation>c’est pour kind: solid, pas pour {0} ; omettez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>it is for solids, not cladding; use {0}</source>
-        <translation>c&apos;est pour les solides, pas pour le rechargement ; utilisez {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/hub.py"/>
-        <source>it is neither a cylinder nor a cone; choose another face, or set strategy.base</source>
-        <translation>ce n&apos;est ni un cylindre ni un cône ; choisissez une autre face, ou donnez strategy.base</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/simulation/player.py"/>
-        <source>it is neither a joint path nor a program; select one</source>
-        <translation>ce n&apos;est ni une trajectoire articulaire ni un programme ; sélectionnez l&apos;un d&apos;eux</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/macro/scan.py"/>
-        <source>it is neither a program nor an inspection; choose one</source>
-        <translation>ce n’est ni un programme ni une inspection ; choisissez-en un</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/checks/placed.py"/>
-        <source>it is neither a toolpath nor a joint path; choose one</source>
-        <translation>ce n&apos;est ni une trajectoire d&apos;outil ni une trajectoire articulaire ; donnez-en une</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>it is nested too deeply for a machine file; choose another file</source>
-        <translation>ses niveaux sont trop nombreux pour un fichier de machine ; choisissez un autre fichier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>it is not a PLY file with vertices first; export it again</source>
-        <translation>ce n&apos;est pas un fichier PLY qui commence par ses sommets ; exportez-le de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>it is not a job from /JOB to END</source>
-        <translation>ce n&apos;est pas un job de /JOB à END</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/redundancy_map/draft.py"/>
-        <source>it is not a joint path; select one</source>
-        <translation>ce n&apos;est pas une trajectoire articulaire ; sélectionnez-en une</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/shapes/places.py"/>
-        <source>it is not a link array; choose the object itself</source>
-        <translation>ce n&apos;est pas un réseau de liens ; donnez l&apos;objet lui-même</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>it is not a listing with /PROG, /MN, /POS and /END in this order</source>
-        <translation>ce n&apos;est pas un listing avec /PROG, /MN, /POS et /END dans cet ordre</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/modules.py"/>
-        <source>it is not a module with one routine</source>
-        <translation>ce n&apos;est pas un module à une seule routine</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it is not a module with one routine named like the file, that begins with &amp;ACCESS RVP, &amp;REL 1 and DEF and ends with END: {0}</source>
-        <translation>ce n’est pas un module avec une seule routine du nom du fichier, qui commence par &amp;ACCESS RVP, &amp;REL 1 et DEF et finit par END : {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>it is not a program that ends with M2</source>
-        <translation>ce n&apos;est pas un programme qui finit par M2</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>it is not a project in millimetres</source>
-        <translation>ce n&apos;est pas un projet en millimètres</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
-        <source>it is not a solid, but {0} closed shell(s) of {1} face(s); convert them to solids (Part, Convert to solid), or {2}</source>
-        <translation>ce n&apos;est pas un solide, mais {0} coque(s) fermée(s) de {1} face(s) ; faites-en des solides (Part, Convertir en solide), ou {2}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
-        <source>it is not a solid, but {0} open face(s): nothing connects to the edge at {1} of {2}; {3}, or {4}</source>
-        <translation>ce n&apos;est pas un solide, mais {0} face(s) qui n&apos;enferment rien, car rien n&apos;est joint à l&apos;arête en {1} de {2} ; {3}, ou {4}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
-        <source>it is not a solid; {0}</source>
-        <translation>ce n&apos;est pas un solide ; {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it is not a sound zip file ({0})</source>
-        <translation>ce n&apos;est pas un fichier zip sain ({0})</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>it is not a stage of the workbench; choose one</source>
-        <translation>ce n&apos;est pas une étape de cet atelier ; choisissez-en une</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/process/wire.py"/>
-        <source>it is not a table: it contains bytes that are not UTF-8 text; save it as CSV in UTF-8</source>
-        <translation>ce n&apos;est pas un tableau : il contient des octets qui ne sont pas du texte UTF-8 ; enregistrez-le en CSV UTF-8</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>it is not an AdaOne toolpath, or it is damaged ({0}); export it again</source>
-        <translation>ce n&apos;est pas une trajectoire d&apos;AdaOne, ou elle est endommagée ({0}) ; exportez-la à nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
-        <source>it is not made of signs and a coupling of axes 2 and 3; copy the original file</source>
-        <translation>elle n&apos;est pas faite de signes et d&apos;un couplage des axes 2 et 3 ; copiez le fichier lui-même</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/patch.py"/>
-        <source>it is not of revolution</source>
-        <translation>elle n&apos;est pas de révolution</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>it is not on the hub: it is inside the hub; move it, or choose its base{0}</source>
-        <translation>il n&apos;est pas sur le moyeu : il est à l&apos;intérieur du moyeu ; déplacez-le, ou choisissez sa base{0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>it is not on the hub: it passes {0} off the face, near {1}; move it, or choose its base{2}</source>
-        <translation>il n&apos;est pas sur le moyeu : il passe à {0} de la face, près de {1} ; déplacez-le, ou choisissez sa base{2}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>it is not on the hub: it starts {0} mm outside {1}, at {2}; move it, or choose its base{3}</source>
-        <translation>il n&apos;est pas sur le moyeu : il commence à {0} mm en dehors de {1}, en {2} ; déplacez-le, ou choisissez sa base{3}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>it is not one function from its first line to its last</source>
-        <translation>ce n&apos;est pas une seule fonction de la première ligne à la dernière</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>it is not text in UTF-8</source>
-        <translation>ce n&apos;est pas un texte en UTF-8</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/table_part.py"/>
-        <source>it is not text; give a table of points as CSV</source>
-        <translation>ce n&apos;est pas du texte ; donnez un tableau de points en CSV</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>it is not well-formed XML ({0})</source>
-        <translation>ce n&apos;est pas du XML bien formé ({0})</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>it is off the surface of {0} by {1} mm; walls of several surfaces cannot be deposited yet: choose faces of one torus, cylinder or cone</source>
-        <translation>elle n&apos;est pas sur la surface de {0} (écart de {1} mm) ; les parois de plusieurs surfaces ne peuvent pas encore être déposées : choisissez des faces d&apos;un même tore, cylindre ou cône</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>it is set ahead of the motion, or its outputs are too few for the number</source>
-        <translation>il est réglé en avance sur le mouvement, ou ses sorties sont trop peu nombreuses pour le numéro</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
-        <source>it is several solids</source>
-        <translation>ce sont plusieurs solides</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/hub.py"/>
-        <source>it is the inside of a bore; choose the outer face of a hub</source>
-        <translation>c&apos;est l&apos;intérieur d&apos;un alésage ; choisissez l&apos;extérieur d&apos;un moyeu, sur lequel croissent les solides</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
-        <source>it is the same in all poses, which proves nothing; add another pose</source>
-        <translation>il est le même dans toutes les poses, ce qui ne prouve rien ; ajoutez une autre pose</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>it is truncated after {0} of {1} vertices; export it again</source>
-        <translation>il est coupé après {0} de {1} sommets ; exportez-le de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it is truncated, or not an STL file: its header counts {0} triangles, but its size holds {1}; export the part again</source>
-        <translation>il est tronqué ou n&apos;est pas un fichier STL : il annonce {0} triangles et n&apos;en contient que {1} ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>it is truncated: the last solid has no end; export the part again</source>
-        <translation>il est tronqué : son dernier solide n&apos;a pas de fin ; exportez la pièce de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>it is unconfirmed how an INFORM job switches an output ahead of a point</source>
-        <translation>il n&apos;est pas confirmé comment un job INFORM commute une sortie en avance sur un point</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>it is unconfirmed that ArcL weaves when the robot moves the part below a fixed torch</source>
-        <translation>il n&apos;est pas confirmé que ArcL balaie quand le robot déplace la pièce sous une torche fixe</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/process.py"/>
-        <source>it is unconfirmed that TriggSpeed follows the speed relative to a moving part</source>
-        <translation>il n&apos;est pas confirmé que TriggSpeed suive la vitesse relative à une pièce mobile</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>it is unconfirmed whether the speed of linear moves includes the motion of the track, which depends on the setup of the rail; use `motion: joint`, which keeps the speed by times</source>
-        <translation>il n&apos;est pas confirmé si la vitesse des mouvements linéaires comprend le mouvement du rail, ce qui dépend de sa configuration ; utilisez `motion: joint`, qui tient la vitesse par des durées</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>it is {0} mm and {1} deg from the joint in the machine file, more than a calibration corrects; choose the calibrated machine</source>
-        <translation>elle est à {0} mm et {1} deg de l&apos;endroit où le fichier de machine place cette articulation, plus qu&apos;un étalonnage ne corrige ; nommez la machine dont il s&apos;agit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/torch.py"/>
-        <source>it is {0} mm away from its origin, the point where the material exits; put the tip of the wire or nozzle at the origin of the file, with Z pointing out of the nozzle, in mm</source>
-        <translation>elle est à {0} mm de son origine, d&apos;où sort le dépôt ; placez la pointe du fil ou de la buse à l&apos;origine du fichier, Z sortant de la buse, en mm</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>it is {0} mm off the plane of the wire and the axis; draw the wire in a plane through the axis</source>
-        <translation>il est à {0} mm hors du plan du fil et de son axe ; dessinez le fil dans un plan qui contient l&apos;axe</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/catalogue.py"/>
-        <source>it may hold only the letters A to Z, digits and underscores</source>
-        <translation>il ne peut contenir que les lettres A à Z, des chiffres et des tirets bas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>it mixes joint and Cartesian positions</source>
-        <translation>il mêle des positions articulaires et cartésiennes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>it mixes positions in more than one frame</source>
-        <translation>il mêle des positions dans plus d&apos;un repère</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it moves a single motor; remove it</source>
-        <translation>il ne déplace qu&apos;un moteur ; retirez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>it moves before G1, G21, G90 and a work offset are set</source>
-        <translation>il se déplace avant que G1, G21, G90 et une origine pièce soient réglés</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>it moves before G1, G90 and G710 are set</source>
-        <translation>il se déplace avant que G1, G90 et G710 soient réglés</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>it moves other motion groups than the programs before it</source>
-        <translation>il déplace d&apos;autres groupes de mouvement que les programmes précédents</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>it moves without a tool or platform, or in joint values where positions are given</source>
-        <translation>il se déplace sans outil ou sans plateau, ou en valeurs articulaires là où des positions sont données</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/nc_read.py"/>
-        <source>it moves without setting a feed</source>
-        <translation>il se déplace sans régler d&apos;avance</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/catalogue.py"/>
-        <source>it must start with {0}</source>
-        <translation>il doit commencer par {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>it names several files of data, expected one</source>
-        <translation>il nomme plusieurs fichiers de données, un seul est attendu</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>it needs an unsupported extension ({0}); export plain triangles</source>
-        <translation>il demande une extension qui n&apos;est pas prise en charge ({0}) ; exportez des triangles simples</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/curved_field.py"/>
-        <source>it needs planar layers; use {0}, or layers: planes</source>
-        <translation>c&apos;est pour les couches planes, pas pour les courbes ; utilisez {0}, ou layers: planes</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it prints a built-in pattern of the machine; remove it</source>
-        <translation>il imprime un motif intégré à la machine ; retirez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it prints copies side by side; export a single copy</source>
-        <translation>il imprime des copies côte à côte ; exportez-en une seule</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>it reads another analogue input than the one it waits for</source>
-        <translation>il lit une autre entrée analogique que celle qu&apos;il attend</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>it refers to other files (entity {0}), which are not read; export the assembly as one file</source>
-        <translation>des parties sont dans d&apos;autres fichiers (entité {0}), qui ne sont pas lus ; exportez l&apos;assemblage en un fichier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>it refers to other files ({0}), which are not read; export the assembly as one file</source>
-        <translation>des parties sont dans d&apos;autres fichiers ({0}), qui ne sont pas lus ; exportez l&apos;assemblage en un fichier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it repeats lines of the program; write out the moves</source>
-        <translation>il répète des lignes du programme ; écrivez les déplacements</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it returns from a subprogram, or repeats the program; remove it</source>
-        <translation>il revient d&apos;un sous-programme ou répète le programme ; retirez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it returns to a stored position; write out the move</source>
-        <translation>il revient à une position mémorisée ; écrivez le déplacement</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
-        <source>it returns to its start, at {0}, so the last layer would overlap the first; remove one edge</source>
-        <translation>il revient à son départ, en {0}, si bien que la dernière couche recouvrirait la première ; retirez une arête</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it scales axes; remove it</source>
-        <translation>il met les axes à l&apos;échelle ; retirez-le</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/siemens/read.py"/>
-        <source>it sends a schedule within a bead</source>
-        <translation>il transmet un programme de soudage au sein d&apos;un cordon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/nc_read.py"/>
-        <source>it sets a second analogue output</source>
-        <translation>il règle une seconde sortie analogique</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>it sets tool or platform a second time</source>
-        <translation>il règle l&apos;outil ou le plateau une seconde fois</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>it shifts the origin; remove it, or use G92</source>
-        <translation>il décale l&apos;origine ; retirez-le ou utilisez G92</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>it switches a second output</source>
-        <translation>il commute une seconde sortie</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>it takes a single object; pass it, and the names of its faces separately</source>
-        <translation>il prend un seul objet ; donnez-le, et les noms de ses faces à part</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
-        <source>it turns back by {0} deg at {1}: layers would cut through the deposit; choose edges that lead forward</source>
-        <translation>il rebrousse de {0} deg en {1} : des couches traverseraient le dépôt ; choisissez des arêtes qui mènent en avant</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>it waits for an analogue input within a bead</source>
-        <translation>il attend une entrée analogique au sein d&apos;un cordon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/slicing/solids/equidistant.py"/>
-        <source>it winds {0} times around the cone and would overlap when unrolled; divide it into shorter solids</source>
-        <translation>il s&apos;enroule {0} fois autour du cône et se recouvrirait une fois déroulé ; divisez-le en solides plus courts</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>its XML is damaged ({0})</source>
-        <translation>son XML est endommagé ({0})</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
-        <source>its axes are up to {0} deg off right angles, and its inverse solutions do not reproduce its poses</source>
-        <translation>ses axes s&apos;écartent jusqu&apos;à {0}° de l&apos;angle droit, et ses solutions ne redonnent pas ses poses</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
-        <source>its axes are up to {0} deg off right angles: joint angles are solved for the actual axes</source>
-        <translation>ses axes s&apos;écartent jusqu&apos;à {0}° de l&apos;angle droit : les angles articulaires sont résolus pour les axes réels</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/planned.py"/>
-        <source>its beads fill solids, so most are inside; compare the points with the feature</source>
-        <translation>ses cordons remplissent des solides, la plupart sont à l&apos;intérieur ; comparez les points à l&apos;élément à déposer</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/views/joint_path.py"/>
-        <source>its cell was deleted; choose another cell</source>
-        <translation>sa cellule a disparu ; choisissez-lui une cellule</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
-        <source>its checksum is {0}, not {1}; the line is damaged</source>
-        <translation>sa somme de contrôle est {0} et non {1} ; la ligne est endommagée</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>its closed form is off by {0} mm and {1} (rotation matrix entries)</source>
-        <translation>sa forme explicite s&apos;écarte de {0} mm et {1} (termes de la rotation)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>its code does not run from begin to end</source>
-        <translation>son code ne va pas de begin à end</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>its columns are called {0}; name the coordinates x, y and z</source>
-        <translation>ses colonnes s&apos;appellent {0} ; appelez celles des coordonnées x, y et z</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
-        <source>its columns are {0}; {1}</source>
-        <translation>ses colonnes sont {0} ; {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>its columns have different units: {0}; export them in one unit</source>
-        <translation>ses colonnes ont des unités différentes : {0} ; exportez-les dans une seule</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
-        <source>its comment may be executed, or its line is too long</source>
-        <translation>son commentaire peut être exécuté, ou sa ligne est trop longue</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
-        <source>its curved faces are tangent to {0}, which is flat; select the wall faces, or name them in part.faces of a job</source>
-        <translation>ses faces non planes se prolongent sans cassure en {0}, qui l&apos;est ; nommez les faces de la paroi : part.faces d&apos;un travail, ou sélectionnez-les</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>its edges coincide with the axis; choose another axis</source>
-        <translation>ses arêtes coïncident avec l&apos;axe ; choisissez un autre axe</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/layers/centre_line.py"/>
-        <source>its edges do not form one curve: {0} of {1} are disconnected, at {2} and {3}, and the smallest gap is {4} mm; choose edges that meet end to end</source>
-        <translation>ses arêtes ne font pas une courbe : {0} sur {1} ne continuent pas là où les autres finissent, en {2} et {3}, et la plus proche en est à {4} mm ; choisissez des arêtes qui se touchent bout à bout</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
-        <source>its end cuts the first layer; make it longer</source>
-        <translation>son extrémité coupe la première couche ; allongez-la</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/walls/plan.py"/>
-        <source>its end is not above the substrate all around; make it longer</source>
-        <translation>son extrémité n&apos;est pas au-dessus du substrat sur tout le tour ; allongez-la</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>its faces have no surfaces: it holds triangles (AP242 tessellated geometry); {0}</source>
-        <translation>ses faces n&apos;ont pas de surfaces : il contient des triangles (géométrie tessellée AP242) ; {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>its faces share no axis of revolution; choose an axis, or select the faces</source>
-        <translation>aucun axe de rotation de ses faces n&apos;a été trouvé ; donnez-le, ou nommez les faces</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>its first axis is prismatic and carries the six revolute axes, like a track</source>
-        <translation>son premier axe est prismatique et porte les six axes rotatifs, comme un rail</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>its function is called {0}</source>
-        <translation>sa fonction s&apos;appelle {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>its group differs from the group of its positions</source>
-        <translation>son groupe n&apos;est pas celui de ses positions</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc/records.py"/>
-        <source>its header moves groups {0}, but its positions have groups {1}</source>
-        <translation>son en-tête déplace les groupes {0} et ses positions sont des groupes {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/fanuc/read.py"/>
-        <source>its header names other motion groups than the programs before it</source>
-        <translation>son en-tête nomme d&apos;autres groupes de mouvement que les programmes précédents</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
-        <source>its inverse solutions do not reproduce its poses</source>
-        <translation>ses solutions inverses ne redonnent pas ses poses</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>its job is called {0}</source>
-        <translation>son job s&apos;appelle {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/interop.py"/>
-        <source>its joint path was deleted; choose a joint path</source>
-        <translation>sa trajectoire articulaire a disparu ; choisissez-en une</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
-        <source>its kinematics cannot be planned: {0}; {1}</source>
-        <translation>cette machine ne peut pas être planifiée : {0} ; {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/redundancy_map/draft.py"/>
-        <source>its machine has two rotary axes and no tool redundancy; open the map of a robot</source>
-        <translation>sa machine a deux axes rotatifs, qui ne laissent aucune rotation autour de l&apos;outil à choisir ; ouvrez la carte d&apos;un robot</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/modules.py"/>
-        <source>its module is called {0}, but the file has another name, or another module has the same name</source>
-        <translation>son module s&apos;appelle {0}, mais le fichier a un autre nom, ou un autre module a le même nom</translation>
+        <location filename="../../freecad_am/core/parameters/strategy.py"/>
+        <source>iso-parameter layers follow surface lines, but fronts do not; remove strategy.method, or use constant-distance or smooth</source>
+        <translation>les couches iso-parameter suivent les lignes de la surface, mais les fronts non ; retirez strategy.method, ou utilisez constant-distance ou smooth</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
         <source>its motion group, 2 to {0}</source>
         <translation>son groupe de mouvement, de 2 à {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
-        <source>its moves are {0}, and strategy.roles is {1}, so nothing remains to deposit; choose other roles</source>
-        <translation>ses déplacements sont {0} et strategy.roles vaut {1} : il ne reste rien à déposer ; nommez d&apos;autres rôles</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>its moves use different external axes</source>
-        <translation>ses mouvements emploient des axes externes différents</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>its moves use more than one track or station</source>
-        <translation>ses mouvements emploient plus d&apos;un rail ou d&apos;une station</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>its operation {0} deposits nothing; export only the operations that deposit</source>
-        <translation>l&apos;une de ses opérations est {0}, qui ne dépose rien ; n&apos;exportez que les opérations qui déposent</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>its positions are not pulses of one tool</source>
-        <translation>ses positions ne sont pas des impulsions d&apos;un seul outil</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>its rounding of corners or acceleration is not understood</source>
-        <translation>son lissage d&apos;angles ou son accélération n&apos;est pas compris</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>its routine {0} and the file have different names; rename one</source>
-        <translation>sa routine {0} et le fichier ont des noms différents ; renommez l&apos;un des deux</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>its speed limit or the fixture of its tool is not understood</source>
-        <translation>sa limite de vitesse ou la fixation de son outil n&apos;est pas comprise</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/walls/surface_patch.py"/>
-        <source>its surface ({0}) cannot be converted to a spline; rebuild the face, for instance as a loft</source>
-        <translation>sa surface ({0}) ne peut pas être dite par une spline ; reconstruisez la face, par exemple par lissage</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/views/joint_path.py"/>
-        <source>its toolpath was deleted; choose another, or delete the joint path too</source>
-        <translation>sa trajectoire d&apos;outil a disparu ; choisissez-en une autre, ou supprimez aussi la trajectoire articulaire</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>its triggers are not numbered consecutively</source>
-        <translation>ses déclencheurs ne sont pas numérotés de suite</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>its unit {0} is none of {1}</source>
-        <translation>son unité {0} n&apos;est aucune de {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>its vertices lack plain x, y and z; export it again</source>
-        <translation>ses sommets n&apos;ont pas de x, y et z simples ; exportez-le de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/placement/dock.py"/>
-        <source>its view was closed</source>
-        <translation>sa vue a été fermée</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>its weld data has no speed, or belongs to another seam</source>
-        <translation>ses données de soudage n&apos;ont pas de vitesse, ou appartiennent à un autre cordon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/checks/placed.py"/>
-        <source>its {0} is missing; choose one and recompute</source>
-        <translation>son {0} manque ; choisissez-en un et recalculez</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -10442,24 +9347,19 @@
         <translation>les trajectoires articulaires s’écrivent en .json ; utilisez l’extension .json</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/certificate/bound.py"/>
-        <source>joints.certificate: the lower bound is undefined, as several solutions of the arm share a configuration; remove it</source>
-        <translation>joints.certificate : la borne inférieure n&apos;est pas définie, car plusieurs solutions du bras partagent une configuration ; retirez-le</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/planning/external/optimised.py"/>
-        <source>joints.external_axes: {0} has no effect without cell.external; remove it</source>
-        <translation>joints.external_axes : {0} est sans effet sans cell.external ; à omettre</translation>
+        <source>joints.external_axes: {0} has no effect without cell.external; remove joints.external_axes</source>
+        <translation>joints.external_axes : {0} est sans effet sans cell.external ; retirez joints.external_axes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rotation/given.py"/>
-        <source>joints.given has no effect with the method {0}; use {1}, or remove it</source>
-        <translation>joints.given est sans effet sur la méthode {0} ; utilisez {1}, ou retirez-le</translation>
+        <source>joints.given has no effect with the method {0}; use {1}, or remove joints.given</source>
+        <translation>joints.given est sans effet avec la méthode {0} ; utilisez {1}, ou retirez joints.given</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rotation/given.py"/>
-        <source>joints.given names unknown beads: {0}; remove them</source>
-        <translation>joints.given nomme des cordons qui n&apos;existent pas : {0} ; retirez-les</translation>
+        <source>joints.given names unknown beads: {0}; remove these entries</source>
+        <translation>joints.given nomme des cordons inconnus : {0} ; retirez ces entrées</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/layer_by_layer.py"/>
@@ -10508,8 +9408,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>layer {0} bead {1} has {2} points, and loading another part within a bead would stop the robot while it deposits; use at least {3}, or a larger strategy.chord_error</source>
-        <translation>couche {0} cordon {1} a {2} points, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; utilisez au moins {3}, ou une plus grande strategy.chord_error</translation>
+        <source>layer {0} bead {1} has {2} points, and loading another part within a bead would stop the robot while it deposits; set program.max_points to at least {3}, or a larger strategy.chord_error</source>
+        <translation>couche {0} cordon {1} a {2} points, et charger une autre partie au sein d&apos;un cordon arrêterait le robot pendant qu&apos;il dépose ; fixez program.max_points à au moins {3}, ou une plus grande strategy.chord_error</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/issues.py"/>
@@ -10563,8 +9463,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>layers of the family {0} cannot be fitted to a scan yet; only solids in planar layers and walls on a substrate can: remove the scan</source>
-        <translation>les couches de la famille {0} ne s&apos;ajustent pas encore à une numérisation ; les solides en couches planes et les parois sur un substrat le font : retirez la numérisation</translation>
+        <source>layers of the family {0} cannot be fitted to a scan yet, only solids in planar layers and walls on a substrate; remove the scan</source>
+        <translation>les couches de la famille {0} ne peuvent pas encore être ajustées à une numérisation, seulement les solides en couches planes et les parois sur un substrat ; retirez la numérisation</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
@@ -10593,8 +9493,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/tilt.py"/>
-        <source>lead and tilt together already exceed max_tilt ({0} deg); reduce them or raise the limit</source>
-        <translation>l&apos;angle d&apos;avance et l&apos;inclinaison ensemble dépassent déjà max_tilt ({0} deg) ; réduisez-les ou augmentez la limite</translation>
+        <source>lead and tilt together exceed max_tilt ({0} deg); reduce lead and tilt, or raise the limit</source>
+        <translation>l&apos;angle d&apos;avance et l&apos;inclinaison ensemble dépassent max_tilt ({0} deg) ; réduisez l&apos;angle d&apos;avance et l&apos;inclinaison, ou augmentez la limite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -10605,6 +9505,11 @@
         <location filename="../../freecad_am/core/parameters/joints.py"/>
         <source>level</source>
         <translation>à plat</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>like most lines, this line is not a point; give rows of x y z</source>
+        <translation>comme la plupart des lignes, cette ligne n&apos;est pas un point ; donnez des lignes de x y z</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -10673,8 +9578,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
-        <source>line {0} refers to another file, which is not read; export everything in one file</source>
-        <translation>la ligne {0} prend du contenu d&apos;un autre fichier, qui n&apos;est pas lu ; exportez tout dans un fichier</translation>
+        <source>line {0} refers to another file, which is not read; export the part as a single file</source>
+        <translation>la ligne {0} renvoie à un autre fichier, qui n&apos;est pas lu ; exportez la pièce en un seul fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -10698,18 +9603,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>linear moves of a robot on a track also move the base axis, and it is unconfirmed whether their speed includes its motion; use `motion: joint`, which keeps the speed by shares of the joint speeds</source>
-        <translation>les mouvements linéaires d&apos;un robot sur un rail déplacent aussi l&apos;axe de base, et il n&apos;est pas confirmé si leur vitesse comprend ce mouvement ; utilisez `motion: joint`, qui tient la vitesse par des parts des vitesses articulaires</translation>
+        <source>linear moves of a robot on a track also move the base axis, and their speed may include this motion; use `motion: joint`, which keeps the speed by shares of the joint speeds</source>
+        <translation>les mouvements linéaires d&apos;un robot sur un rail déplacent aussi l&apos;axe de base, et leur vitesse peut inclure ce mouvement ; utilisez `motion: joint`, qui tient la vitesse par des parts des vitesses articulaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/fanuc/post.py"/>
-        <source>linear moves over a part on a positioner need coordinated motion (COORD), and the user frame of its positions is unconfirmed; use `motion: joint`, which keeps the speed by times</source>
-        <translation>les mouvements linéaires sur une pièce portée par un positionneur demandent le mouvement coordonné (COORD), et le repère utilisateur de ses positions n&apos;est pas confirmé ; utilisez `motion: joint`, qui tient la vitesse par des durées</translation>
+        <source>linear moves over a part on a positioner need coordinated motion (COORD), and the user frame of its positions is not documented; use `motion: joint`, which keeps the speed by times</source>
+        <translation>les mouvements linéaires sur une pièce portée par un positionneur demandent le mouvement coordonné (COORD), et le repère utilisateur de ses positions n&apos;est pas documenté ; utilisez `motion: joint`, qui tient la vitesse par des temps</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>linear moves over a part on a positioner need coordinated motion (SMOVL), and it is unconfirmed what its speed refers to; use `motion: joint`, which keeps the speed by shares of the joint speeds</source>
-        <translation>les mouvements linéaires sur une pièce portée par un positionneur demandent le mouvement coordonné (SMOVL), et il n&apos;est pas confirmé à quoi se rapporte sa vitesse ; utilisez `motion: joint`, qui tient la vitesse par des parts des vitesses articulaires</translation>
+        <source>linear moves over a part on a positioner need coordinated motion (SMOVL), whose speed is not documented; use `motion: joint`, which keeps the speed by shares of the joint speeds</source>
+        <translation>les mouvements linéaires sur une pièce portée par un positionneur demandent le mouvement coordonné (SMOVL), dont la vitesse n&apos;est pas documentée ; utilisez `motion: joint`, qui tient la vitesse par des parts des vitesses articulaires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/path_view.py"/>
@@ -10748,18 +9653,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/collisions.py"/>
-        <source>link {0} of the arm, as drawn, has {1} within half its radius on {2} % of the motion, first with the nozzle at {3}; it collides unless the robot is slimmer or hollow there: check it in Simulate, give the links the shapes of the manufacturer, or set cell.arm_clearance</source>
-        <translation>le corps {0} du bras, tel que dessiné, a {1} à moins de la moitié de son rayon sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; il y a collision sauf si le robot est plus mince ou creux à cet endroit : vérifiez-le dans Simuler, donnez aux corps les formes du fabricant, ou fixez cell.arm_clearance</translation>
+        <source>link {0} of the arm, as drawn, has {1} within half its radius on {2} % of the motion, first with the nozzle at {3}, and collides unless the robot is slimmer or hollow there; check the motion in Simulate, give the links the shapes of the manufacturer, or set cell.arm_clearance</source>
+        <translation>le corps {0} du bras, tel que dessiné, a {1} à moins de la moitié de son rayon sur {2} % du mouvement, d&apos;abord avec la buse en {3}, et il y a collision sauf si le robot est plus mince ou creux à cet endroit ; vérifiez le mouvement dans Simuler, donnez aux corps les formes du fabricant, ou fixez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/collisions.py"/>
-        <source>link {0} of the arm, as drawn, touches {1} on {2} % of the motion, first with the nozzle at {3}; the inner half of its radius stays clear: check it in Simulate, or set cell.arm_clearance</source>
-        <translation>le corps {0} du bras, tel que dessiné, touche {1} sur {2} % du mouvement, d&apos;abord avec la buse en {3} ; la moitié intérieure de son rayon reste dégagée : vérifiez-le dans Simuler, ou fixez cell.arm_clearance</translation>
+        <source>link {0} of the arm, as drawn, touches {1} on {2} % of the motion, first with the nozzle at {3}, although the inner half of its radius stays clear; check the motion in Simulate, or set cell.arm_clearance</source>
+        <translation>le corps {0} du bras, tel que dessiné, touche {1} sur {2} % du mouvement, d&apos;abord avec la buse en {3}, bien que la moitié intérieure de son rayon reste dégagée ; vérifiez le mouvement dans Simuler, ou fixez cell.arm_clearance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/post.py"/>
-        <source>links of analogue inputs differ between controllers, and the post staubli cannot know them</source>
-        <translation>les liens des entrées analogiques diffèrent d&apos;une commande à l&apos;autre, et le post-processeur staubli ne peut pas les connaître</translation>
+        <source>links of analogue inputs differ between controllers, and the post staubli does not know these links</source>
+        <translation>les liens des entrées analogiques diffèrent d&apos;une commande à l&apos;autre, et le post-processeur staubli ne connaît pas ces liens</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/build_direction.py"/>
@@ -10912,9 +9817,9 @@
         <translation>plus de {0} couches de {1} mm : utilisez une plus grande hauteur de couche</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>most lines, such as this one, are not points; give rows of x y z</source>
-        <translation>celle-ci et la plupart des autres lignes ne sont pas des points ; donnez des lignes de x y z</translation>
+        <location filename="../../freecad_am/core/inspection/planned.py"/>
+        <source>most beads are inside the solids that they fill; compare the points with the feature</source>
+        <translation>la plupart des cordons sont à l&apos;intérieur des solides qu&apos;ils remplissent ; comparez les points avec l&apos;élément</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
@@ -10948,7 +9853,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>no axis has limits, or no point is reached</source>
+        <source>no axis has limits, or no point is reachable</source>
         <translation>aucun axe n’a de limites, ou aucun point n’est atteint</translation>
     </message>
     <message>
@@ -10963,12 +9868,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
-        <source>no bead of {0} mm or more fits in any layer; use a smaller bead spacing, or thin = single</source>
+        <source>no bead of {0} mm or more fits in any layer; use a smaller bead spacing, or strategy.thin: single</source>
         <translation>aucun cordon de {0} mm ou plus ne trouve place dans aucune couche ; prenez une plus petite distance des cordons, ou thin = single</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/cladding.py"/>
-        <source>no bead of {0} mm or more fits on its faces; use a smaller bead spacing, or thin = single</source>
+        <source>no bead of {0} mm or more fits on the faces; use a smaller bead spacing, or strategy.thin: single</source>
         <translation>aucun cordon de {0} mm ou plus ne trouve de place sur ses faces ; utilisez un espacement des cordons plus petit, ou thin = single</translation>
     </message>
     <message>
@@ -10983,13 +9888,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/curved_field.py"/>
-        <source>no face of {0} touches the start faces, which are {1} mm away; choose faces in contact, or none</source>
-        <translation>aucune face de {0} ne touche les faces de départ, qui sont à {1} mm ; choisissez des faces en contact, ou aucune</translation>
+        <source>no face of {0} touches the start faces, which are {1} mm away; choose start faces in contact, or clear them</source>
+        <translation>aucune face de {0} ne touche les faces de départ, qui sont à {1} mm ; choisissez des faces de départ en contact, ou effacez-les</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
-        <source>no file can have this name ({0}); check the path</source>
-        <translation>un tel fichier ne peut pas exister ({0}) ; vérifiez le chemin</translation>
+        <source>no file can have the name ({0}); check the path</source>
+        <translation>aucun fichier ne peut avoir ce nom ({0}) ; vérifiez le chemin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -11023,8 +9928,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>no layer has a corner; within the wall they turn by up to {0} deg/mm</source>
-        <translation>aucune couche n&apos;a d&apos;angle ; dans la paroi elles tournent jusqu&apos;à {0} deg/mm</translation>
+        <source>no layer has a corner; within the wall the layers turn by up to {0} deg/mm</source>
+        <translation>aucune couche n&apos;a d&apos;angle ; dans la paroi les couches tournent jusqu&apos;à {0} deg/mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
+        <source>no layer shown rests on another layer</source>
+        <translation>aucune couche montrée ne repose sur une autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -11053,28 +9963,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>no object in it has a shape; recompute and save it in FreeCAD, or use another file</source>
-        <translation>aucun de ses objets n&apos;a de forme ; recalculez et enregistrez-le dans FreeCAD, ou utilisez un autre fichier</translation>
+        <source>no object in the document has a shape; recompute and save the document in FreeCAD, or use another file</source>
+        <translation>aucun objet du document n&apos;a de forme ; recalculez et enregistrez le document dans FreeCAD, ou utilisez un autre fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>no object with a shape is called {0}; name one of {1}</source>
-        <translation>aucun objet avec une forme ne s&apos;appelle {0} ; nommez l&apos;un de {1}</translation>
+        <source>no object with a shape is called {0}; use one of {1}</source>
+        <translation>aucun objet avec une forme ne s&apos;appelle {0} ; utilisez l&apos;un de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
-        <source>no point is reached</source>
+        <source>no point is reachable</source>
         <translation>aucun point n’est atteint</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>no positioner</source>
         <translation>aucun positionneur</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/current.py"/>
-        <source>no result fits its inputs ({0}); recompute it first</source>
-        <translation>aucun résultat ne correspond à ses entrées ({0}) ; recalculez-le d&apos;abord</translation>
     </message>
     <message>
         <location filename="../../freecad_am/api.py"/>
@@ -11088,8 +9993,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
-        <source>no tool rotation reaches the others</source>
-        <translation>aucune rotation autour de l&apos;outil ne dessert les autres</translation>
+        <source>no tool rotation makes the other points feasible</source>
+        <translation>aucune rotation autour de l&apos;outil ne rend les autres points faisables</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
@@ -11108,43 +10013,38 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>none of its moves extrudes, so it has no bead; {0}</source>
-        <translation>aucun de ses mouvements n&apos;extrude, il n&apos;y a donc pas de cordon ; {0}</translation>
+        <source>none of the moves extrudes, so there is no bead; {0}</source>
+        <translation>aucun des déplacements n&apos;extrude, il n&apos;y a donc pas de cordon ; {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>none of its segments deposits material; export a toolpath that deposits</source>
-        <translation>aucun de ses segments ne dépose, il n&apos;y a donc pas de cordon ; exportez une trajectoire qui dépose</translation>
+        <source>none of the segments deposits material; export a toolpath that deposits</source>
+        <translation>aucun des segments ne dépose de matière ; exportez une trajectoire qui dépose</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
-        <source>none of its solids is on a cylinder or cone of another: name the hub as substrate, choose a face, or set strategy.base; for a flat base use kind: solid</source>
-        <translation>aucun de ses solides n&apos;est sur un cylindre ou un cône d&apos;un autre : nommez le moyeu comme substrat, choisissez une face, ou fixez strategy.base ; pour une base plane utilisez kind: solid</translation>
+        <source>none of the solids is on a cylinder or cone of another solid; name the hub as substrate, choose a face, or set strategy.base; for a flat base use kind: solid</source>
+        <translation>aucun des solides n&apos;est sur un cylindre ou un cône d&apos;un autre solide ; nommez le moyeu comme substrat, choisissez une face, ou fixez strategy.base ; pour une base plane utilisez kind: solid</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>none of its {0} solids is of revolution; select the faces of the wall</source>
-        <translation>aucun de ses {0} solides n&apos;est de révolution ; nommez les faces de la paroi</translation>
+        <source>none of the {0} solids is a solid of revolution; select the faces of the wall</source>
+        <translation>aucun des {0} solides n&apos;est de révolution ; sélectionnez les faces de la paroi</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/gui/plots/canvas.py"/>
-        <source>none of these layers rests on another</source>
-        <translation>aucune de ces couches ne repose sur une autre</translation>
+        <location filename="../../freecad_am/core/planning/methods/constant.py"/>
+        <source>none of the {0} tested values of RZ is feasible for the whole job, and the best value is {1} deg; joints.method: layer-by-layer uses one polynomial per bead</source>
+        <translation>aucune des {0} valeurs de RZ essayées n&apos;est faisable pour tout le travail, et la meilleure est {1} deg ; joints.method : layer-by-layer utilise un polynôme par cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/methods/constant.py"/>
+        <source>none of the {0} tested values of RZ keeps the links clear in the whole job; joints.method: layer-by-layer uses one value per bead</source>
+        <translation>aucune des {0} valeurs de RZ essayées ne garde les corps dégagés dans tout le travail ; joints.method : layer-by-layer utilise une valeur par cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
         <source>none of {0} machines has a similar name; use a name that `freecad-am machines` lists, such as {1}, or the path of a machine file or URDF</source>
         <translation>aucune des {0} machines n’a un nom semblable ; utilisez l’une de celles que `freecad-am machines` énumère, comme {1}, ou le chemin d’un fichier de machine ou d’un URDF</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/methods/constant.py"/>
-        <source>none of {0} values of RZ clears the links in the whole job; joints.method: layer-by-layer uses one value per bead</source>
-        <translation>aucune des {0} valeurs de RZ ne garde les corps dégagés dans tout le travail ; joints.method : layer-by-layer en choisit une par cordon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/planning/methods/constant.py"/>
-        <source>none of {0} values of RZ is feasible for the whole job, and the best one is {1} deg; joints.method: layer-by-layer uses one polynomial per bead</source>
-        <translation>aucune de {0} valeurs de RZ n&apos;est faisable pour tout le travail, et la meilleure est {1} deg ; joints.method : layer-by-layer emploie un polynôme par cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -11168,8 +10068,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>not checked: an earlier version planned the toolpath; plan it again</source>
-        <translation>non vérifié : une version antérieure a planifié le parcours ; planifiez-le à nouveau</translation>
+        <source>not checked: an earlier version planned the toolpath; plan the toolpath again</source>
+        <translation>non vérifié : une version antérieure a planifié la trajectoire d&apos;outil ; planifiez-la de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -11193,8 +10093,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
-        <source>not checked: only the controller can show it</source>
-        <translation>non vérifié : seule la commande peut le montrer</translation>
+        <source>not checked: only the controller can show the result</source>
+        <translation>non vérifié : seule la commande peut montrer le résultat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/checks.py"/>
@@ -11262,6 +10162,21 @@
         <translation>non vérifié : sans les formes du constructeur, les corps dessinés d’après la cinématique touchent {0} avec {1}, regardés tous les {2} deg</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
+        <source>not on the hub: the solid is inside the hub; move the solid, or choose its base{0}</source>
+        <translation>pas sur le moyeu : le solide est à l&apos;intérieur du moyeu ; déplacez le solide, ou choisissez sa base{0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
+        <source>not on the hub: the solid passes {0} off the face, near {1}; move the solid, or choose its base{2}</source>
+        <translation>pas sur le moyeu : le solide passe à {0} de la face, près de {1} ; déplacez le solide, ou choisissez sa base{2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
+        <source>not on the hub: the solid starts {0} mm outside {1}, at {2}; move the solid, or choose its base{3}</source>
+        <translation>pas sur le moyeu : le solide commence à {0} mm en dehors de {1}, en {2} ; déplacez le solide, ou choisissez sa base{3}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/three_mf_roles.py"/>
         <source>not printable</source>
         <translation>non imprimable</translation>
@@ -11298,6 +10213,11 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>object {0} of {1} contains itself</source>
+        <translation>l&apos;objet {0} de {1} se contient lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>object {0} of {1} has a transformation that flattens it</source>
         <translation>l&apos;objet {0} de {1} est déplacé par une matrice qui l&apos;aplatit</translation>
     </message>
@@ -11308,13 +10228,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>object {0} of {1} holds itself</source>
-        <translation>l&apos;objet {0} de {1} se contient lui-même</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>object {0} of {1} is not in it</source>
-        <translation>l&apos;objet {0} de {1} n&apos;y est pas</translation>
+        <source>object {0} of {1} is missing</source>
+        <translation>l&apos;objet {0} de {1} manque</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -11322,9 +10237,14 @@
         <translation>objet {0} de {1} : {2} objets, ou objets imbriqués {3} fois</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>of {0} points, {1} evenly distributed ones are used</source>
+        <translation>sur {0} points, {1} points régulièrement répartis sont utilisés</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>of its {0} solids only {1} is a solid of revolution, with {2} of the surface; select its faces to deposit it, and deposit the others as walls on a part or solids on a hub</source>
-        <translation>de ses {0} solides, seul {1} tourne autour d’un axe, {2} de sa surface ; nommez les faces de celui-ci pour le déposer seul, et déposez les autres comme parois sur une pièce ou solides sur un moyeu</translation>
+        <source>of {0} solids only {1} is a solid of revolution, with {2} of the surface; select the faces of this solid to deposit it, and deposit the other solids as walls on a part or solids on a hub</source>
+        <translation>de {0} solides, seul {1} est un solide de révolution, avec {2} de la surface ; sélectionnez les faces de ce solide pour le déposer, et déposez les autres solides comme parois sur une pièce ou solides sur un moyeu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
@@ -11343,38 +10263,38 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
-        <source>on {0} % of the faces the predicted deposit extends less than {1} mm beyond the part, on {2} % it ends inside the part: at {3} no deposit within {4} mm. {5}</source>
-        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} aucun dépôt à moins de {4} mm. {5}</translation>
+        <source>on {0} % of the faces the predicted deposit extends less than {1} mm beyond the part, and on {2} % the deposit ends inside the part: at {3} no deposit within {4} mm. {5}</source>
+        <translation>sur {0} % des faces le dépôt prédit dépasse la pièce de moins de {1} mm, et sur {2} % le dépôt finit dans la pièce : en {3} aucun dépôt à moins de {4} mm. {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
-        <source>on {0} % of the faces the predicted deposit extends less than {1} mm beyond the part, on {2} % it ends inside the part: at {3} the part protrudes by {4} mm. {5}</source>
-        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} la pièce dépasse de {4} mm. {5}</translation>
+        <source>on {0} % of the faces the predicted deposit extends less than {1} mm beyond the part, and on {2} % the deposit ends inside the part: at {3} the part protrudes by {4} mm. {5}</source>
+        <translation>sur {0} % des faces le dépôt prédit dépasse la pièce de moins de {1} mm, et sur {2} % le dépôt finit dans la pièce : en {3} la pièce dépasse de {4} mm. {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
-        <source>on {0} % of the faces the predicted deposit extends less than {1} mm beyond the part, on {2} % it ends inside the part: at {3} {4} mm are left to machine. {5}</source>
-        <translation>sur {0} % des faces le dépôt prédit ne dépasse pas la pièce de {1} mm, sur {2} % il finit dans la pièce : en {3} il reste {4} mm à usiner. {5}</translation>
+        <source>on {0} % of the faces the predicted deposit extends less than {1} mm beyond the part, and on {2} % the deposit ends inside the part: at {3} {4} mm are left to machine. {5}</source>
+        <translation>sur {0} % des faces le dépôt prédit dépasse la pièce de moins de {1} mm, et sur {2} % le dépôt finit dans la pièce : en {3} il reste {4} mm à usiner. {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model_notes.py"/>
-        <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the required width needs a speed outside the {4} to {5} mm/min of the table; the speed is clamped, and the width deviates: it is {6} mm at worst instead of {7} mm. Straight beads of the table are {8} to {9} mm wide: set process.bead_width in this range, or measure beads at other speeds</source>
-        <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors de celles du tableau, {4} à {5} mm/min ; elle y est maintenue, et la largeur n&apos;est pas tenue : elle est de {6} mm au plus loin des {7} mm. Les cordons droits du tableau ont {8} à {9} mm de large : demandez une process.bead_width parmi celles-ci, ou mesurez des cordons à d&apos;autres vitesses</translation>
+        <source>on {0} % of the length, in {1} of {2} beads and {3} segments, the required width needs a speed outside the {4} to {5} mm/min of the table; the speed is clamped, and the bead width is {6} mm at worst instead of {7} mm. Straight beads of the table are {8} to {9} mm wide: set process.bead_width in this range, or measure beads at other speeds</source>
+        <translation>sur {0} % de la longueur, dans {1} de {2} cordons et {3} segments, la largeur demandée exige une vitesse hors des {4} à {5} mm/min du tableau ; la vitesse est bornée, et la largeur de cordon est au pire de {6} mm au lieu de {7} mm. Les cordons droits du tableau ont {8} à {9} mm de large : fixez process.bead_width dans cette plage, ou mesurez des cordons à d&apos;autres vitesses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>on {0} of {1} beads in layer {2} bends are too close together to turn the torch around them at {3}: its tilt is {4} to {5} deg there instead of {6} deg; tilt less, or allow a faster turn</source>
-        <translation>sur {0} de {1} cordons de la couche {2} des courbes se suivent de trop près pour que la torche tourne à {3} : elle y penche de {4} à {5} deg au lieu de {6} deg ; penchez moins, ou permettez une rotation plus rapide</translation>
+        <source>on {0} of {1} beads in layer {2}, bends are too close together to turn the torch around each bend at {3}: the tilt of the torch is {4} to {5} deg there instead of {6} deg; tilt less, or allow a faster turn</source>
+        <translation>sur {0} de {1} cordons de la couche {2}, les courbes sont trop proches pour que la torche tourne autour de chacune à {3} : son inclinaison y est de {4} à {5} deg au lieu de {6} deg ; inclinez moins, ou permettez une rotation plus rapide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>on {0} of {1} beads in {2} layers from {3} to {4} bends are too close together to turn the torch around them at {5}: its tilt is {6} to {7} deg there instead of {8} deg; tilt less, or allow a faster turn</source>
-        <translation>sur {0} de {1} cordons dans {2} couches de {3} à {4} des courbes se suivent de trop près pour que la torche tourne à {5} : elle y penche de {6} à {7} deg au lieu de {8} deg ; penchez moins, ou permettez une rotation plus rapide</translation>
+        <source>on {0} of {1} beads in {2} layers from {3} to {4}, bends are too close together to turn the torch around each bend at {5}: the tilt of the torch is {6} to {7} deg there instead of {8} deg; tilt less, or allow a faster turn</source>
+        <translation>sur {0} de {1} cordons dans {2} couches de {3} à {4}, les courbes sont trop proches pour que la torche tourne autour de chacune à {5} : son inclinaison y est de {6} à {7} deg au lieu de {8} deg ; inclinez moins, ou permettez une rotation plus rapide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>on {0} of {1} beads the hub normals themselves turn by up to {2} deg/mm, faster than {3}; the torch still follows them</source>
-        <translation>sur {0} de {1} cordons les normales du moyeu seules tournent jusqu&apos;à {2} deg/mm, plus vite que {3} ; la torche les suit malgré tout</translation>
+        <source>on {0} of {1} beads the hub normals themselves turn by up to {2} deg/mm, faster than {3}; the torch still follows the normals</source>
+        <translation>sur {0} de {1} cordons les normales du moyeu elles-mêmes tournent jusqu&apos;à {2} deg/mm, plus vite que {3} ; la torche suit quand même les normales</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
@@ -11388,13 +10308,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>one of its outputs switches the deposit</source>
-        <translation>une de ses sorties commute le dépôt</translation>
+        <source>one output of the schedule switches the deposit</source>
+        <translation>une sortie du programme de soudage commute le dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <source>only Universal Robots arms have a calibration, not {0}; remove the calibration</source>
+        <translation>seuls les bras de Universal Robots ont un étalonnage, pas {0} ; retirez l&apos;étalonnage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>only a loop over one move is understood</source>
-        <translation>seule une boucle sur un mouvement est comprise</translation>
+        <source>only a loop over a single move is understood</source>
+        <translation>seule une boucle sur un seul mouvement est comprise</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -11403,8 +10328,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program_beads.py"/>
-        <source>only an output can change the schedule within a bead: calls stop the machine, and arc instructions may stop it too; use output, or remove the schedules of start and end</source>
-        <translation>seule une sortie peut changer le programme de soudage au sein d&apos;un cordon : les appels arrêtent la machine, et les instructions d&apos;arc peuvent l&apos;arrêter aussi ; utilisez output, ou retirez les programmes de start et end</translation>
+        <source>only an output can change the schedule within a bead, because calls stop the machine, and arc instructions may stop it too; use output, or remove the schedules of start and end</source>
+        <translation>seule une sortie peut changer le programme de soudage au sein d&apos;un cordon, car les appels arrêtent la machine, et les instructions d&apos;arc peuvent l&apos;arrêter aussi ; utilisez output, ou retirez les programmes de start et end</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/pictures.py"/>
@@ -11423,13 +10348,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>only {0} of its points match {1}; choose the measured object, its unit, or initial pairs of points</source>
-        <translation>seulement {0} de ses points correspondent à {1} ; choisissez l&apos;objet mesuré, son unité, ou des paires de points de départ</translation>
+        <source>only {0} of the points match {1}; choose the measured object, correct the unit, or give initial pairs of points</source>
+        <translation>seuls {0} des points correspondent à {1} ; choisissez l&apos;objet mesuré, corrigez l&apos;unité, ou donnez des paires de points initiales</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/scan_heights.py"/>
-        <source>only {0} of its {1} points are within {2} mm of {3}, at least {4} are needed; the median distance is {5} mm. The scan extends over {6} mm, {7} over {8} mm: scan the right part, crop the scan, check its unit, or raise substrate.scan_within</source>
-        <translation>seulement {0} de ses {1} points sont à moins de {2} mm de {3}, il en faut au moins {4} ; la distance médiane est de {5} mm. La numérisation s&apos;étend sur {6} mm, {7} sur {8} mm : numérisez la bonne pièce, recadrez la numérisation, vérifiez son unité, ou augmentez substrate.scan_within</translation>
+        <source>only {0} of the {1} scanned points are within {2} mm of {3}, but at least {4} are needed; the median distance is {5} mm. The scan extends over {6} mm, {7} over {8} mm: scan the right part, crop the scan, check its unit, or raise substrate.scan_within</source>
+        <translation>seuls {0} des {1} points numérisés sont à moins de {2} mm de {3}, mais il en faut au moins {4} ; la distance médiane est {5} mm. La numérisation s&apos;étend sur {6} mm, {7} sur {8} mm : numérisez la bonne pièce, recadrez la numérisation, vérifiez son unité, ou augmentez substrate.scan_within</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/figures.py"/>
@@ -11438,8 +10363,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
-        <source>only {} are entered, but at least {} are needed, as a machine without them is not loaded; enter more</source>
-        <translation>il y en a {} ; il en faut au moins {}, car une machine sans elles n&apos;est pas chargée ; saisissez-en d&apos;autres</translation>
+        <source>only {} poses are entered, but a machine file needs at least {}; enter more poses</source>
+        <translation>seules {} poses sont saisies, mais un fichier machine en demande au moins {} ; saisissez d&apos;autres poses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/dock.py"/>
@@ -11470,11 +10395,6 @@
         <location filename="../../freecad_am/sections/fields.py"/>
         <source>or {0}</source>
         <translation>ou {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/abb/columns.py"/>
-        <source>other external axes have values than in earlier moves, or there are gaps between them</source>
-        <translation>d&apos;autres axes externes ont des valeurs que dans les mouvements précédents, ou il y a des lacunes entre eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -11568,8 +10488,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
-        <source>planning about {0} points in {1} layers takes about {2} min of processor time and {3} GB of memory; raise strategy.layer_height or strategy.chord_error to reduce them</source>
-        <translation>environ {0} points en {1} couches sont planifiés, ce qui prend environ {2} min de processeur et {3} Go de mémoire ; une plus grande valeur de strategy.layer_height ou de strategy.chord_error en réduit le nombre</translation>
+        <source>planning about {0} points in {1} layers takes about {2} min of processor time and {3} GB of memory; raise strategy.layer_height or strategy.chord_error to reduce both</source>
+        <translation>planifier environ {0} points en {1} couches prend environ {2} min de processeur et {3} Go de mémoire ; augmentez strategy.layer_height ou strategy.chord_error pour réduire les deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/point_by_point.py"/>
@@ -11598,7 +10518,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>point {0} is {1} mm from its touched position (all points: {2} mm), more than cell.touched_tolerance = {3} mm; touch it again, and check the order of the points, the part, and the tip calibration</source>
+        <source>point {0} is {1} mm from its touched position (all points: {2} mm), more than cell.touched_tolerance = {3} mm; touch the point again, and check the order of the points, the part, and the tip calibration</source>
         <translation>le point {0} est à {1} mm de sa position touchée (tous les points : {2} mm), plus que cell.touched_tolerance = {3} mm ; touchez-le de nouveau, et vérifiez l&apos;ordre des points, la pièce, et l&apos;étalonnage de la pointe</translation>
     </message>
     <message>
@@ -11638,7 +10558,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>position: {0} needs it; give three numbers such as {1}, or choose another position</source>
+        <source>position: {0} needs a value; give three numbers such as {1}, or choose another position</source>
         <translation>position : {0} en a besoin ; donnez trois nombres comme {1}, ou choisissez une autre position</translation>
     </message>
     <message>
@@ -11658,8 +10578,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/post.py"/>
-        <source>positions on the part need the kinematics that M428 selects; set it to true, or use `motion: joint`</source>
-        <translation>les positions sur la pièce demandent la cinématique que choisit M428 ; mettez-le à true, ou utilisez `motion: joint`</translation>
+        <source>positions on the part need the kinematics that M428 selects; set program.nc.switch_kinematics to true, or use `motion: joint`</source>
+        <translation>les positions sur la pièce demandent la cinématique que choisit M428 ; mettez program.nc.switch_kinematics à true, ou utilisez `motion: joint`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
@@ -11670,11 +10590,6 @@
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
         <source>predicting the deposit, {0}</source>
         <translation>prédiction du dépôt, {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/simulation/payload.py"/>
-        <source>process.density sets its weight; the payload is in the machine file</source>
-        <translation>process.density donne son poids ; la charge est dans le fichier machine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
@@ -11688,12 +10603,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>process.seam.position: {0} has no effect: no bead is closed; remove it</source>
+        <source>process.seam.position: {0} has no effect, as no bead is closed; remove process.seam.position</source>
         <translation>process.seam.position : {0} est sans effet : aucun cordon n&apos;est fermé ; supprimez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>process.seam.{0} has no effect with process.seam.position: {1}; remove it, or use position: {2}</source>
+        <source>process.seam.{0} has no effect with process.seam.position: {1}; remove the key, or use position: {2}</source>
         <translation>process.seam.{0} est sans effet avec process.seam.position : {1} ; supprimez-le, ou choisissez position : {2}</translation>
     </message>
     <message>
@@ -11718,8 +10633,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} are not written with a positioner; plan without a program; waypoints.csv has all axes</source>
-        <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; planifier sans programme ; waypoints.csv a tous les axes</translation>
+        <source>programs of {0} are not written with a positioner; plan without a program, and use the axis values in waypoints.csv</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un positionneur ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
@@ -11728,8 +10643,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} are not written with a track and a positioner together; plan without a program; waypoints.csv has all axes</source>
-        <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; planifier sans programme ; waypoints.csv a tous les axes</translation>
+        <source>programs of {0} are not written with a track and a positioner together; plan without a program, and use the axis values in waypoints.csv</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un rail et un positionneur ensemble ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
@@ -11738,8 +10653,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>programs of {0} are not written with a track; plan without a program; waypoints.csv has all axes</source>
-        <translation>les programmes de {0} ne sont pas écrits avec un rail ; planifier sans programme ; waypoints.csv a tous les axes</translation>
+        <source>programs of {0} are not written with a track; plan without a program, and use the axis values in waypoints.csv</source>
+        <translation>les programmes de {0} ne sont pas écrits avec un rail ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
@@ -11813,12 +10728,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>recompute it</source>
-        <translation>recalculez-le</translation>
+        <source>recompute the object</source>
+        <translation>recalculez l&apos;objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>redraw it with a larger radius there, or divide it and deposit its parts in turn</source>
+        <source>redraw the face with a larger radius there, or divide it and deposit its parts in turn</source>
         <translation>redessinez-la avec un plus grand rayon à cet endroit, ou divisez-la et déposez ses parties l&apos;une après l&apos;autre</translation>
     </message>
     <message>
@@ -11868,8 +10783,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/directed.py"/>
-        <source>robots need all their axes; only five-axis machines can work with four; use none</source>
-        <translation>les robots ont besoin de tous leurs axes ; seules les machines à axes rotatifs peuvent se contenter de quatre ; utilisez none</translation>
+        <source>robots need all their axes, and only five-axis machines can work with four; use none</source>
+        <translation>les robots ont besoin de tous leurs axes, et seules les machines à cinq axes peuvent travailler avec quatre ; utilisez none</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -11883,8 +10798,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>rotated coordinates are not supported; switch them off in the slicer</source>
-        <translation>les coordonnées tournées ne sont pas prises en charge ; désactivez-les dans le trancheur</translation>
+        <source>rotated coordinates are not supported; switch off the rotation in the slicer</source>
+        <translation>les coordonnées tournées ne sont pas prises en charge ; désactivez la rotation dans le trancheur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/saving.py"/>
@@ -11898,13 +10813,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model_notes.py"/>
-        <source>rows of the bead table have the same settings but different results: {0}; measure these beads again, or remove one of each pair</source>
-        <translation>des lignes du tableau de cordons ont les mêmes réglages et des mesures différentes : {0} ; mesurez ces cordons de nouveau ou retirez une ligne de chaque paire</translation>
+        <source>rows of the bead table have the same settings but different results: {0}; measure these beads again, or remove one row of each pair</source>
+        <translation>des lignes du tableau de cordons ont les mêmes réglages mais des résultats différents : {0} ; mesurez ces cordons de nouveau, ou retirez une ligne de chaque paire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
-        <source>rows with the same settings have different results: {0}; with both of each pair the bead width would increase with speed; measure these beads again, or remove the wrong row</source>
-        <translation>des lignes aux mêmes réglages ont des résultats différents : {0} ; avec les deux de chaque paire la largeur augmenterait avec la vitesse ; mesurez ces cordons à nouveau, ou retirez la ligne fausse</translation>
+        <source>rows with the same settings have different results: {0}; with both rows of each pair the bead width would increase with speed; measure these beads again, or remove the wrong rows</source>
+        <translation>des lignes aux mêmes réglages ont des résultats différents : {0} ; avec les deux lignes de chaque paire la largeur augmenterait avec la vitesse ; mesurez ces cordons de nouveau, ou retirez les lignes fausses</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/joints.py"/>
@@ -11918,13 +10833,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>scaled coordinates are not supported; switch them off in the slicer</source>
-        <translation>les coordonnées à l&apos;échelle ne sont pas prises en charge ; désactivez-les dans le trancheur</translation>
+        <source>scaled coordinates are not supported; switch off the scaling in the slicer</source>
+        <translation>les coordonnées à l&apos;échelle ne sont pas prises en charge ; désactivez la mise à l&apos;échelle dans le trancheur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>schedule numbers need an output from 1 to {0}, not {1}; choose one in this range</source>
-        <translation>les numéros de programmes de soudage demandent une sortie de 1 à {0}, et non {1} ; choisissez-en une</translation>
+        <source>schedule numbers need an output from 1 to {0}, not {1}; choose an output in this range</source>
+        <translation>les numéros de programmes de soudage demandent une sortie de 1 à {0}, et non {1} ; choisissez une sortie dans cette plage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
@@ -11948,7 +10863,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/methods/constant.py"/>
-        <source>searching one RZ for the whole job</source>
+        <source>searching for one RZ for the whole job</source>
         <translation>recherche d&apos;un RZ pour tout le travail</translation>
     </message>
     <message>
@@ -11963,8 +10878,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>seen along the build direction, process.seam.point is inside the closed beads, {0} mm from the nearest one, so a small change of a layer may move its seam to the other side; choose a point on the surface or outside</source>
-        <translation>vu dans la direction de dépôt, process.seam.point est à l&apos;intérieur des cordons fermés, à {0} mm du plus proche : un petit changement d&apos;une couche peut déplacer sa couture de l&apos;autre côté ; choisissez un point sur la surface ou à l&apos;extérieur</translation>
+        <source>seen along the build direction, process.seam.point is inside the closed beads, {0} mm from the nearest bead, so a small change of a layer may move its seam to the other side; choose a point on the surface or outside</source>
+        <translation>vu suivant la direction de construction, process.seam.point est à l&apos;intérieur des cordons fermés, à {0} mm du cordon le plus proche, donc un petit changement d&apos;une couche peut déplacer sa couture de l&apos;autre côté ; choisissez un point sur la surface ou à l&apos;extérieur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
@@ -11978,7 +10893,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
-        <source>separate it there, or make it overlap there and fuse it (Part, Boolean)</source>
+        <source>separate the faces there, or let them overlap and fuse the solid (Part, Boolean)</source>
         <translation>écartez-le à cet endroit, ou faites-le s’y recouvrir et fusionnez-le (Part, Booléen)</translation>
     </message>
     <message>
@@ -11988,7 +10903,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>set strategy.bead_overlap to {0} %, or remove it and set process.fill_width to spacing</source>
+        <source>set strategy.bead_overlap to {0} %, or remove strategy.bead_overlap and set process.fill_width to spacing</source>
         <translation>réglez strategy.bead_overlap à {0} %, ou omettez-le et réglez process.fill_width à spacing</translation>
     </message>
     <message>
@@ -12008,18 +10923,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>several columns are called {0}: {1}; keep the measured one</source>
-        <translation>plusieurs colonnes sont {0} : {1} ; gardez celle qui a été mesurée</translation>
+        <source>several columns are called {0}: {1}; keep only the measured column</source>
+        <translation>plusieurs colonnes s&apos;appellent {0} : {1} ; gardez seulement la colonne mesurée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
-        <source>several features together cannot be fitted to a scan yet; remove it, or deposit them one by one</source>
-        <translation>plusieurs entités à la fois ne s&apos;ajustent pas encore à une numérisation ; retirez-la, ou déposez-les une par une</translation>
+        <source>several features together cannot be fitted to a scan yet; remove the scan, or deposit the features one by one</source>
+        <translation>plusieurs éléments à la fois ne peuvent pas encore être ajustés à une numérisation ; retirez la numérisation, ou déposez les éléments un par un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/places.py"/>
-        <source>several link groups show it ({0}), each in its own place; choose one group, or make a link to the object</source>
-        <translation>plusieurs groupes de liens le montrent ({0}), chacun à sa propre place ; choisissez un groupe, ou faites un lien vers l&apos;objet</translation>
+        <source>several link groups show the object ({0}), each in its own place; choose one group, or make a link to the object</source>
+        <translation>plusieurs groupes de liens montrent l&apos;objet ({0}), chacun à sa propre place ; choisissez un groupe, ou faites un lien vers l&apos;objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/plan.py"/>
@@ -12028,8 +10943,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
-        <source>sew them (Part, Shape builder: Shell from faces, then Solid from shell), or export the part as a solid from CAD, as STEP rather than as IGES</source>
-        <translation>cousez-les (Part, Générateur de formes : Coque à partir de faces, puis Solide à partir d&apos;une coque), ou exportez la pièce comme solide depuis la CAO, en STEP plutôt qu&apos;en IGES</translation>
+        <source>sew the faces (Part, Shape builder: Shell from faces, then Solid from shell), or export the part as a solid from CAD, as STEP rather than as IGES</source>
+        <translation>cousez les faces (Part, Générateur de formes : Coque à partir de faces, puis Solide à partir d&apos;une coque), ou exportez la pièce comme solide depuis la CAO, en STEP plutôt qu&apos;en IGES</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -12142,19 +11057,19 @@
         <translation>solide de révolution</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>some faces have no surfaces, only triangles (AP242 tessellated geometry); {0}</source>
+        <translation>certaines faces n&apos;ont pas de surfaces, seulement des triangles (géométrie tessellée AP242) ; {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
-        <source>some files belong to no project, or to two</source>
-        <translation>certains fichiers n&apos;appartiennent à aucun projet, ou à deux</translation>
+        <source>some files belong to no project, or to two projects</source>
+        <translation>certains fichiers n&apos;appartiennent à aucun projet, ou à deux projets</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
         <source>some modules never run, or run twice</source>
         <translation>certains modules ne s&apos;exécutent jamais, ou s&apos;exécutent deux fois</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>some of its faces have no surfaces: it holds triangles (AP242 tessellated geometry); {0}</source>
-        <translation>certaines de ses faces n&apos;ont pas de surfaces : il contient des triangles (géométrie tessellée AP242) ; {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -12163,8 +11078,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>some positions lack the external axes, or have no other axes</source>
-        <translation>certaines positions n&apos;ont pas les axes externes, ou n&apos;ont pas d&apos;autres axes</translation>
+        <source>some positions lack the external axes, or have only external axes</source>
+        <translation>certaines positions n&apos;ont pas les axes externes, ou n&apos;ont que des axes externes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -12213,18 +11128,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/phases.py"/>
-        <source>start and end take {0} mm of a bead of {1} mm; shorten process.start and process.end, or those of its class</source>
-        <translation>le début et la fin prennent {0} mm de ce cordon de {1} mm ; raccourcissez process.start et process.end, ou ceux de sa classe</translation>
+        <source>start and end take {0} mm of a bead of {1} mm; shorten process.start and process.end, or the start and end of the bead class</source>
+        <translation>le début et la fin prennent {0} mm d&apos;un cordon de {1} mm ; raccourcissez process.start et process.end, ou le début et la fin de la classe de cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
-        <source>start and end take {0} mm with their ramps, but a bead of the class in layer {1} is {2} mm long; shorten them for the class, or avoid such short beads</source>
-        <translation>le début et la fin prennent {0} mm avec leurs rampes, et un cordon de cette classe dans la couche {1} est long de {2} mm ; raccourcissez-les pour la classe, ou ne déposez pas de cordons aussi courts</translation>
+        <source>start and end take {0} mm with their ramps, but a bead of the class in layer {1} is {2} mm long; shorten start and end of the class, or avoid such short beads</source>
+        <translation>le début et la fin prennent {0} mm avec leurs rampes, mais un cordon de la classe dans la couche {1} est long de {2} mm ; raccourcissez le début et la fin de la classe, ou évitez des cordons aussi courts</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
-        <source>start and end take {0} mm, but a bead of the class in layer {1} is {2} mm long; shorten them for the class, or avoid such short beads</source>
-        <translation>le début et la fin prennent {0} mm, et un cordon de cette classe dans la couche {1} est long de {2} mm ; raccourcissez-les pour la classe, ou ne déposez pas de cordons aussi courts</translation>
+        <source>start and end take {0} mm, but a bead of the class in layer {1} is {2} mm long; shorten start and end of the class, or avoid such short beads</source>
+        <translation>le début et la fin prennent {0} mm, mais un cordon de la classe dans la couche {1} est long de {2} mm ; raccourcissez le début et la fin de la classe, ou évitez des cordons aussi courts</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -12307,9 +11222,24 @@
         <translation>prenez le repère tool0 d&apos;un URDF, ou tournez la bride</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the Python of FreeCAD cannot read YAML; install PyYAML for this Python</source>
+        <translation>le Python de FreeCAD ne sait pas lire YAML ; installez PyYAML pour ce Python</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the X of {0} points out of the flange, not its Z; the flange frame is rotated, as tool0 is from flange</source>
         <translation>sur {0} X sort de la bride, et non Z ; le repère de bride est tourné, comme tool0 par rapport à flange</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the XML has a document type, which 3MF does not allow</source>
+        <translation>le XML a un type de document, ce que 3MF ne permet pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the XML in the file is damaged ({0})</source>
+        <translation>le XML du fichier est endommagé ({0})</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
@@ -12320,6 +11250,11 @@
         <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
         <source>the Z of the flange points into the wrist instead of outwards</source>
         <translation>le Z de la bride pointe vers le poignet et non vers l&apos;extérieur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>the active mechanical unit differs from earlier moves</source>
+        <translation>l&apos;unité mécanique active diffère des mouvements précédents</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
@@ -12337,14 +11272,9 @@
         <translation>l&apos;arc s&apos;éteint en un point où le robot ne s&apos;arrête pas</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/abb/read_process.py"/>
-        <source>the arc ends with other weld data than it was started with</source>
-        <translation>l&apos;arc s&apos;éteint avec d&apos;autres données de soudage que celles de son amorçage</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>the arc has both {0} or {1} and R; use one form</source>
-        <translation>l&apos;arc a à la fois {0} ou {1} et R ; utilisez une seule forme</translation>
+        <source>the arc has both {0} or {1} and R; use one of these forms</source>
+        <translation>l&apos;arc a à la fois {0} ou {1} et R ; utilisez l&apos;une de ces formes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
@@ -12367,9 +11297,64 @@
         <translation>l&apos;arc a été amorcé avec d&apos;autres données de soudage ou un autre balayage</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the arc was started with weld data that differ from those at its end</source>
+        <translation>l&apos;arc a été amorcé avec des données de soudage qui diffèrent de celles de son extinction</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the archive contains no model ({0})</source>
+        <translation>l&apos;archive ne contient pas de modèle ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the archive has no {0}</source>
+        <translation>l&apos;archive n&apos;a pas de {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the archive is compressed in a way that 3MF does not allow</source>
+        <translation>l&apos;archive est comprimée d&apos;une façon que 3MF ne permet pas</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>the argument takes a single object; pass the object, and the names of its faces separately</source>
+        <translation>l&apos;argument prend un seul objet ; donnez l&apos;objet, et les noms de ses faces à part</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/interpolation.py"/>
+        <source>the arm configuration or the turns in the program differ from the plan</source>
+        <translation>la configuration du bras ou les tours dans le programme diffèrent de la planification</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/places.py"/>
+        <source>the array has no element {0}; its {1} elements are numbered from 0</source>
+        <translation>le réseau n&apos;a pas d&apos;élément {0} ; ses {1} éléments sont numérotés à partir de 0</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
+        <source>the axes are up to {0} deg off right angles, and joint angles are solved for the actual axes</source>
+        <translation>les axes s&apos;écartent jusqu&apos;à {0} deg de l&apos;angle droit, et les angles articulaires sont calculés pour les axes réels</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>the axes are up to {0} deg off right angles, and the inverse solutions do not reproduce the poses</source>
+        <translation>les axes s&apos;écartent jusqu&apos;à {0} deg de l&apos;angle droit, et les solutions inverses ne reproduisent pas les poses</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/methods/closed_form.py"/>
-        <source>the axes deviate from the bead by {0} mm and {1} deg between two points, no matter how many are added: it is near a pole; tilt away from it</source>
-        <translation>les axes quittent le cordon de {0} mm, sa direction de {1} deg entre deux points, si nombreux qu&apos;on les ajoute : près d&apos;un pôle ; inclinez pour vous en éloigner</translation>
+        <source>the axes deviate from the bead by {0} mm and {1} deg between two points near a pole, no matter how many points are added; tilt the tool away from the pole</source>
+        <translation>les axes s&apos;écartent du cordon de {0} mm et {1} deg entre deux points près d&apos;un pôle, quel que soit le nombre de points ajoutés ; inclinez l&apos;outil pour l&apos;éloigner du pôle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <source>the axes of the move differ from those of the first move</source>
+        <translation>les axes du mouvement diffèrent de ceux du premier mouvement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
+        <source>the axis has the same value in all poses; add a pose with another value</source>
+        <translation>l&apos;axe a la même valeur dans toutes les poses ; ajoutez une pose avec une autre valeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -12383,8 +11368,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
-        <source>the axis of {0} is {1} mm off the middle of the platform and misses it</source>
-        <translation>l&apos;axe de {0} est à {1} mm du milieu du plateau et le manque</translation>
+        <source>the axis of {0} is {1} mm off the middle of the platform and misses the platform</source>
+        <translation>l&apos;axe de {0} est à {1} mm du milieu du plateau et manque le plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/clad_faces.py"/>
+        <source>the back of {0} is inside {1}; use front</source>
+        <translation>le dos de {0} est à l&apos;intérieur de {1} ; utilisez front</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/in_language.py"/>
@@ -12423,8 +11413,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>the base frame of {0} is unknown: positions of the program refer to its base_link. Compare the pose of a known point on the controller before running the program, set base in a copy of the machine file, or use program.motion: joint</source>
-        <translation>le repère de base de {0} est inconnu : les positions du programme se rapportent à son base_link. Comparez la pose d&apos;un point connu sur la commande avant d&apos;exécuter le programme, fixez base dans une copie du fichier machine, ou utilisez program.motion: joint</translation>
+        <source>the base frame of {0} is unknown, so positions of the program refer to its base_link; compare the pose of a known point on the controller before running the program, set `base` in a copy of the machine file, or use program.motion: joint</source>
+        <translation>le repère de base de {0} est inconnu, donc les positions du programme se rapportent à son base_link ; comparez la pose d&apos;un point connu sur la commande avant d&apos;exécuter le programme, fixez `base` dans une copie du fichier machine, ou utilisez program.motion: joint</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
@@ -12448,18 +11438,38 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
-        <source>the bead has only one point; give at least two</source>
-        <translation>un cordon d&apos;un seul point n&apos;a pas de chemin ; donnez-lui deux points ou plus</translation>
+        <source>the bead has only one point; give at least two points</source>
+        <translation>le cordon n&apos;a qu&apos;un point ; donnez au moins deux points</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/classes.py"/>
-        <source>the bead model sets the travel speed of every bead; remove it, or use bead_model: none</source>
-        <translation>le modèle de cordon règle la vitesse d&apos;avance de tous les cordons ; omettez-la, ou prenez bead_model: none</translation>
+        <source>the bead model sets the travel speed of every bead; remove the travel speed, or use bead_model: none</source>
+        <translation>le modèle de cordon règle la vitesse d&apos;avance de tous les cordons ; retirez la vitesse d&apos;avance, ou utilisez bead_model: none</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>the bead table has 1 row; measure at least {0} beads</source>
+        <translation>le tableau de cordons a 1 ligne ; mesurez au moins {0} cordons</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/bead_model.py"/>
+        <source>the bead table has {0} rows; measure at least {1} beads</source>
+        <translation>le tableau de cordons a {0} lignes ; mesurez au moins {1} cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
         <source>the bead width increases with speed (m = {0}); check the columns of the table</source>
         <translation>les cordons s&apos;élargissent avec la vitesse (m = {0}) ; vérifiez les colonnes du tableau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/joints.py"/>
+        <source>the bead {0} is listed twice; keep one entry per bead</source>
+        <translation>le cordon {0} est dans la liste deux fois ; gardez une entrée par cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
+        <source>the calibrated joint is {0} mm and {1} deg from the joint in the machine file, more than a calibration corrects; choose the calibrated machine</source>
+        <translation>l&apos;articulation étalonnée est à {0} mm et {1} deg de l&apos;articulation du fichier de machine, plus qu&apos;un étalonnage ne corrige ; choisissez la machine étalonnée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
@@ -12478,23 +11488,33 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>the cell that runs it</source>
-        <translation>la cellule qui l&apos;exécute</translation>
+        <source>the cell that runs the toolpath</source>
+        <translation>la cellule qui exécute la trajectoire d&apos;outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/views/joint_path.py"/>
+        <source>the cell was deleted; choose another cell</source>
+        <translation>la cellule a été supprimée ; choisissez une autre cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/simulation/payload.py"/>
-        <source>the centre of gravity of the part, {0} kg at that time, is {1} mm from the last axis of {2} ({3} mm when finished), whose payload is {4} mm with {5} kg; move it nearer to the axis (cell.platform may be a pose); {6}</source>
-        <translation>le centre de gravité de la pièce, {0} kg à ce moment, est à {1} mm du dernier axe de {2} ({3} mm une fois finie), qui porte {4} mm avec {5} kg ; rapprochez-la du milieu (cell.platform peut être une pose) ; {6}</translation>
+        <source>the centre of gravity of the part, {0} kg at that time, is {1} mm from the last axis of {2} ({3} mm when finished), whose payload is {4} mm with {5} kg; move the part nearer to the axis (cell.platform may be a pose); {6}</source>
+        <translation>le centre de gravité de la pièce, {0} kg à ce moment, est à {1} mm du dernier axe de {2} ({3} mm une fois finie), dont la charge utile est {4} mm avec {5} kg ; rapprochez la pièce de l&apos;axe (cell.platform peut être une pose) ; {6}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/simulation/payload.py"/>
-        <source>the centre of gravity of the part, {0} kg at that time, is {1} mm from the last axis of {2} ({3} mm when finished), whose payload is {4} mm; move it nearer to the axis (cell.platform may be a pose); {5}</source>
-        <translation>le centre de gravité de la pièce, {0} kg à ce moment, est à {1} mm du dernier axe de {2} ({3} mm une fois finie), qui porte {4} mm ; rapprochez-la du milieu (cell.platform peut être une pose) ; {5}</translation>
+        <source>the centre of gravity of the part, {0} kg at that time, is {1} mm from the last axis of {2} ({3} mm when finished), whose payload is {4} mm; move the part nearer to the axis (cell.platform may be a pose); {5}</source>
+        <translation>le centre de gravité de la pièce, {0} kg à ce moment, est à {1} mm du dernier axe de {2} ({3} mm une fois finie), dont la charge utile est {4} mm ; rapprochez la pièce de l&apos;axe (cell.platform peut être une pose) ; {5}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
+        <source>the checksum of the line is {0}, not {1}, so the line is damaged; export the file again</source>
+        <translation>la somme de contrôle de la ligne est {0}, et non {1}, donc la ligne est endommagée ; exportez le fichier de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/bodies.py"/>
-        <source>the chord error is {0} mm, suitable for a part of {1} mm and its beads; set strategy.chord_error to change it</source>
-        <translation>les cordons sont droits à {0} mm près, selon la taille de la pièce ({1} mm) et ses cordons ; fixez strategy.chord_error pour une autre valeur</translation>
+        <source>the chord error is {0} mm, suitable for a part of {1} mm and its beads; set strategy.chord_error for another value</source>
+        <translation>l&apos;erreur de corde est de {0} mm, adaptée à une pièce de {1} mm et à ses cordons ; fixez strategy.chord_error pour une autre valeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/figures.py"/>
@@ -12507,9 +11527,19 @@
         <translation>la forme explicite est pour six articulations, il y en a {0} ; omettez opw</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>the closed form is off by {0} mm and {1} (rotation matrix entries)</source>
+        <translation>la forme close est décalée de {0} mm et de {1} (termes de la matrice de rotation)</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the code does not run from `begin` to `end`</source>
+        <translation>le code ne va pas de `begin` à `end`</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
-        <source>the column {0} appears twice; remove one</source>
-        <translation>la colonne {0} est là deux fois ; gardez-en une</translation>
+        <source>the column {0} appears twice; remove one column</source>
+        <translation>la colonne {0} apparaît deux fois ; retirez une colonne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
@@ -12517,9 +11547,79 @@
         <translation>il n&apos;a pas de colonne {0} ; nommez dans sa première ligne {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the columns are called {0}; name the coordinates x, y and z</source>
+        <translation>les colonnes s&apos;appellent {0} ; nommez les coordonnées x, y et z</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the columns have different units: {0}; export all columns in one unit</source>
+        <translation>les colonnes ont des unités différentes : {0} ; exportez toutes les colonnes dans une seule unité</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
+        <source>the columns of the table are {0}; {1}</source>
+        <translation>les colonnes du tableau sont {0} ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the command calls a subprogram; write out the moves of the subprogram</source>
+        <translation>la commande appelle un sous-programme ; écrivez les déplacements du sous-programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the command cancels an object while the program runs; remove the object in the slicer</source>
+        <translation>la commande abandonne un objet pendant le programme ; retirez l&apos;objet dans le trancheur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the command moves a single motor; remove the command</source>
+        <translation>la commande ne déplace qu&apos;un moteur ; retirez la commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the command prints a built-in pattern of the machine; remove the command</source>
+        <translation>la commande imprime un motif intégré à la machine ; retirez la commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the command prints copies side by side; export a single copy</source>
+        <translation>la commande imprime des copies côte à côte ; exportez une seule copie</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the command repeats lines of the program; write out the moves</source>
+        <translation>la commande répète des lignes du programme ; écrivez les déplacements</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the command returns from a subprogram, or repeats the program; remove the command</source>
+        <translation>la commande revient d&apos;un sous-programme ou répète le programme ; retirez la commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the command returns to a stored position; write out the move</source>
+        <translation>la commande revient à une position mémorisée ; écrivez le déplacement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the command scales axes; remove the command</source>
+        <translation>la commande met des axes à l&apos;échelle ; retirez la commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the command shifts the origin; remove the command, or use G92</source>
+        <translation>la commande décale l&apos;origine ; retirez la commande, ou utilisez G92</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>the comment may be executed, or the line is too long</source>
+        <translation>le commentaire peut être exécuté, ou la ligne est trop longue</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
-        <source>the comment {0} has no end; close it with )</source>
-        <translation>{0} est un commentaire sans fin ; fermez-le par )</translation>
+        <source>the comment {0} has no end; close the comment with )</source>
+        <translation>le commentaire {0} n&apos;a pas de fin ; fermez le commentaire par )</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
@@ -12533,13 +11633,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the controller does not name tracks, and {0} is a track; remove program.axes.unit</source>
+        <translation>la commande ne nomme pas les rails, et {0} est un rail ; retirez program.axes.unit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
         <source>the controller has weaves 1 to {0}, not {1}</source>
         <translation>la commande a les balayages 1 à {0}, pas {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>the controller of {0} does not read {1}; there is no post for it yet: plan without a program; waypoints.csv has its axes</source>
-        <translation>la commande de {0} ne lit pas {1} ; il n&apos;y a pas encore de post-processeur pour elle : planifiez sans programme ; waypoints.csv a ses axes</translation>
+        <source>the controller of {0} does not read {1}; no post supports the controller yet; plan without a program, and use the axis values in waypoints.csv</source>
+        <translation>la commande de {0} ne lit pas {1} ; aucun post-processeur ne prend encore en charge la commande ; planifiez sans programme, et utilisez les valeurs d&apos;axes de waypoints.csv</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
@@ -12548,28 +11653,43 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the controller program reads analogue inputs 1 to {0}, not {1}; choose one in this range</source>
-        <translation>le programme de la commande lit les entrées analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
+        <source>the controller program reads analogue inputs 1 to {0}, not {1}; choose an input in this range</source>
+        <translation>le programme de la commande lit les entrées analogiques 1 à {0}, et non {1} ; choisissez une entrée dans cette plage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/post.py"/>
-        <source>the controller program reads inputs 1 to {0}, not {1}; choose one in this range</source>
-        <translation>le programme de la commande lit les entrées 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
+        <source>the controller program reads inputs 1 to {0}, not {1}; choose an input in this range</source>
+        <translation>le programme de la commande lit les entrées 1 à {0}, et non {1} ; choisissez une entrée dans cette plage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_numbers.py"/>
-        <source>the controller program sets analogue outputs 1 to {0}, not {1}; choose one in this range</source>
-        <translation>le programme de la commande règle les sorties analogiques 1 à {0}, et non {1} ; utilisez l&apos;une d&apos;elles</translation>
+        <source>the controller program sets analogue outputs 1 to {0}, not {1}; choose an output in this range</source>
+        <translation>le programme de la commande règle les sorties analogiques 1 à {0}, et non {1} ; choisissez une sortie dans cette plage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>the controller supports schedules up to {0}, not {1}; use another number, there or in process.classes</source>
-        <translation>le contrôleur reçoit des programmes de soudage jusqu&apos;à {0}, non {1} ; prenez un autre numéro, là ou dans process.classes</translation>
+        <source>the controller programs joint moves in percent of the maximum axis speeds, which the machine file of {0} lacks; add {1}</source>
+        <translation>la commande programme les mouvements articulaires en pourcentage des vitesses maximales des axes, qui manquent dans le fichier machine de {0} ; ajoutez {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/refusals.py"/>
+        <source>the controller supports schedules up to {0}, not {1}; use a smaller number in process.schedule and process.classes</source>
+        <translation>la commande prend en charge les programmes de soudage jusqu&apos;à {0}, et non {1} ; utilisez un plus petit numéro dans process.schedule et process.classes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
         <source>the corner before the switching point is rounded, which leaves {0} s, less than the lead of {1} s; use a program.trigger.lead of at most {2} s, a smaller program.blend, or a larger strategy.chord_error</source>
         <translation>le coin avant le point de commutation est arrondi, ce qui laisse {0} s, moins que l&apos;avance de {1} s ; utilisez un program.trigger.lead d&apos;au plus {2} s, un program.blend plus petit, ou un strategy.chord_error plus grand</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the corner rounding or acceleration of the move is not understood</source>
+        <translation>l&apos;arrondi ou l&apos;accélération du mouvement n&apos;est pas compris</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
+        <source>the curved faces of the object are tangent to {0}, which is flat; select the wall faces, or name them in part.faces of a job</source>
+        <translation>les faces courbes de l&apos;objet sont tangentes à {0}, qui est plane ; sélectionnez les faces de la paroi, ou nommez-les dans part.faces d&apos;un travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
@@ -12588,7 +11708,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/linear_approach.py"/>
-        <source>the deposit needs a linear approach to the bead, but the program begins at the bead itself; set a retract distance, or another {0}</source>
+        <source>the deposit needs a linear approach to the bead, but the program begins at the bead; set a retract distance, or another {0}</source>
         <translation>le dépôt commence par un mouvement linéaire vers le cordon, et le programme commence au cordon même ; donnez une distance de retrait, ou un autre {0}</translation>
     </message>
     <message>
@@ -12602,9 +11722,24 @@
         <translation>la documentation ne dit pas si WAIT FOR relit $ANIN</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>the edge crosses the axis by {0} mm; keep the wire on one side of the axis</source>
+        <translation>l&apos;arête croise l&apos;axe de {0} mm ; gardez le fil d&apos;un seul côté de l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>the edge is {0} mm off the plane of the wire and the axis; draw the wire in a plane through the axis</source>
+        <translation>l&apos;arête est à {0} mm hors du plan du fil et de l&apos;axe ; dessinez le fil dans un plan qui contient l&apos;axe</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>the edge is {0} mm off the wall at {1}; choose edges of the wall faces</source>
         <translation>l&apos;arête est à {0} mm de la paroi en {1} ; choisissez des arêtes des faces mêmes de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>the edges of the guide do not form one curve: {0} of {1} are disconnected, at {2} and {3}, and the smallest gap is {4} mm; choose edges that meet end to end</source>
+        <translation>les arêtes du guide ne forment pas une courbe : {0} sur {1} ne sont pas reliées, en {2} et {3}, et le plus petit jour est de {4} mm ; choisissez des arêtes qui se touchent bout à bout</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/curves_feature.py"/>
@@ -12613,8 +11748,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/predicted_shape.py"/>
-        <source>the effective bead width is unknown; plan it again</source>
-        <translation>la largeur que comptent ses cordons n&apos;est pas connue ; replanifiez-la</translation>
+        <source>the effective bead width is unknown; plan the toolpath again</source>
+        <translation>la largeur effective des cordons est inconnue ; planifiez de nouveau la trajectoire d&apos;outil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
+        <source>the end of the wall cuts the first layer; make the wall longer</source>
+        <translation>l&apos;extrémité de la paroi coupe la première couche ; allongez la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/strategies/walls/plan.py"/>
+        <source>the end of the wall is not above the substrate all around; make the wall longer</source>
+        <translation>l&apos;extrémité de la paroi n&apos;est pas au-dessus du substrat sur tout le tour ; allongez la paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -12628,13 +11773,73 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>the external axes are out of order, or BASE is not coupled to the part that they move</source>
-        <translation>les axes externes ne sont pas dans l&apos;ordre, ou BASE n&apos;est pas couplée à la pièce qu&apos;ils déplacent</translation>
+        <source>the external axes are out of order, or BASE is not coupled to the part on these axes</source>
+        <translation>les axes externes ne sont pas dans l&apos;ordre, ou BASE n&apos;est pas couplée à la pièce sur ces axes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>the external axes of the move differ from earlier moves, or have gaps between them</source>
+        <translation>les axes externes du mouvement diffèrent des mouvements précédents, ou ont des lacunes entre eux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>the face closes on itself both ways; choose a tube that is closed around</source>
+        <translation>la face se ferme sur elle-même dans les deux sens ; choisissez un tube fermé sur son tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
+        <source>the face does not turn about the axis</source>
+        <translation>la face ne tourne pas autour de l&apos;axe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>the face folds back and intersects itself at {0}; {1}</source>
         <translation>la face se replie et se coupe en {0} ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>the face has a crease along its seam, which cannot be deposited yet; smooth the crease</source>
+        <translation>la face a une arête le long de sa couture, ce qui ne peut pas encore être déposé ; lissez cette arête</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
+        <source>the face has an edge but no area, so the file is damaged or the face does not turn about the axis</source>
+        <translation>la face a une arête mais pas d&apos;aire, donc le fichier est endommagé ou la face ne tourne pas autour de l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
+        <source>the face has an edge that is neither a straight end of the tube nor below the first layer, which cannot be deposited yet; fill openings, and cut ends straight</source>
+        <translation>la face a une arête qui n&apos;est ni une extrémité droite du tube ni sous la première couche, ce qui ne peut pas encore être déposé ; comblez les ouvertures, et coupez droit les extrémités</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>the face has no closed direction; choose a tube that is closed around</source>
+        <translation>la face n&apos;a pas de direction fermée ; choisissez un tube fermé sur son tour</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
+        <source>the face is cut out or slanted, with an edge that runs neither around nor along the axis</source>
+        <translation>la face est découpée ou oblique, avec une arête qui n&apos;est ni autour de l&apos;axe ni le long de l&apos;axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/hub.py"/>
+        <source>the face is neither a cylinder nor a cone; choose another face, or set strategy.base</source>
+        <translation>la face n&apos;est ni un cylindre ni un cône ; choisissez une autre face, ou fixez strategy.base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/patch.py"/>
+        <source>the face is not a surface of revolution</source>
+        <translation>la face n&apos;est pas une surface de révolution</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/hub.py"/>
+        <source>the face is the inside of a bore; choose the outer face of a hub</source>
+        <translation>la face est l&apos;intérieur d&apos;un alésage ; choisissez la face extérieure d&apos;un moyeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>the face is {0} mm off the surface of {1}; walls of several surfaces cannot be deposited yet: choose faces of one torus, cylinder or cone</source>
+        <translation>la face est à {0} mm de la surface de {1} ; les parois de plusieurs surfaces ne peuvent pas encore être déposées : choisissez des faces d&apos;un même tore, cylindre ou cône</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/helix.py"/>
@@ -12647,9 +11852,19 @@
         <translation>les faces forment {0} morceaux séparés : {1} et {2} sont à {3} mm l&apos;une de l&apos;autre en {4} ; choisissez des faces jointes, dont les arêtes se rencontrent à {5} mm près</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>the faces have no surfaces, only triangles (AP242 tessellated geometry); {0}</source>
+        <translation>les faces n&apos;ont pas de surfaces, seulement des triangles (géométrie tessellée AP242) ; {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/helix.py"/>
         <source>the faces have {0} border loop(s), but faces that close around an axis have two</source>
         <translation>les faces ont {0} contour(s), mais des faces fermées autour d’un axe en ont deux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>the faces share no axis of revolution; choose an axis, or select the faces</source>
+        <translation>les faces ne partagent aucun axe de révolution ; choisissez un axe, ou sélectionnez les faces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/cladding_feature.py"/>
@@ -12658,8 +11873,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/sequence.py"/>
-        <source>the feature has no support: {0} of {1} mm of its first layer are unsupported when deposited; move it onto the existing part, set its substrate, or deposit its support first</source>
-        <translation>l&apos;élément n&apos;a pas d&apos;appui : {0} sur {1} mm de sa première couche ne sont pas portés quand ils sont déposés ; déplacez-le sur la pièce existante, fixez son substrat, ou déposez d&apos;abord son appui</translation>
+        <source>the feature has no support: {0} of {1} mm of its first layer are unsupported when deposited; move the feature onto the existing part, set its substrate, or deposit its support first</source>
+        <translation>l&apos;élément n&apos;a pas d&apos;appui : {0} sur {1} mm de sa première couche ne sont pas portés lors du dépôt ; déplacez l&apos;élément sur la pièce existante, fixez son substrat, ou déposez d&apos;abord son appui</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -12692,9 +11907,94 @@
         <translation>il est vide ; donnez le constructeur et le modèle</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
+        <location filename="../../freecad_am/objects/shapes/linked_files.py"/>
+        <source>the file cannot be read as a FreeCAD document; save it again</source>
+        <translation>le fichier ne peut pas être lu comme un document FreeCAD ; enregistrez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
+        <source>the file cannot be read as a calibration: {0}; use the file as ur_calibration wrote it</source>
+        <translation>le fichier ne peut pas être lu comme étalonnage : {0} ; utilisez le fichier tel que ur_calibration l&apos;a écrit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
+        <source>the file cannot be read as a machine file: {0}; correct the file, or choose another</source>
+        <translation>le fichier ne peut pas être lu comme un fichier de machine : {0} ; corrigez le fichier, ou choisissez-en un autre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
         <source>the file cannot be read: {0}; choose another file</source>
         <translation>le fichier ne peut pas être lu : {0} ; choisissez-en un qui peut l&apos;être</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/user_machines.py"/>
+        <source>the file cannot be written: {0}; check the folder</source>
+        <translation>le fichier ne peut pas être écrit : {0} ; vérifiez le dossier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>the file contains &lt;{0}&gt;, not the &lt;robot&gt; of a URDF; choose a robot URDF</source>
+        <translation>le fichier contient &lt;{0}&gt;, et non le &lt;robot&gt; d&apos;un URDF ; choisissez l&apos;URDF d&apos;un robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the file contains more than contains itself; simplify the model</source>
+        <translation>le fichier contient plus que ce qui se contient soi-même ; simplifiez le modèle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the file contains more than is missing; simplify the model</source>
+        <translation>le fichier contient plus que ce qui manque ; simplifiez le modèle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the file contains more than {0} objects, or objects nested {1} times; simplify the model</source>
+        <translation>le fichier contient plus de {0} objets, ou des objets imbriqués {1} fois ; simplifiez le modèle</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the file contains more than {0} points; simplify the mesh</source>
+        <translation>le fichier contient plus de {0} points ; simplifiez le maillage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the file contains more than {0} triangles; simplify the mesh</source>
+        <translation>le fichier contient plus de {0} triangles ; simplifiez le maillage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>the file contains no shape, only annotations; export the part again</source>
+        <translation>le fichier ne contient aucune forme, seulement des annotations ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>the file contains no shape, only product data or annotations; export the part again</source>
+        <translation>le fichier ne contient aucune forme, seulement des données de produit ou des annotations ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>the file contains no shape; export the part again</source>
+        <translation>le fichier ne contient pas de forme ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>the file contains no triangles; export the part again</source>
+        <translation>le fichier ne contient pas de triangles ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the file contains no triangles{0}; export the part again</source>
+        <translation>le fichier ne contient aucun triangle{0} ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the file declares a document type, which controllers never write</source>
+        <translation>le fichier déclare un type de document, ce que les commandes n&apos;écrivent jamais</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the file does not contain the code of a program {0}</source>
+        <translation>le fichier ne contient pas le code d&apos;un programme {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
@@ -12707,9 +12007,19 @@
         <translation>il n&apos;y a pas de tel fichier ; vérifiez le chemin</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
+        <source>the file has free-form surfaces ({0} in line {1}), which are not supported; export triangles, or STEP</source>
+        <translation>le fichier a des surfaces libres ({0} à la ligne {1}), qui ne sont pas prises en charge ; exportez des triangles, ou du STEP</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
         <source>the file has no &lt;{0}&gt;; choose a robot URDF</source>
         <translation>il n&apos;y a pas de &lt;{0}&gt; ; choisissez l&apos;URDF d&apos;un robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the file has no DEF</source>
+        <translation>le fichier n’a pas de DEF</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -12722,14 +12032,54 @@
         <translation>il n&apos;y a pas de robot dedans : aucune chaîne n&apos;a six axes qui tournent portés par des axes qui glissent seulement ; la plus longue est {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>the file has solids by constructive geometry ({0}), which are not supported; {1}</source>
+        <translation>le fichier a des solides par géométrie constructive ({0}), qui ne sont pas pris en charge ; {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the file has too many values; give at most {0} values</source>
+        <translation>le fichier a trop de valeurs ; donnez au plus {0} valeurs</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the file has {0}</source>
+        <translation>le fichier a {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/kinematics/urdf/cell.py"/>
-        <source>the file has {0} robots, with the last axes {1}; name one in `cell.machine`, with base and tip, and its external axes in `{2}`</source>
-        <translation>le fichier a {0} robots, dont les derniers axes sont {1} ; nommez-en un dans `cell.machine`, avec base et bout, et ses axes externes dans `{2}`</translation>
+        <source>the file has {0} robots, with the last axes {1}; name the robot in `cell.machine`, with base and tip, and its external axes in `{2}`</source>
+        <translation>le fichier a {0} robots, dont les derniers axes sont {1} ; nommez le robot dans `cell.machine`, avec base et bout, et ses axes externes dans `{2}`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>the file has {0}; give at least 3 joint vectors with their flange poses</source>
+        <source>the file has {0}; give at least 3 joint vectors with flange poses</source>
         <translation>il y en a {0} ; donnez au moins 3 vecteurs articulaires avec leurs poses de bride</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>the file is binary G-code; export G-code as text from the slicer</source>
+        <translation>le fichier est du G-code binaire ; exportez le G-code en texte depuis le trancheur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>the file is damaged, or its extension does not match its content; export the part again</source>
+        <translation>le fichier est endommagé, ou son extension ne correspond pas à son contenu ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/sandbox.py"/>
+        <source>the file is damaged: FreeCAD crashes while reading it; export it again</source>
+        <translation>le fichier est endommagé : FreeCAD plante en le lisant ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/sandbox.py"/>
+        <source>the file is damaged: reading it takes more than {0} MB of memory, the limit for a file of its size; export it again</source>
+        <translation>le fichier est endommagé : sa lecture demande plus de {0} Mo de mémoire, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/sandbox.py"/>
+        <source>the file is damaged: reading it takes more than {0} s of processor time, the limit for a file of its size; export it again</source>
+        <translation>le fichier est endommagé : sa lecture demande plus de {0} s de processeur, la limite pour un fichier de sa taille ; exportez-le de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
@@ -12747,9 +12097,14 @@
         <translation>le fichier est vide ; donnez au moins {0}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the file is encrypted; export it without protection</source>
+        <translation>le fichier est chiffré ; exportez-le sans protection</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/files/sandbox.py"/>
-        <source>the file is larger than {0} MB, the maximum; check that it is the right one</source>
-        <translation>le fichier dépasse {0} Mo, le maximum qui est lu ; vérifiez que c&apos;est le bon</translation>
+        <source>the file is larger than {0} MB, the maximum; check that you chose the right file</source>
+        <translation>le fichier dépasse {0} Mo, le maximum ; vérifiez que vous avez choisi le bon fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -12762,14 +12117,164 @@
         <translation>le fichier manque ; écrivez machine: {{file: robot.urdf}}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
+        <source>the file is nested too deeply for a machine file; choose another file</source>
+        <translation>le fichier est trop imbriqué pour un fichier de machine ; choisissez un autre fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the file is nested too deeply; give keys such as {0}</source>
+        <translation>le fichier est trop imbriqué ; donnez des clés comme {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the file is not UTF-8 (line {0}); save it as UTF-8</source>
+        <translation>le fichier n&apos;est pas en UTF-8 (ligne {0}) ; enregistrez-le en UTF-8</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
+        <source>the file is not XML: {0}; export the URDF again</source>
+        <translation>le fichier n&apos;est pas du XML : {0} ; exportez de nouveau l&apos;URDF</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the file is not a PLY file with vertices first; export it again</source>
+        <translation>le fichier n&apos;est pas un fichier PLY qui commence par les sommets ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>the file is not a job from /JOB to END</source>
+        <translation>le fichier n&apos;est pas un job de /JOB à END</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <source>the file is not a listing with /PROG, /MN, /POS and /END in this order</source>
+        <translation>le fichier n&apos;est pas un listing avec /PROG, /MN, /POS et /END dans cet ordre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the file is not a mapping; give keys such as {0}</source>
+        <translation>le fichier n&apos;est pas un ensemble de clés ; donnez des clés comme {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
+        <source>the file is not a module with one routine</source>
+        <translation>le fichier n&apos;est pas un module à une seule routine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the file is not a module with one routine of the same name that begins with &amp;ACCESS RVP, &amp;REL 1 and DEF and ends with END: {0}</source>
+        <translation>le fichier n’est pas un module avec une seule routine du même nom, qui commence par &amp;ACCESS RVP, &amp;REL 1 et DEF et finit par END : {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>the file is not a program that ends with M2</source>
+        <translation>le fichier n&apos;est pas un programme qui finit par M2</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the file is not a project in millimetres</source>
+        <translation>le fichier n&apos;est pas un projet en millimètres</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
+        <source>the file is not a single function from its first line to its last</source>
+        <translation>le fichier n&apos;est pas une seule fonction de la première ligne à la dernière</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/wire.py"/>
+        <source>the file is not a table: it contains bytes that are not UTF-8 text; save the table as CSV in UTF-8</source>
+        <translation>le fichier n&apos;est pas un tableau : il contient des octets qui ne sont pas du texte UTF-8 ; enregistrez le tableau en CSV UTF-8</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the file is not a valid zip file ({0})</source>
+        <translation>le fichier n&apos;est pas un fichier zip valable ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>the file is not an AdaOne toolpath, or is damaged ({0}); export it again</source>
+        <translation>le fichier n&apos;est pas une trajectoire d&apos;AdaOne, ou est endommagé ({0}) ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the file is not text in UTF-8</source>
+        <translation>le fichier n&apos;est pas un texte en UTF-8</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/table_part.py"/>
+        <source>the file is not text; give a table of points as CSV</source>
+        <translation>le fichier n&apos;est pas du texte ; donnez un tableau de points en CSV</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the file is not valid YAML: {0}; correct the file</source>
+        <translation>le fichier n&apos;est pas du YAML valable : {0} ; corrigez le fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the file is not well-formed XML ({0})</source>
+        <translation>le fichier n&apos;est pas du XML bien formé ({0})</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the file is sliced: it contains G-code ({0}) and no triangles; export the project with its meshes, or unpack the G-code and plan it as curves</source>
+        <translation>le fichier est tranché : il contient du G-code ({0}) et aucun triangle ; exportez le projet avec ses maillages, ou extrayez le G-code et planifiez-le comme courbes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the file is truncated after {0} of {1} vertices; export it again</source>
+        <translation>le fichier est coupé après {0} de {1} sommets ; exportez-le de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>the file is truncated, or is not an STL file: its header announces {0} triangles, but its size fits {1}; export the part again</source>
+        <translation>le fichier est tronqué, ou n&apos;est pas un fichier STL : son en-tête annonce {0} triangles, mais sa taille correspond à {1} ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>the file is truncated: the last solid has no end; export the part again</source>
+        <translation>le fichier est tronqué : le dernier solide n&apos;a pas de fin ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
+        <source>the file is xacro; convert it to URDF first, with the ROS program xacro</source>
+        <translation>le fichier est du xacro ; convertissez-le d&apos;abord en URDF, avec le programme xacro de ROS</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
+        <source>the file names no types</source>
+        <translation>le fichier ne nomme pas de types</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the file needs an unsupported extension ({0}); export plain triangles</source>
+        <translation>le fichier a besoin d&apos;une extension non prise en charge ({0}) ; exportez de simples triangles</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
-        <source>the file of measured points is missing; choose one</source>
-        <translation>aucun fichier de points mesurés n&apos;est donné ; choisissez-en un</translation>
+        <source>the file of measured points is missing; choose a file</source>
+        <translation>le fichier de points mesurés manque ; choisissez un fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>the file refers to other files (entity {0}), which are not read; export the assembly as one file</source>
+        <translation>le fichier renvoie à d&apos;autres fichiers (entité {0}), qui ne sont pas lus ; exportez l&apos;assemblage en un seul fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>the file refers to other files ({0}), which are not read; export the assembly as one file</source>
+        <translation>le fichier renvoie à d&apos;autres fichiers ({0}), qui ne sont pas lus ; exportez l&apos;assemblage en un seul fichier</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>the first axis is prismatic and carries the six revolute axes, like a track</source>
+        <translation>le premier axe est prismatique et porte les six axes rotatifs, comme un rail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/first_layer.py"/>
-        <source>the first layer does not run once around the wall: choose one closed loop of edges that crosses each line up the wall once</source>
-        <translation>la première couche ne fait pas une fois le tour de la paroi : choisissez une boucle fermée d&apos;arêtes qui croise une fois chaque ligne montant la paroi</translation>
+        <source>the first layer does not run once around the wall; choose a closed loop of edges that crosses each line up the wall once</source>
+        <translation>la première couche ne fait pas une fois le tour de la paroi ; choisissez une boucle fermée d&apos;arêtes qui croise une fois chaque ligne montant la paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
@@ -12798,13 +12303,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the first move, from the unknown start position, is too fast</source>
+        <source>the first move, from an unknown start position, is too fast</source>
         <translation>le premier mouvement, depuis la position de départ inconnue, est trop rapide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>the fit excludes the {0} farthest points; the results include them</source>
-        <translation>{0} points ont été laissés hors de l&apos;ajustement, les plus écartés ; les chiffres les contiennent</translation>
+        <source>the fit excludes the {0} farthest points, but the results include all points</source>
+        <translation>l&apos;ajustement exclut les {0} points les plus écartés, mais les résultats comprennent tous les points</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
@@ -12818,8 +12323,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/interop.py"/>
-        <source>the folder {0} does not exist; create it, or choose another</source>
-        <translation>il n&apos;y a pas de dossier {0} ; créez-le, ou choisissez-en un autre</translation>
+        <source>the folder {0} does not exist; create the folder, or choose another</source>
+        <translation>le dossier {0} n&apos;existe pas ; créez le dossier, ou choisissez-en un autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/preferences_page.py"/>
@@ -12827,14 +12332,29 @@
         <translation>il n&apos;y a pas de dossier {}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>the geometry kernel cannot process this shape ({0}{1}); repair it (Part, Check geometry), or redraw its faces</source>
-        <translation>le noyau géométrique ne peut pas travailler avec cette forme ({0}{1}) ; réparez-la (Part, Vérifier la géométrie), ou redessinez ses faces</translation>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
+        <source>the function in the file is called {0}</source>
+        <translation>la fonction du fichier s&apos;appelle {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/kernel/limits.py"/>
-        <source>the geometry kernel cannot triangulate this face, about {0}; repair it (Part, Check geometry), or redraw it</source>
-        <translation>le noyau géométrique ne peut pas diviser en triangles cette face, autour de {0} ; réparez-la (Part, Vérifier la géométrie), ou redessinez-la</translation>
+        <source>the geometry kernel cannot process the shape ({0}{1}); repair the shape (Part, Check geometry), or redraw its faces</source>
+        <translation>le noyau géométrique ne peut pas traiter la forme ({0}{1}) ; réparez la forme (Part, Vérifier la géométrie), ou redessinez ses faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/kernel/limits.py"/>
+        <source>the geometry kernel cannot triangulate the face, about {0}; repair the face (Part, Check geometry), or redraw it</source>
+        <translation>le noyau géométrique ne peut pas diviser la face en triangles, autour de {0} ; réparez la face (Part, Vérifier la géométrie), ou redessinez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/bodies.py"/>
+        <source>the group contains shapes and meshes, which cannot be used together; choose its objects one by one</source>
+        <translation>le groupe contient des formes et des maillages, qui ne peuvent pas être utilisés ensemble ; choisissez ses objets un par un</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>the group of the instructions differs from the group of the positions</source>
+        <translation>le groupe des instructions diffère du groupe des positions</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/guide_field.py"/>
@@ -12843,13 +12363,33 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
-        <source>the guide has no edge with any length; choose edges, a wire or a sketch</source>
-        <translation>le guide n&apos;a aucune arête de longueur non nulle ; choisissez des arêtes, un fil ou une esquisse</translation>
+        <source>the guide has a corner of {0} deg at {1}, where layers would have zero height on the inside; round the corner with a radius, or choose guide: auto</source>
+        <translation>le guide a un angle vif de {0} deg en {1}, où les couches n&apos;auraient pas de hauteur à l&apos;intérieur ; arrondissez l&apos;angle par un rayon, ou choisissez guide: auto</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/guide_field.py"/>
-        <source>the guide leaves the part: at layer {0} it is {1} mm off it, at {2}; choose a guide in the part or along one of its edges, or guide: auto</source>
-        <translation>le guide quitte la pièce : à la couche {0} il est à {1} mm à côté, en {2} ; choisissez un guide dans la pièce ou le long de l&apos;une de ses arêtes, ou guide: auto</translation>
+        <source>the guide leaves the part: at layer {0} the guide is {1} mm outside, at {2}; choose a guide in the part or along one of its edges, or guide: auto</source>
+        <translation>le guide quitte la pièce : à la couche {0} le guide est à {1} mm au-dehors, en {2} ; choisissez un guide dans la pièce ou le long de l&apos;une de ses arêtes, ou guide: auto</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>the guide returns to its start, at {0}, so the last layer would overlap the first; remove one edge</source>
+        <translation>le guide revient à son départ, en {0}, donc la dernière couche recouvrirait la première ; retirez une arête</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>the guide turns back by {0} deg at {1}, so layers would cut through the deposit; choose edges that lead forward</source>
+        <translation>le guide rebrousse de {0} deg en {1}, donc des couches traverseraient le dépôt ; choisissez des arêtes qui mènent en avant</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/records.py"/>
+        <source>the header moves groups {0}, but the positions have groups {1}</source>
+        <translation>l&apos;en-tête déplace les groupes {0}, mais les positions ont les groupes {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <source>the header names other motion groups than the previous programs</source>
+        <translation>l&apos;en-tête nomme d&apos;autres groupes de mouvement que les programmes précédents</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
@@ -12858,12 +12398,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
-        <source>the hub, a cylinder or cone below the solids, is unknown: choose it as substrate, choose its faces, or set strategy.base; for a flat base use kind: solid</source>
-        <translation>le moyeu, un cylindre ou cône sous les solides, est inconnu : choisissez-le comme substrat, choisissez ses faces, ou fixez strategy.base ; pour une base plane utilisez kind: solid</translation>
+        <source>the hub, a cylinder or cone below the solids, is unknown; choose the hub as substrate, choose its faces, or set strategy.base; for a flat base use kind: solid</source>
+        <translation>le moyeu, un cylindre ou cône sous les solides, est inconnu ; choisissez le moyeu comme substrat, choisissez ses faces, ou fixez strategy.base ; pour une base plane utilisez kind: solid</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>the instruction that waits for an analogue input depends on options of the controller, which the post yaskawa cannot know</source>
+        <source>the instruction that waits for an analogue input depends on options of the controller, which the post yaskawa does not know</source>
         <translation>l&apos;instruction qui attend une entrée analogique dépend d&apos;options de la commande, que le post-processeur yaskawa ne peut pas connaître</translation>
     </message>
     <message>
@@ -12882,14 +12422,24 @@
         <translation>les instructions ne commencent pas comme celles d&apos;un job de robot</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/recognition.py"/>
+        <source>the inverse solutions do not reproduce the poses</source>
+        <translation>les solutions inverses ne reproduisent pas les poses</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>the job in the file is called {0}</source>
+        <translation>le job du fichier s&apos;appelle {0}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/remedies.py"/>
         <source>the job is feasible with {0}; tested, not applied</source>
         <translation>avec {0}, ce travail est faisable ; essayé, non appliqué</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
-        <source>the job is infeasible as it is; the search for a feasible change takes up to {0} min of processor time</source>
-        <translation>le travail est infaisable tel quel ; la recherche d&apos;un changement faisable demande jusqu&apos;à {0} min de processeur</translation>
+        <source>the job is infeasible; the search for a feasible change takes up to {0} min of processor time</source>
+        <translation>le travail est infaisable ; la recherche d&apos;un changement faisable demande jusqu&apos;à {0} min de processeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
@@ -12898,8 +12448,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/chord_error.py"/>
-        <source>the joint motion deviates from the bead between two points, near a singularity, no matter how many points are added; move the part in the cell, or choose another cell.branch</source>
+        <source>the joint motion deviates from the bead between two points near a singularity, no matter how many points are added; move the part in the cell, or choose another cell.branch</source>
         <translation>le mouvement articulaire quitte le cordon entre deux points, près d&apos;une singularité, quel que soit le nombre de points ajoutés ; déplacez la pièce dans la cellule, ou choisissez une autre cell.branch</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop.py"/>
+        <source>the joint path of the program was deleted; choose a joint path</source>
+        <translation>la trajectoire articulaire du programme a été supprimée ; choisissez une trajectoire articulaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
@@ -12913,18 +12468,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the joint {0} has no &lt;limit&gt;; add one, or make the joint continuous</source>
-        <translation>l&apos;articulation {0} n&apos;a pas de &lt;limit&gt; ; une qui tourne sans fin est continuous</translation>
+        <source>the joint {0} has no &lt;limit&gt;; add the limit, or make the joint continuous</source>
+        <translation>l&apos;articulation {0} n&apos;a pas de &lt;limit&gt; ; ajoutez la limite, ou rendez l&apos;articulation continuous</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the joint {0} has several &lt;{1}&gt;; keep one</source>
-        <translation>l&apos;articulation {0} a plusieurs &lt;{1}&gt; ; gardez-en un</translation>
+        <source>the joint {0} has several &lt;{1}&gt;; keep one element</source>
+        <translation>l&apos;articulation {0} a plusieurs &lt;{1}&gt; ; gardez un seul élément</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the joint {0} is {1}; only {2} and fixed ones are read</source>
-        <translation>l&apos;articulation {0} est {1} ; seules {2} et fixed sont lues</translation>
+        <source>the joint {0} is {1}; use only {2} and fixed joints</source>
+        <translation>l&apos;articulation {0} est {1} ; utilisez seulement des articulations {2} et fixed</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -12933,13 +12488,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
-        <source>the key appears twice (lines {0} and {1}); remove one</source>
-        <translation>la clé est là deux fois (lignes {0} et {1}) ; retirez-en une</translation>
+        <source>the key appears twice (lines {0} and {1}); remove one entry</source>
+        <translation>la clé apparaît deux fois (lignes {0} et {1}) ; retirez une entrée</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/parameters/filled.py"/>
+        <source>the key is for solids, not for cladding; use {0}</source>
+        <translation>la clé est pour les solides, pas pour le rechargement ; utilisez {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
+        <source>the key is missing; use the file as ur_calibration wrote it</source>
+        <translation>la clé manque ; utilisez le fichier tel que ur_calibration l&apos;a écrit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>the key {0} appears twice; remove one</source>
-        <translation>la clé {0} est là deux fois ; supprimez-en une</translation>
+        <source>the key {0} appears twice; remove one entry</source>
+        <translation>la clé {0} apparaît deux fois ; supprimez une entrée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
@@ -12948,8 +12513,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>the key {0} is missing; add it</source>
-        <translation>la clé {0} manque ; ajoutez-le</translation>
+        <source>the key {0} is missing; add the key</source>
+        <translation>la clé {0} manque ; ajoutez la clé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
@@ -12957,9 +12522,24 @@
         <translation>la clé {0} n&apos;est pas connue ; utilisez {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>the key {0} is unknown; did you mean {1}?</source>
+        <translation>la clé {0} est inconnue ; vouliez-vous dire {1} ?</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/fields.py"/>
+        <source>the key {0} is unknown; use one of {1}</source>
+        <translation>la clé {0} est inconnue ; utilisez l&apos;une de {1}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
         <source>the kinematics changes while the deposit is on</source>
         <translation>la cinématique change pendant que le dépôt est en marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>the kinematics of the machine is not supported: {0}; {1}</source>
+        <translation>la cinématique de la machine n&apos;est pas prise en charge : {0} ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/infill_dock.py"/>
@@ -12972,14 +12552,19 @@
         <translation>le dernier mouvement avant la commutation dure {0} s, moins que l&apos;avance de {1} s ; utilisez un program.trigger.lead qui ne dépasse pas cette durée, une distance de retrait plus grande avant la mise en marche, ou un strategy.chord_error plus grand avant l&apos;arrêt</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/shape/compare.py"/>
-        <source>the layer is predicted to end {0} mm above the start of the next one: up to here layers are {1} mm high on average instead of {2} mm; set strategy.layer_height to {3} mm, or change the wire feed</source>
-        <translation>d&apos;après la prédiction, cette couche finit {0} mm au-dessus du début prévu de la suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut, et {2} mm sont prévus ; mettez strategy.layer_height à {3} mm, ou changez ce que le fil apporte</translation>
+        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
+        <source>the layer closes around the hub, where strategy.fill = {0} is impossible, and is filled with {1}</source>
+        <translation>la couche se ferme autour du moyeu, où strategy.fill = {0} est impossible, et est remplie de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/shape/compare.py"/>
-        <source>the layer is predicted to end {0} mm below the start of the next one: up to here layers are {1} mm high on average instead of {2} mm; set strategy.layer_height to {3} mm, or change the wire feed</source>
-        <translation>d&apos;après la prédiction, cette couche finit {0} mm au-dessous du début prévu de la suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut, et {2} mm sont prévus ; mettez strategy.layer_height à {3} mm, ou changez ce que le fil apporte</translation>
+        <source>the layer is predicted to end {0} mm above the start of the next layer: up to here layers are {1} mm high on average instead of {2} mm; set strategy.layer_height to {3} mm, or change the wire feed</source>
+        <translation>d&apos;après la prédiction, la couche finit {0} mm au-dessus du début de la couche suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut au lieu de {2} mm ; fixez strategy.layer_height à {3} mm, ou changez l&apos;avance du fil</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/shape/compare.py"/>
+        <source>the layer is predicted to end {0} mm below the start of the next layer: up to here layers are {1} mm high on average instead of {2} mm; set strategy.layer_height to {3} mm, or change the wire feed</source>
+        <translation>d&apos;après la prédiction, la couche finit {0} mm au-dessous du début de la couche suivante : jusqu&apos;ici les couches font en moyenne {1} mm de haut au lieu de {2} mm ; fixez strategy.layer_height à {3} mm, ou changez l&apos;avance du fil</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_read.py"/>
@@ -12993,13 +12578,33 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the limits of {0} run from {1} to {2}; give the lower one first</source>
-        <translation>les limites de {0} vont de {1} à {2} ; donnez d&apos;abord la plus basse</translation>
+        <source>the limits of {0} run from {1} to {2}; give the lower limit first</source>
+        <translation>les limites de {0} vont de {1} à {2} ; donnez d&apos;abord la limite inférieure</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
+        <source>the line has {0} numbers instead of {1}; fill the gap, or remove the line</source>
+        <translation>la ligne a {0} nombres au lieu de {1} ; complétez la ligne, ou retirez-la</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the line interrupts the lines of another instruction</source>
+        <translation>la ligne interrompt les lignes d&apos;une autre instruction</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
+        <source>the line is empty; fill the gap, or remove the line</source>
+        <translation>la ligne est vide ; complétez la ligne, ou retirez-la</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/centre_line.py"/>
         <source>the line of {0} mm covers only {1} % of the volume</source>
         <translation>la ligne de {0} mm traverse {1} % du volume</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the line stops the robot, but the previous move is approximated</source>
+        <translation>la ligne arrête le robot, mais le mouvement précédent est lissé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/linear_approach.py"/>
@@ -13023,18 +12628,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the link {0} carries itself; correct parent and child of its joints</source>
+        <source>the link {0} carries itself; correct `parent` and `child` of its joints</source>
         <translation>le corps {0} se porte lui-même ; corrigez parent et child de ses articulations</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the link {0} does not carry {1}; choose others</source>
-        <translation>le corps {0} ne porte pas {1} ; choisissez-en d&apos;autres</translation>
+        <source>the link {0} does not carry {1}; choose other links</source>
+        <translation>le corps {0} ne porte pas {1} ; choisissez d&apos;autres corps</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the link {0} does not exist; choose an existing one</source>
-        <translation>il n&apos;y a pas de corps {0} ; nommez-en un qui existe</translation>
+        <source>the link {0} does not exist; choose an existing link</source>
+        <translation>le corps {0} n&apos;existe pas ; choisissez un corps existant</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -13048,28 +12653,38 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>the local distance between layers is {0} to {1} mm, the layer height {2} mm; set a larger strategy.tolerance to accept this</source>
-        <translation>la distance locale entre les couches est de {0} à {1} mm, la hauteur de couche de {2} mm ; réglez un strategy.tolerance plus grand pour l&apos;accepter</translation>
+        <source>the local distance between layers is {0} to {1} mm, the layer height {2} mm; set a larger strategy.tolerance to accept the deviation</source>
+        <translation>la distance locale entre couches est de {0} à {1} mm, la hauteur de couche de {2} mm ; fixez une plus grande strategy.tolerance pour accepter l&apos;écart</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>the local distance between layers is {0} to {1} mm, the layer height {2} mm; spacing: constant-distance is even</source>
-        <translation>la distance locale entre les couches est de {0} à {1} mm, la hauteur de couche de {2} mm ; spacing: constant-distance est égal</translation>
+        <source>the local distance between layers is {0} to {1} mm, the layer height {2} mm; use spacing: constant-distance for an even distance</source>
+        <translation>la distance locale entre couches est de {0} à {1} mm, la hauteur de couche de {2} mm ; utilisez spacing: constant-distance pour une distance égale</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>the loop reads another analogue input than the one that the program waits for</source>
+        <translation>la boucle lit une autre entrée analogique que celle que le programme attend</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/certificate/bound.py"/>
+        <source>the lower bound is undefined, as several solutions of the arm share a configuration; remove joints.certificate</source>
+        <translation>la borne inférieure n&apos;est pas définie, car plusieurs solutions du bras partagent une configuration ; retirez joints.certificate</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
-        <source>the machine does not reproduce them; see the deviations</source>
-        <translation>la machine ne les donne pas ; voyez les écarts</translation>
+        <source>the machine does not reproduce the poses; see the deviations</source>
+        <translation>la machine ne reproduit pas les poses ; voyez les écarts</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>the machine file has no controller.pulses_per_degree; add them</source>
-        <translation>le fichier machine n&apos;a pas de controller.pulses_per_degree ; ajoutez-les</translation>
+        <source>the machine file has no controller.pulses_per_degree; add the pulses per degree</source>
+        <translation>le fichier machine n&apos;a pas de controller.pulses_per_degree ; ajoutez les impulsions par degré</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
-        <source>the machine file has no controller.speed_unit; add it</source>
-        <translation>le fichier machine n&apos;a pas de controller.speed_unit ; ajoutez-le</translation>
+        <source>the machine file has no controller.speed_unit; add the unit</source>
+        <translation>le fichier machine n&apos;a pas de controller.speed_unit ; ajoutez l&apos;unité</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/clearance.py"/>
@@ -13077,14 +12692,34 @@
         <translation>le fichier machine n&apos;a pas de vitesses maximales</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/plots/canvas.py"/>
+        <source>the machine has no condition number</source>
+        <translation>la machine n&apos;a pas de conditionnement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
+        <source>the machine has no joint; add a joint for each axis</source>
+        <translation>la machine n&apos;a pas d&apos;articulation ; ajoutez une articulation par axe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/draft.py"/>
+        <source>the machine has two rotary axes and no tool redundancy; open the map of a robot</source>
+        <translation>la machine a deux axes rotatifs et pas de rotation libre ; ouvrez la carte d&apos;un robot</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/inverse/opw_recognition.py"/>
+        <source>the machine has {0} axes, {1} prismatic</source>
+        <translation>la machine a {0} axes, dont {1} prismatiques</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>the machine stores the lines after it and does not run them; remove it and its M29</source>
-        <translation>la machine stocke les lignes qui le suivent sans les exécuter ; retirez-le, avec son M29</translation>
+        <source>the machine stores the following lines without running them; remove the command and its M29</source>
+        <translation>la machine stocke les lignes suivantes sans les exécuter ; retirez la commande et son M29</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in total, so that at least {4} s pass before it returns to a solid</source>
-        <translation>la machine attend avant {0} de {1} couches, jusqu&apos;à {2} s et {3} s en tout, pour qu&apos;on ne revienne à aucun solide avant {4} s</translation>
+        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in total, so that at least {4} s pass between two layers of a solid</source>
+        <translation>la machine attend avant {0} de {1} couches, jusqu&apos;à {2} s et {3} s en tout, afin qu&apos;au moins {4} s passent entre deux couches d&apos;un solide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/cooling_waits.py"/>
@@ -13093,8 +12728,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in total, so that every layer takes at least {4} s and at least {5} s pass before it returns to a solid</source>
-        <translation>la machine attend avant {0} couches sur {1}, jusqu&apos;à {2} s et {3} s en tout, afin qu&apos;aucune couche ne dure moins de {4} s et qu&apos;on ne revienne à aucun solide avant {5} s</translation>
+        <source>the machine waits before {0} of {1} layers, up to {2} s and {3} s in total, so that every layer takes at least {4} s and at least {5} s pass between two layers of a solid</source>
+        <translation>la machine attend avant {0} couches sur {1}, jusqu&apos;à {2} s et {3} s en tout, afin que chaque couche dure au moins {4} s et qu&apos;au moins {5} s passent entre deux couches d&apos;un solide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
@@ -13107,13 +12742,18 @@
         <translation>la matrice n&apos;a pas d&apos;inverse ; donnez celle de la commande</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
+        <source>the matrix is not made of signs and a coupling of axes 2 and 3; copy the original file</source>
+        <translation>la matrice n&apos;est pas faite de signes et d&apos;un couplage des axes 2 et 3 ; copiez le fichier d&apos;origine</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>the measured points cannot be read ({0}); check the path</source>
         <translation>les points mesurés ne peuvent pas être lus ({0}) ; vérifiez le chemin</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>the memory of the controller is unknown; look it up</source>
+        <source>the memory of the controller is unknown; look up its size</source>
         <translation>la capacité de la commande n&apos;est pas connue ici ; vérifiez-la</translation>
     </message>
     <message>
@@ -13128,23 +12768,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; close the holes (Mesh, Close holes) or export it again, or deposit it as a wall</source>
-        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2}, et {3} de plus ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; close the holes (Mesh, Close holes), export the mesh again, or deposit it as a wall</source>
+        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2}, et {3} autres ; fermez les trous (Mesh, Remplir les trous), exportez le maillage de nouveau, ou déposez-le comme paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; holes up to strategy.mend = {4} mm are closed; close the holes (Mesh, Close holes) or export it again, or deposit it as a wall</source>
-        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2}, et {3} de plus ; les trous jusqu&apos;à strategy.mend = {4} mm sont fermés ; fermez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi</translation>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}, and {3} more; holes up to strategy.mend = {4} mm are closed; close the holes (Mesh, Close holes), export the mesh again, or deposit it as a wall</source>
+        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2}, et {3} autres ; les trous jusqu&apos;à strategy.mend = {4} mm sont fermés ; fermez les trous (Mesh, Remplir les trous), exportez le maillage de nouveau, ou déposez-le comme paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; close the holes (Mesh, Close holes) or export it again, or deposit it as a wall</source>
-        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; remplissez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi si c&apos;en est une</translation>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; close the holes (Mesh, Close holes), export the mesh again, or deposit it as a wall</source>
+        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; fermez les trous (Mesh, Remplir les trous), exportez le maillage de nouveau, ou déposez-le comme paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
-        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; holes up to strategy.mend = {3} mm are closed; close the holes (Mesh, Close holes) or export it again, or deposit it as a wall</source>
-        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; les trous jusqu&apos;à strategy.mend = {3} mm sont fermés ; fermez les trous (Mesh, Remplir les trous) ou exportez-le à nouveau, ou déposez-le comme paroi</translation>
+        <source>the mesh has a hole: {0} edges, {1} mm across, at {2}; holes up to strategy.mend = {3} mm are closed; close the holes (Mesh, Close holes), export the mesh again, or deposit it as a wall</source>
+        <translation>le maillage a un trou : {0} arêtes, {1} mm de large, en {2} ; les trous jusqu&apos;à strategy.mend = {3} mm sont fermés ; fermez les trous (Mesh, Remplir les trous), exportez le maillage de nouveau, ou déposez-le comme paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -13160,6 +12800,11 @@
         <location filename="../../freecad_am/brep/walls/sheet.py"/>
         <source>the mesh has no triangles; choose a closed mesh or a solid part</source>
         <translation>le maillage n&apos;a pas de triangles ; choisissez un maillage fermé ou une pièce solide</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
+        <source>the mesh has no {0}; choose from the open ends of the mesh, sorted by height: {1}</source>
+        <translation>le maillage n&apos;a pas de {0} ; choisissez parmi les extrémités ouvertes du maillage, triées par hauteur : {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/sheet.py"/>
@@ -13197,9 +12842,9 @@
         <translation>le module ne règle pas base, outil, vitesse et lissage avant le mouvement</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/kuka/read.py"/>
-        <source>the move before it is approximated, but this line stops the robot</source>
-        <translation>le mouvement précédent est lissé, mais cette ligne arrête le robot</translation>
+        <location filename="../../freecad_am/posts/abb/modules.py"/>
+        <source>the module is called {0}, but the file has another name, or another module has the same name</source>
+        <translation>le module s&apos;appelle {0}, mais le fichier a un autre nom, ou un autre module a le même nom</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -13212,14 +12857,39 @@
         <translation>le mouvement a une autre vitesse quand l&apos;arc est bloqué</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/posts/nc_read.py"/>
-        <source>the move names other axes than the first move</source>
-        <translation>le mouvement nomme d&apos;autres axes que le premier</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>the move {0} is not understood, or its position is missing</source>
         <translation>le mouvement {0} n&apos;est pas compris, ou sa position manque</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
+        <source>the moves of the file are {0}, but strategy.roles is {1}, so nothing remains to deposit; choose other roles</source>
+        <translation>les déplacements du fichier sont {0}, mais strategy.roles vaut {1}, donc il ne reste rien à déposer ; choisissez d&apos;autres rôles</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>the moves of the job use more than one track or station</source>
+        <translation>les mouvements du job emploient plus d&apos;un rail ou d&apos;une station</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the moves of the program use different external axes</source>
+        <translation>les mouvements du programme emploient des axes externes différents</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
+        <source>the name has more than {0} characters</source>
+        <translation>le nom a plus de {0} caractères</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
+        <source>the name is a reserved word</source>
+        <translation>le nom est un mot réservé</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/catalogue.py"/>
+        <source>the name is empty</source>
+        <translation>le nom est vide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/post.py"/>
@@ -13243,12 +12913,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>the nozzle deposits at 1 point below the platform, by {0} mm; correct its height, or the platform of the cell</source>
-        <translation>la buse dépose à 1 point sous le plateau, de {0} mm ; corrigez sa hauteur, ou le plateau de la cellule</translation>
+        <source>the nozzle deposits at 1 point below the platform, by {0} mm; correct the height of the point, or the platform of the cell</source>
+        <translation>la buse dépose en 1 point sous le plateau, à {0} mm ; corrigez la hauteur du point, ou le plateau de la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>the nozzle deposits at {0} points below the platform, here {1} mm; correct their heights, or the platform of the cell</source>
+        <source>the nozzle deposits at {0} points below the platform, here by {1} mm; correct the heights of these points, or the platform of the cell</source>
         <translation>la buse dépose à {0} points sous le plateau, ici de {1} mm ; corrigez leurs hauteurs, ou le plateau de la cellule</translation>
     </message>
     <message>
@@ -13268,38 +12938,38 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/nozzle_check.py"/>
-        <source>the nozzle touches {0} at {1} of {2} points; on parts of revolution it does not tilt away from fixtures: move them, or use a slimmer nozzle</source>
-        <translation>la buse touche {0} en {1} de {2} points ; sur les pièces de révolution elle n&apos;est pas écartée des montages : déplacez-les, ou utilisez une buse plus fine</translation>
+        <source>the nozzle touches {0} at {1} of {2} points, and on parts of revolution the nozzle does not tilt away from fixtures; move the fixtures, or use a slimmer nozzle</source>
+        <translation>la buse touche {0} en {1} de {2} points, et sur les pièces de révolution la buse ne s&apos;incline pas pour éviter les montages ; déplacez les montages, ou utilisez une buse plus fine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the nozzle touches {0} on the rapid to the bead; lift the part over it by cell.platform, or move it in cell.external</source>
-        <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
+        <source>the nozzle touches {0} on the rapid to the bead; move the obstacle in cell.obstacles, the part, or cell.deposition_point</source>
+        <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; déplacez l&apos;obstacle dans cell.obstacles, la pièce, ou cell.deposition_point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the nozzle touches {0} on the rapid to the bead; move it in cell.obstacles, the part or cell.deposition_point</source>
-        <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
+        <source>the nozzle touches {0} on the rapid to the bead; raise the part with cell.platform, or move the mechanism in cell.external</source>
+        <translation>la buse touche {0} pendant le déplacement rapide vers le cordon ; relevez la pièce par cell.platform, ou déplacez le mécanisme dans cell.external</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/nozzle_obstacles.py"/>
-        <source>the nozzle touches {0} on {1} move(s) while it deposits; lift the part over it by cell.platform, or move it in cell.external</source>
-        <translation>la buse touche {0} sur {1} mouvement(s) pendant qu’elle dépose ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
+        <source>the nozzle touches {0} on {1} move(s) while it deposits; move the obstacle in cell.obstacles, or move the part</source>
+        <translation>la buse touche {0} sur {1} mouvement(s) pendant le dépôt ; déplacez l&apos;obstacle dans cell.obstacles, ou déplacez la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/nozzle_obstacles.py"/>
-        <source>the nozzle touches {0} on {1} move(s) while it deposits; move it in cell.obstacles, or the part</source>
-        <translation>la buse touche {0} sur {1} mouvement(s) pendant le dépôt ; déplacez-le dans cell.obstacles, ou la pièce</translation>
+        <source>the nozzle touches {0} on {1} move(s) while it deposits; raise the part with cell.platform, or move the mechanism in cell.external</source>
+        <translation>la buse touche {0} sur {1} mouvement(s) pendant le dépôt ; relevez la pièce par cell.platform, ou déplacez le mécanisme dans cell.external</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the nozzle touches {0}; lift the part over it by cell.platform, or move it in cell.external</source>
-        <translation>la buse touche {0} ; relevez la pièce au-dessus par cell.platform, ou déplacez-le dans cell.external</translation>
+        <source>the nozzle touches {0}; move the obstacle in cell.obstacles, the part, or cell.deposition_point</source>
+        <translation>la buse touche {0} ; déplacez l&apos;obstacle dans cell.obstacles, la pièce, ou cell.deposition_point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
-        <source>the nozzle touches {0}; move it in cell.obstacles, the part or cell.deposition_point</source>
-        <translation>la buse touche {0} ; déplacez-le dans cell.obstacles, la pièce ou cell.deposition_point</translation>
+        <source>the nozzle touches {0}; raise the part with cell.platform, or move the mechanism in cell.external</source>
+        <translation>la buse touche {0} ; relevez la pièce par cell.platform, ou déplacez le mécanisme dans cell.external</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/in_language.py"/>
@@ -13322,9 +12992,129 @@
         <translation>le numéro de son MACHINE_DEF, de 2 à 16</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>the object has neither faces nor edges; choose another object</source>
+        <translation>l&apos;objet n&apos;a ni faces ni arêtes ; choisissez un autre objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/curves.py"/>
+        <source>the object has no edges to deposit as beads; choose edges, a wire or a sketch</source>
+        <translation>l&apos;objet n&apos;a pas d&apos;arêtes à déposer en cordons ; choisissez des arêtes, un fil ou une esquisse</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/shapes/tessellate.py"/>
+        <source>the object has no faces for the clearance check; choose a solid or a mesh</source>
+        <translation>l&apos;objet n&apos;a pas de faces pour la vérification du dégagement ; choisissez un solide ou un maillage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/shapes/tessellate.py"/>
+        <source>the object has no faces to compare points with; choose a solid or a surface</source>
+        <translation>l&apos;objet n&apos;a pas de faces auxquelles comparer les points ; choisissez un solide ou une surface</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>the object has no faces; choose a part with wall faces</source>
+        <translation>l&apos;objet n&apos;a pas de faces ; choisissez une pièce avec les faces de la paroi</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop.py"/>
+        <source>the object has no path; choose a toolpath, joint path or program</source>
+        <translation>l&apos;objet n&apos;a pas de trajectoire ; choisissez une trajectoire d&apos;outil, une trajectoire articulaire ou un programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/bodies.py"/>
+        <source>the object has no shape; choose an object with a shape</source>
+        <translation>l&apos;objet n&apos;a pas de forme ; choisissez un objet avec une forme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
+        <source>the object has no solid, but {0} closed shell(s) of {1} face(s); convert the shells to solids (Part, Convert to solid), or {2}</source>
+        <translation>l&apos;objet n&apos;a pas de solide, mais {0} coque(s) fermée(s) de {1} face(s) ; convertissez les coques en solides (Part, Convertir en solide), ou {2}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
+        <source>the object has no solid, but {0} open face(s): no face connects to the edge at {1} of {2}; {3}, or {4}</source>
+        <translation>l&apos;objet n&apos;a pas de solide, mais {0} face(s) ouverte(s) : aucune face n&apos;est jointe à l&apos;arête en {1} de {2} ; {3}, ou {4}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/curves.py"/>
+        <source>the object has no {0}, only {1} {2}(s), numbered from {3}1; correct the name</source>
+        <translation>l&apos;objet n&apos;a pas de {0}, mais {1} {2}(s), numérotées à partir de {3}1 ; corrigez le nom</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall.py"/>
+        <source>the object has {0} curved faces; name the wall faces in part.faces</source>
+        <translation>l&apos;objet a {0} faces courbes ; nommez les faces de la paroi dans part.faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
+        <source>the object is a closed mesh without selectable faces; cut out the surface to cover (Mesh, Cutting), or use the original CAD file</source>
+        <translation>l&apos;objet est un maillage fermé sans faces à choisir ; découpez la surface à couvrir (Mesh, Découper), ou utilisez le fichier CAO d&apos;origine</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
+        <source>the object is a solid whose curved faces ({0}) do not form one wall; select the wall faces, or name them in part.faces of a job</source>
+        <translation>l&apos;objet est un solide dont les faces courbes ({0}) ne forment pas une seule paroi ; sélectionnez les faces de la paroi, ou nommez-les dans part.faces d&apos;un travail</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/clad_faces.py"/>
+        <source>the object is a solid with {0} face(s), but no face is selected; select the faces to cover, or name them in part.faces of a job</source>
+        <translation>l&apos;objet est un solide de {0} face(s), mais aucune face n&apos;est sélectionnée ; sélectionnez les faces à recouvrir, ou nommez-les dans part.faces d&apos;une tâche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/simulation/player.py"/>
+        <source>the object is neither a joint path nor a program; select a joint path or a program</source>
+        <translation>l&apos;objet n&apos;est ni une trajectoire articulaire ni un programme ; sélectionnez une trajectoire articulaire ou un programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/scan.py"/>
+        <source>the object is neither a program nor an inspection; choose a program or an inspection</source>
+        <translation>l&apos;objet n’est ni un programme ni une inspection ; choisissez un programme ou une inspection</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/checks/placed.py"/>
+        <source>the object is neither a toolpath nor a joint path; choose a toolpath or a joint path</source>
+        <translation>l&apos;objet n&apos;est ni une trajectoire d&apos;outil ni une trajectoire articulaire ; choisissez l&apos;une des deux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/api.py"/>
+        <source>the object is not a cell; choose a cell</source>
+        <translation>l&apos;objet n&apos;est pas une cellule ; choisissez une cellule</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/redundancy_map/draft.py"/>
+        <source>the object is not a joint path; select a joint path</source>
+        <translation>l&apos;objet n&apos;est pas une trajectoire articulaire ; sélectionnez une trajectoire articulaire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/places.py"/>
+        <source>the object is not a link array; choose the object itself</source>
+        <translation>l&apos;objet n&apos;est pas un réseau de liens ; choisissez l&apos;objet lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/shapes/no_solid.py"/>
+        <source>the object is not a solid; {0}</source>
+        <translation>l&apos;objet n&apos;est pas un solide ; {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>the object is not a stage of the workbench; choose a stage</source>
+        <translation>l&apos;objet n&apos;est pas une étape de cet atelier ; choisissez une étape</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/shapes/cell_obstacles.py"/>
+        <source>the obstacle touches the nozzle at the first point of the job in every arm configuration; move the obstacle or the deposition point, and check that the pose is in the manufacturer&apos;s base frame and the file in mm</source>
+        <translation>l&apos;obstacle touche la buse au premier point du travail dans toute configuration du bras ; déplacez l&apos;obstacle ou le point de dépôt, et vérifiez que la pose est dans le repère de base du fabricant et le fichier en mm</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>the operation {0} deposits nothing; export only the operations that deposit</source>
+        <translation>l&apos;opération {0} ne dépose rien ; n&apos;exportez que les opérations qui déposent</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>the origin of another work offset is unknown; remove it</source>
-        <translation>l&apos;origine d&apos;un autre décalage de pièce est inconnue ; retirez-le</translation>
+        <source>the origin of another work offset is unknown; remove the command</source>
+        <translation>l&apos;origine d&apos;un autre décalage de pièce est inconnue ; retirez la commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
@@ -13333,8 +13123,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
-        <source>the pairs of points are collinear, so the part could rotate about their line; choose others</source>
-        <translation>les paires de points sont alignées, si bien que la pièce pourrait tourner autour de leur droite ; choisissez-en d&apos;autres</translation>
+        <source>the pairs of points are collinear, so the part could rotate about their line; choose pairs off this line</source>
+        <translation>les paires de points sont alignées, donc la pièce pourrait tourner autour de leur droite ; choisissez des paires hors de cette droite</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/suit.py"/>
+        <source>the parameter is for kind: solid, not for {0}; remove the parameter</source>
+        <translation>le paramètre est pour kind: solid, pas pour {0} ; retirez le paramètre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/arm_clearance.py"/>
@@ -13357,6 +13152,11 @@
         <translation>la pièce s&apos;approche à moins de {0} mm de {1}, ou le touche ; déplacez la pièce ou cell.deposition_point, essayez un autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>the part extends to {0} mm, beyond the limit of {1} mm, so a coordinate is damaged or the unit is wrong; export the part again</source>
+        <translation>la pièce s&apos;étend jusqu&apos;à {0} mm, au-delà de la limite de {1} mm, donc une coordonnée est endommagée ou l&apos;unité est fausse ; exportez la pièce de nouveau</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/layers/curved_field.py"/>
         <source>the part has no face to start from: none is on the plane through its lowest point along strategy.direction, or on the substrate; turn the part, set strategy.direction, or choose a substrate in contact</source>
         <translation>la pièce n&apos;a pas de face d&apos;où partir : aucune n&apos;est sur le plan par son point le plus bas selon strategy.direction, ni sur le substrat ; tournez la pièce, fixez strategy.direction, ou choisissez un substrat en contact</translation>
@@ -13368,8 +13168,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>the part has too few layers to blend back to the plan: the last one is up to {0} mm off; raise substrate.scan_band to use fewer layers</source>
-        <translation>la pièce a trop peu de couches pour ramener au plan : la dernière en est éloignée de {0} mm au plus ; un substrate.scan_band plus grand y ramène en moins de couches</translation>
+        <source>the part has too few layers to blend back to the plan: the last layer is up to {0} mm off; raise substrate.scan_band to blend within fewer layers</source>
+        <translation>la pièce a trop peu de couches pour ramener au plan : la dernière couche en est éloignée de {0} mm au plus ; augmentez substrate.scan_band pour ramener au plan en moins de couches</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/families/revolution.py"/>
+        <source>the part is a solid of revolution, but a wall of one bead would leave out {0} of its {1} cm3</source>
+        <translation>la pièce est un solide de révolution, mais une paroi d&apos;un cordon laisserait de côté {0} de ses {1} cm3</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>the part is several solids</source>
+        <translation>la pièce est faite de plusieurs solides</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
@@ -13397,9 +13207,19 @@
         <translation>la trajectoire entre deux points s&apos;écarte de la droite de {0} mm, plus que l&apos;erreur de corde</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/slicing/tubes/normal_layers.py"/>
-        <source>the planes normal to its centre line do not cut it in one curve each; choose other layers for the wall</source>
-        <translation>les plans normaux à sa ligne médiane ne la coupent pas en une courbe chacun ; choisissez d&apos;autres couches pour cette paroi</translation>
+        <location filename="../../freecad_am/gui/simulation/player.py"/>
+        <source>the path has no points to play; choose another path</source>
+        <translation>la trajectoire n&apos;a pas de points à jouer ; choisissez une autre trajectoire</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>the path is a folder; choose the file of the part</source>
+        <translation>le chemin est un dossier ; choisissez le fichier de la pièce</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/job_files.py"/>
+        <source>the path is not a file but a device, a pipe or a folder; name a file</source>
+        <translation>le chemin n&apos;est pas un fichier mais un périphérique, un tube ou un dossier ; nommez un fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/in_language.py"/>
@@ -13408,8 +13228,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
-        <source>the point repeats the previous line; remove it</source>
-        <translation>le point répète la ligne précédente ; retirez-le</translation>
+        <source>the point repeats the previous line; remove the line</source>
+        <translation>le point répète la ligne précédente ; retirez la ligne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
@@ -13433,13 +13253,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>the pose at all zeros is missing; add it</source>
-        <translation>la pose à zéro de tous les axes manque ; ajoutez-le</translation>
+        <source>the pose at all zeros is missing; add this pose</source>
+        <translation>la pose à zéro de tous les axes manque ; ajoutez cette pose</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/geometry_pages.py"/>
-        <source>the pose at the serial zeros is missing; enter it too</source>
-        <translation>la pose aux zéros en série manque ; saisissez-la aussi</translation>
+        <source>the pose at the serial zeros is missing; enter this pose too</source>
+        <translation>la pose aux zéros en série manque ; saisissez aussi cette pose</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
@@ -13447,9 +13267,9 @@
         <translation>la position dans le programme ne correspond pas à ses valeurs articulaires</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/planning/findings.py"/>
-        <source>the positioner is out of reach of the robot: the nearest point of the part is {0} mm from the shoulder, and arm and tool reach {1} mm; move the positioner nearer (cell.external)</source>
-        <translation>le positionneur est hors d&apos;atteinte du robot : le point de la pièce le plus proche est à {0} mm de l&apos;épaule, bras et outil s&apos;étendent à {1} mm au plus ; rapprochez le positionneur (cell.external)</translation>
+        <location filename="../../freecad_am/posts/yaskawa/read.py"/>
+        <source>the positions of the job are not pulses of one tool</source>
+        <translation>les positions du job ne sont pas des impulsions d&apos;un seul outil</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/post.py"/>
@@ -13488,8 +13308,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_numbers.py"/>
-        <source>the post {0} writes linear axes X Y Z and rotary axes of A B C, one each; the machine has {1}: name its joints mx my mz and a, b or c</source>
-        <translation>le post-processeur {0} écrit des axes linéaires X Y Z et des axes rotatifs parmi A B C, un de chaque ; la machine a {1} : nommez ses articulations mx my mz et a, b ou c</translation>
+        <source>the post {0} writes linear axes X Y Z and rotary axes A B C, each once, but the machine has {1}; name the joints of the machine mx my mz and a, b or c</source>
+        <translation>le post-processeur {0} écrit des axes linéaires X Y Z et des axes rotatifs A B C, chacun une fois, mais la machine a {1} ; nommez les articulations de la machine mx my mz et a, b ou c</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -13502,14 +13322,44 @@
         <translation>le profil des faces ne mène pas d’un bord à l’autre</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>the program calls other programs than planned</source>
-        <translation>le programme appelle d&apos;autres programmes que prévu</translation>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>the program calls another program within a bead</source>
+        <translation>le programme appelle un autre programme au sein d&apos;un cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <source>the program calls itself</source>
+        <translation>le programme s&apos;appelle lui-même</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>the program calls {0}, which is missing, so its motions and signals are not simulated; add its file, or check it on the controller</source>
-        <translation>le programme appelle {0}, qui manque, si bien que ses mouvements et signaux ne sont pas parcourus ; ajoutez son fichier, ou vérifiez-le sur la commande</translation>
+        <source>the program calls {0}, which is missing, so its motions and signals are not simulated; add the file of the called program, or check its motion on the controller</source>
+        <translation>le programme appelle {0}, qui manque, donc ses mouvements et signaux ne sont pas simulés ; ajoutez le fichier du programme appelé, ou vérifiez son mouvement sur la commande</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
+        <source>the program contains characters other than ASCII</source>
+        <translation>le programme contient d&apos;autres caractères que l&apos;ASCII</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the program does not end the motion and switch the deposit off</source>
+        <translation>le programme ne termine pas le mouvement et ne coupe pas le dépôt</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>the program does not end with M17, or calls itself</source>
+        <translation>le programme ne finit pas par M17, ou s&apos;appelle lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>the program does not end with M30, or calls itself</source>
+        <translation>le programme ne finit pas par M30, ou s&apos;appelle lui-même</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>the program does not set the axes to which the feed applies (FGROUP)</source>
+        <translation>le programme ne règle pas les axes auxquels l&apos;avance s&apos;applique (FGROUP)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -13517,14 +13367,34 @@
         <translation>le programme ne s&apos;arrête pas si une partie ne peut pas être chargée</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>the program ends before its last move</source>
+        <translation>le programme finit avant son dernier mouvement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>the program ends with the deposit on</source>
+        <translation>le programme finit avec le dépôt en marche</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>the program ends with the deposit on, or within a loop</source>
+        <translation>le programme finit avec le dépôt en marche, ou dans une boucle</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
         <source>the program ends with the deposit still on</source>
         <translation>le programme se termine avec le dépôt encore en marche</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>the program ends within a loop</source>
+        <translation>le programme finit dans une boucle</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/followed.py"/>
-        <source>the program gives turn numbers for axes other than the last one, which cannot be simulated; use joint values for these positions</source>
-        <translation>le programme donne des numéros de tour pour d&apos;autres axes que le dernier, ce qui ne peut pas être simulé ; donnez ces positions en valeurs articulaires</translation>
+        <source>the program gives turn numbers for axes other than the last axis, which cannot be simulated; use joint values for these positions</source>
+        <translation>le programme donne des numéros de tour pour d&apos;autres axes que le dernier, ce qui ne peut pas être simulé ; utilisez des valeurs articulaires pour ces positions</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/interpolation.py"/>
@@ -13537,14 +13407,19 @@
         <translation>le programme n&apos;a pas de configurations de bras ; utilisez `motion: joint`</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read.py"/>
+        <source>the program has no moves</source>
+        <translation>le programme n&apos;a pas de mouvements</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
         <source>the program has no moves; check its start</source>
         <translation>le programme ne contient pas de mouvements ; vérifiez où il commence</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
-        <source>the program has no name; enter one</source>
-        <translation>le programme n&apos;a pas de nom ; donnez-en un</translation>
+        <source>the program has no name; enter a name</source>
+        <translation>le programme n&apos;a pas de nom ; saisissez un nom</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/post.py"/>
@@ -13562,9 +13437,44 @@
         <translation>le programme ne dit pas où est la bride, dont dépendent les lissages ; replanifiez la trajectoire articulaire</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <source>the program mixes joint and Cartesian positions</source>
+        <translation>le programme mêle des positions articulaires et cartésiennes</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the program mixes positions in more than one frame</source>
+        <translation>le programme mêle des positions dans plus d&apos;un repère</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>the program moves before G1, G21, G90 and a work offset are set</source>
+        <translation>le programme fait un mouvement avant que G1, G21, G90 et une origine pièce soient réglés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>the program moves before G1, G90 and G710 are set</source>
+        <translation>le programme fait un mouvement avant que G1, G90 et G710 soient réglés</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/read.py"/>
+        <source>the program moves other motion groups than the previous programs</source>
+        <translation>le programme déplace d&apos;autres groupes de mouvement que les programmes précédents</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/read_back/points.py"/>
-        <source>the program moves the tip up to {0} mm away from the planned point, more than its rounding explains</source>
+        <source>the program moves the tip up to {0} mm away from the planned point, more than the rounding of its numbers explains</source>
         <translation>le programme amène la pointe jusqu&apos;à {0} mm du point planifié, plus que ses arrondis n&apos;expliquent</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
+        <source>the program moves without a tool or platform, or in joint values where positions are given</source>
+        <translation>le programme fait un mouvement sans outil ou sans plateau, ou en valeurs articulaires là où des positions sont données</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <source>the program moves without setting a feed</source>
+        <translation>le programme fait un mouvement sans régler d&apos;avance</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
@@ -13573,38 +13483,53 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the program names arm configurations, but the machine has none</source>
-        <translation>le programme nomme des configurations du bras, mais la machine n&apos;en a pas</translation>
+        <source>the program names arm configurations, but the machine has no configurations</source>
+        <translation>le programme nomme des configurations du bras, mais la machine n&apos;a pas de configurations</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>the program of {0} will have about {1} points in {2} files, {3} MB: {4}. A larger strategy.chord_error or strategy.layer_height makes it smaller; program.max_points limits the size of a file</source>
+        <source>the program of {0} will have about {1} points in {2} files, {3} MB: {4}; use a larger strategy.chord_error or strategy.layer_height for a smaller program, and program.max_points for smaller files</source>
         <translation>le programme de {0} aura environ {1} points dans {2} fichiers, {3} Mo : {4}. Un plus grand strategy.chord_error ou strategy.layer_height le réduit ; program.max_points fixe la taille d&apos;un fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the program selects another frame or tool than {0} and {1}</source>
-        <translation>le programme choisit un autre repère ou outil que {0} et {1}</translation>
+        <source>the program selects a frame or tool that differs from {0} and {1}</source>
+        <translation>le programme choisit un repère ou un outil qui diffère de {0} et {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>the program selects {0} {1}, but the job has {2}: the simulation uses that of the cell; compare the two, and correct the program or the job</source>
-        <translation>le programme choisit {0} {1}, mais le travail a {2} : la simulation emploie celui de la cellule ; comparez les deux, et corrigez le programme ou le travail</translation>
+        <source>the program selects {0} {1}, but the job has {2}, which the simulation uses; correct the number in the program or in the job</source>
+        <translation>le programme choisit {0} {1}, mais le travail a {2}, que la simulation utilise ; corrigez le numéro dans le programme ou dans le travail</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>the program sends another schedule than planned</source>
-        <translation>le programme transmet un autre programme de soudage que prévu</translation>
+        <location filename="../../freecad_am/posts/siemens/read.py"/>
+        <source>the program sends a schedule within a bead</source>
+        <translation>le programme transmet un programme de soudage au sein d&apos;un cordon</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/nc_read.py"/>
+        <source>the program sets a second analogue output</source>
+        <translation>le programme règle une seconde sortie analogique</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/ur/read.py"/>
+        <source>the program sets tool or platform a second time</source>
+        <translation>le programme règle l&apos;outil ou le plateau une seconde fois</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/followed.py"/>
-        <source>the program starts with a position that has no arm configuration; set one in the cell, such as branch: [front, up, flip]</source>
-        <translation>le programme commence par une position sans configuration du bras ; indiquez-en une dans la cellule, comme branch: [front, up, flip]</translation>
+        <source>the program starts with a position without arm configuration; set the configuration in the cell, such as branch: [front, up, flip]</source>
+        <translation>le programme commence par une position sans configuration du bras ; indiquez la configuration dans la cellule, comme branch: [front, up, flip]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/interpolation.py"/>
         <source>the program stops at the point or rounds the corner differently than planned</source>
         <translation>le programme s&apos;arrête au point ou arrondit l&apos;angle autrement que prévu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/abb/columns.py"/>
+        <source>the program switches a second output</source>
+        <translation>le programme commute une seconde sortie</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>
@@ -13613,12 +13538,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>the program switches the deposit on although it is already on</source>
-        <translation>le programme met le dépôt en marche alors qu&apos;il l&apos;est déjà</translation>
+        <source>the program switches the deposit on while the deposit is already on</source>
+        <translation>le programme met le dépôt en marche alors que le dépôt est déjà en marche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/points.py"/>
-        <source>the program tilts the tool by up to {0} deg off the plan, more than its rounding explains</source>
+        <source>the program tilts the tool by up to {0} deg off the plan, more than the rounding of its numbers explains</source>
         <translation>le programme incline l&apos;outil jusqu&apos;à {0} deg hors du plan prévu, plus que ses arrondis n&apos;expliquent</translation>
     </message>
     <message>
@@ -13627,19 +13552,14 @@
         <translation>le programme tourne l&apos;outil autrement que prévu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/interpolation.py"/>
-        <source>the program uses another arm configuration or other turns than planned</source>
-        <translation>le programme emploie une autre configuration du bras ou d&apos;autres tours que prévu</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/read_back/events.py"/>
         <source>the program waits differently than planned</source>
         <translation>le programme attend autrement que prévu</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/read_back/events.py"/>
-        <source>the program waits for another temperature than planned</source>
-        <translation>le programme attend une autre température que prévu</translation>
+        <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
+        <source>the program waits for an analogue input within a bead</source>
+        <translation>le programme attend une entrée analogique au sein d&apos;un cordon</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/events.py"/>
@@ -13648,8 +13568,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/program.py"/>
-        <source>the program, read back, differs from the planned path; do not use it</source>
-        <translation>le programme relu diffère de la trajectoire planifiée ; ne l&apos;utilisez pas</translation>
+        <source>the program, read back, differs from the planned path; do not run the program</source>
+        <translation>le programme relu diffère de la trajectoire planifiée ; n&apos;exécutez pas le programme</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>the programs called by the program differ from the plan</source>
+        <translation>les programmes appelés par le programme diffèrent de la planification</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the project names several data files, but exactly one is expected</source>
+        <translation>le projet nomme plusieurs fichiers de données, mais un seul est attendu</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -13678,7 +13608,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/filling/centre.py"/>
-        <source>the region at {0} is {1} mm wide, narrower than a bead ({2} mm); use thin = single, a narrower bead or a margin</source>
+        <source>the region at {0} is {1} mm wide, narrower than a bead ({2} mm); use strategy.thin: single, a narrower bead or a margin</source>
         <translation>la région en {0} est large de {1} mm, moins qu&apos;un cordon ({2} mm) ; choisissez thin = single, un cordon plus étroit ou une marge</translation>
     </message>
     <message>
@@ -13687,9 +13617,14 @@
         <translation>les points mesurés ne se posent pas sur la pièce ; donnez des paires de points pour commencer</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/objects/current.py"/>
+        <source>the result does not match its inputs ({0}); recompute the object first</source>
+        <translation>le résultat ne correspond pas à ses entrées ({0}) ; recalculez d&apos;abord l&apos;objet</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/results/store.py"/>
-        <source>the result is missing; recompute it</source>
-        <translation>il n&apos;y a pas encore de résultat ; recalculez-le</translation>
+        <source>the result is missing; recompute the object</source>
+        <translation>le résultat manque ; recalculez l&apos;objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/rapids/moves_between_beads.py"/>
@@ -13698,8 +13633,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
-        <source>the robot cannot keep its time, speed or blend</source>
-        <translation>le robot ne peut pas tenir sa durée, sa vitesse ou son lissage</translation>
+        <source>the robot cannot keep the time, speed or blend of the move</source>
+        <translation>le robot ne peut pas tenir le temps, la vitesse ou l&apos;arrondi du mouvement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/planning/findings.py"/>
+        <source>the robot cannot reach the positioner: the nearest point of the part is {0} mm from the shoulder, but arm and tool reach only {1} mm; move the positioner nearer (cell.external)</source>
+        <translation>le robot ne peut pas atteindre le positionneur : le point le plus proche de la pièce est à {0} mm de l&apos;épaule, mais le bras et l&apos;outil n&apos;atteignent que {1} mm ; rapprochez le positionneur (cell.external)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
@@ -13712,33 +13652,58 @@
         <translation>le vecteur de rotation a une longueur de {0} rad, plus d&apos;un tour ; donnez RX RY RZ en rad, comme le pupitre les affiche</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the routine {0} and the file have different names; rename one of them</source>
+        <translation>la routine {0} et le fichier ont des noms différents ; renommez l&apos;un des deux</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
         <source>the row has more values than columns; write decimals with a point</source>
         <translation>il a plus de valeurs que de colonnes ; écrivez les décimales avec un point</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
-        <source>the row has {0} values, the first {1}: commas may be decimal separators too; export it with decimal points</source>
-        <translation>la ligne a {0} valeurs, la première {1} : les virgules sont peut-être aussi des séparateurs décimaux ; exportez-le avec des points décimaux</translation>
+        <source>the row has {0} values, the first {1}, so commas may be decimal separators too; export the file with decimal points</source>
+        <translation>la ligne a {0} valeurs, la première {1}, donc les virgules sont peut-être aussi des séparateurs décimaux ; exportez le fichier avec des points décimaux</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/planned.py"/>
+        <source>the scan cannot be aligned with {0}: {1}</source>
+        <translation>la numérisation ne peut pas être alignée avec {0} : {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/scan_heights.py"/>
-        <source>the scan extends over {0} mm, {1} over {2} mm; check its unit, substrate.scan_unit, and the scanned object</source>
-        <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; vérifiez son unité, substrate.scan_unit, et ce qui a été numérisé</translation>
+        <source>the scan extends over {0} mm, {1} over {2} mm; check substrate.scan_unit and the scanned object</source>
+        <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; vérifiez substrate.scan_unit et l&apos;objet numérisé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/scan_heights.py"/>
-        <source>the scan extends over {0} mm, {1} over {2} mm; in {3} the size would match; set it as substrate.scan_unit</source>
-        <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; en {3} la taille conviendrait ; fixez-le comme substrate.scan_unit</translation>
+        <source>the scan extends over {0} mm, {1} over {2} mm; the size would match in {3}; set this unit as substrate.scan_unit</source>
+        <translation>la numérisation s&apos;étend sur {0} mm, {1} sur {2} mm ; la taille conviendrait en {3} ; fixez cette unité comme substrate.scan_unit</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/planned.py"/>
+        <source>the scan fits equally well on the part rotated by {0} deg, so its orientation is ambiguous; give three pairs of points as substrate.scan_pairs, or measure in part coordinates</source>
+        <translation>la numérisation convient aussi bien à la pièce tournée de {0} deg, donc son orientation est ambiguë ; donnez trois paires de points comme substrate.scan_pairs, ou mesurez dans les coordonnées de la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>the scan is {0} mm away from layer {1} at {2}, more than substrate.scan_within = {3} mm; check that it shows the right part, in the right unit and position</source>
+        <source>the scan is {0} mm away from layer {1} at {2}, more than substrate.scan_within = {3} mm; check that the scan shows the right part, in the right unit and position</source>
         <translation>la numérisation est à {0} mm de la couche {1} en {2}, plus que substrate.scan_within = {3} mm ; vérifiez qu&apos;elle montre la bonne pièce, dans la bonne unité et à la bonne place</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>the schedule in the program differs from the plan</source>
+        <translation>le programme de soudage transmis diffère de la planification</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the schedule is set ahead of the motion, or has too few outputs for the number</source>
+        <translation>le programme de soudage est réglé en avance sur le mouvement, ou a trop peu de sorties pour le numéro</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/turns/unwrap.py"/>
-        <source>the seams of {0} beads were moved to keep an axis within limits</source>
+        <source>the seams of {0} beads were moved to keep an axis within its limits</source>
         <translation>les coutures de {0} cordons ont été déplacées pour garder un axe dans ses limites</translation>
     </message>
     <message>
@@ -13748,8 +13713,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
-        <source>the search for curved layers on a grid of about {0} nodes takes about {1} min of processor time; a larger strategy.layer_height, or layers: planes, takes less</source>
-        <translation>les couches courbes sont cherchées sur une grille d&apos;environ {0} nœuds, ce qui prend environ {1} min de processeur ; un strategy.layer_height plus grand, ou layers: planes, en prend moins</translation>
+        <source>the search for curved layers on a grid of about {0} nodes takes about {1} min of processor time; use a larger strategy.layer_height, or layers: planes, to save time</source>
+        <translation>la recherche de couches courbes sur une grille d&apos;environ {0} nœuds prend environ {1} min de processeur ; utilisez un plus grand strategy.layer_height, ou layers: planes, pour gagner du temps</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/place.py"/>
@@ -13763,18 +13728,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/cladding.py"/>
-        <source>the selected faces of {0} share no axis of revolution, and the part is thicker there than a bead of {1} mm, so they are covered</source>
-        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe, et elle y est plus épaisse qu&apos;un cordon de {1} mm, elles sont donc recouvertes</translation>
+        <source>the selected faces of {0} share no axis of revolution, and the part is thicker there than a bead of {1} mm, so these faces are covered</source>
+        <translation>les faces choisies de {0} ne partagent aucun axe de révolution, et la pièce y est plus épaisse qu&apos;un cordon de {1} mm, donc ces faces sont recouvertes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/surface.py"/>
-        <source>the selected faces of {0} share no axis of revolution, so they are a wall that starts on the platform if nothing else supports it</source>
-        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi qui part du plateau là où rien ne la porte</translation>
+        <source>the selected faces of {0} share no axis of revolution, so these faces are a wall, which starts on the platform without another support</source>
+        <translation>les faces choisies de {0} ne partagent aucun axe de révolution, donc ces faces sont une paroi, qui part du plateau sans autre appui</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/surface.py"/>
-        <source>the selected faces of {0} share no axis of revolution, so they are a wall; it needs a substrate, or start edges</source>
-        <translation>des faces de {0} sont choisies, qui ne tournent pas autour d&apos;un axe : c&apos;est une paroi ; il lui faut un substrat, ou des arêtes d&apos;où partir</translation>
+        <source>the selected faces of {0} share no axis of revolution, so these faces are a wall; choose a substrate, or start edges</source>
+        <translation>les faces choisies de {0} ne partagent aucun axe de révolution, donc ces faces sont une paroi ; choisissez un substrat, ou des arêtes de départ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/revolution.py"/>
@@ -13788,8 +13753,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>the set {0} is missing; add it</source>
-        <translation>le jeu {0} manque ; ajoutez-le</translation>
+        <source>the set {0} is missing; add the set</source>
+        <translation>le jeu {0} manque ; ajoutez le jeu</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/toolpath.py"/>
+        <source>the setting applies to the whole program, not to one feature; move it to the top level</source>
+        <translation>le réglage vaut pour tout le programme, et non pour un élément ; mettez-le au premier niveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/layers/curved_field.py"/>
+        <source>the setting needs planar layers; use {0}, or layers: planes</source>
+        <translation>le réglage demande des couches planes ; utilisez {0}, ou layers: planes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -13803,6 +13778,26 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>the shape has no face of measurable width; choose another object</source>
+        <translation>la forme n&apos;a aucune face de largeur mesurable ; choisissez un autre objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>the shape has no {0}; choose a face from Face1 to Face{1}</source>
+        <translation>la forme n&apos;a pas de {0} ; choisissez une face de Face1 à Face{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/curves.py"/>
+        <source>the shape has no {0}; choose an edge from Edge1 to Edge{1}</source>
+        <translation>la forme n&apos;a pas de {0} ; choisissez une arête de Edge1 à Edge{1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/curves.py"/>
+        <source>the shape has {0} edges, but a guide uses only some of them; name these edges, as in edges: [Edge1]</source>
+        <translation>la forme a {0} arêtes, mais un guide n&apos;en utilise que quelques-unes ; nommez ces arêtes, comme dans edges: [Edge1]</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
         <source>the shape is empty; choose an object with a shape</source>
         <translation>la forme est vide ; choisissez un objet qui a une forme</translation>
     </message>
@@ -13813,13 +13808,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>the shape of {0} is unknown, so nozzle, torch and robot are not checked against it; add bodies to its machine file, or list its fixed parts in cell.obstacles</source>
-        <translation>la forme de {0} est inconnue, si bien que buse, torche et robot ne sont pas contrôlés par rapport à lui ; ajoutez bodies à son fichier machine, ou énumérez ses parties fixes dans cell.obstacles</translation>
+        <source>the shape of {0} is unknown, so nozzle, torch and robot are not checked against this mechanism; add bodies to its machine file, or list its fixed parts in cell.obstacles</source>
+        <translation>la forme de {0} est inconnue, donc buse, torche et robot ne sont pas contrôlés par rapport à ce mécanisme ; ajoutez bodies à son fichier machine, ou énumérez ses parties fixes dans cell.obstacles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/feature.py"/>
         <source>the shape to deposit, or some of its faces</source>
         <translation>la forme à déposer, ou certaines de ses faces</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/kuka/read.py"/>
+        <source>the signal is declared after an instruction, but declarations come first</source>
+        <translation>le signal est déclaré après une instruction, mais les déclarations viennent d&apos;abord</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -13828,8 +13828,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>the slicer&apos;s roles name triangles {0} to {1} of object {2}, which has {3}</source>
-        <translation>les rôles du trancheur nomment les triangles {0} à {1} de l&apos;objet {2}, qui en a {3}</translation>
+        <source>the slicer&apos;s roles name triangles {0} to {1} of object {2}, which has only {3} triangles</source>
+        <translation>les rôles du trancheur nomment les triangles {0} à {1} de l&apos;objet {2}, qui n&apos;a que {3} triangles</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/solids/standing.py"/>
+        <source>the solid and {0} overlap, as at {1}, and the overlap would be deposited twice; fuse the two solids, or move one of them</source>
+        <translation>le solide et {0} se recouvrent, comme en {1}, et le recouvrement serait déposé deux fois ; fusionnez les deux solides, ou déplacez l&apos;un d&apos;eux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/sheet.py"/>
@@ -13847,6 +13852,16 @@
         <translation>le solide finit après une section</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/layers/centre_line.py"/>
+        <source>the solid has no cross-section at its base</source>
+        <translation>le solide n&apos;a pas de section à sa base</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/revolution/wall.py"/>
+        <source>the solid has no {0} wall; use wall: outer</source>
+        <translation>le solide n&apos;a pas de paroi {0} ; utilisez wall: outer</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>the solid is inside out (volume {0} mm3, near {1}); flip its normals (Mesh, Flip normals)</source>
         <translation>le solide est retourné (volume {0} mm3, près de {1}) ; inversez ses normales (Mesh, Inverser les normales)</translation>
@@ -13860,6 +13875,11 @@
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
         <source>the solid touches itself along an edge, so its inside is undefined</source>
         <translation>le solide se touche lui-même le long d’une arête, donc son intérieur est indéfini</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/slicing/solids/equidistant.py"/>
+        <source>the solid winds {0} times around the cone and would overlap when unrolled; divide the solid into shorter solids</source>
+        <translation>le solide s&apos;enroule {0} fois autour du cône et se recouvrirait une fois déroulé ; divisez-le en solides plus courts</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
@@ -13877,14 +13897,39 @@
         <translation>la vitesse dans le programme diffère du plan</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/staubli/read.py"/>
+        <source>the speed limit of the move or the fixture of its tool is not understood</source>
+        <translation>la limite de vitesse du mouvement ou la fixation de son outil n&apos;est pas comprise</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/posts/fanuc/post.py"/>
+        <source>the speed of linear moves may include the motion of the track, depending on the setup of the rail; use `motion: joint`, which keeps the speed by times</source>
+        <translation>la vitesse des mouvements linéaires peut inclure le mouvement du rail, selon la configuration du rail ; utilisez `motion: joint`, qui tient la vitesse par des temps</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
         <source>the speed {0} is not valid</source>
         <translation>la vitesse {0} n&apos;en est pas une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/results/store.py"/>
-        <source>the stored result cannot be read ({0}); recompute it</source>
-        <translation>le résultat enregistré ne peut pas être lu ({0}) ; recalculez-le</translation>
+        <source>the stored result cannot be read ({0}); recompute the object</source>
+        <translation>le résultat enregistré ne peut pas être lu ({0}) ; recalculez l&apos;objet</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/walls/surface_patch.py"/>
+        <source>the surface of the face ({0}) cannot be converted to a spline; rebuild the face, for instance as a loft</source>
+        <translation>la surface de la face ({0}) ne peut pas être convertie en spline ; reconstruisez la face, par exemple par un lissage</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
+        <source>the table has no points; {0}</source>
+        <translation>le tableau n&apos;a pas de points ; {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
+        <source>the table has {0} columns; {1}</source>
+        <translation>le tableau a {0} colonnes ; {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
@@ -13907,9 +13952,9 @@
         <translation>la balise {0} n&apos;est pas admise ici ; écrivez la valeur simple</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
-        <source>the text is not UTF-8 (line {0}); save it as UTF-8</source>
-        <translation>le texte n&apos;est pas en UTF-8 (ligne {0}) ; enregistrez-le en UTF-8</translation>
+        <location filename="../../freecad_am/read_back/events.py"/>
+        <source>the temperature in the program differs from the plan</source>
+        <translation>la température dans le programme diffère de la planification</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/interpolation.py"/>
@@ -13928,12 +13973,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/external/level.py"/>
-        <source>the tool axis would be {0} deg from the vertical, build_direction.max_from_vertical allows {1} deg, and nothing turns the part; put it on a positioner, or raise the limit</source>
-        <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, build_direction.max_from_vertical permet {1} deg, et rien ne tourne la pièce ; mettez-la sur un positionneur, ou permettez plus</translation>
+        <source>the tool axis would be {0} deg from the vertical, but build_direction.max_from_vertical allows {1} deg and no axis turns the part; put the part on a positioner, or raise the limit</source>
+        <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, mais build_direction.max_from_vertical permet {1} deg et aucun axe ne tourne la pièce ; mettez la pièce sur un positionneur, ou augmentez la limite</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/external/level.py"/>
-        <source>the tool axis would be {0} deg from the vertical, build_direction.max_from_vertical allows {1} deg, and the positioner cannot compensate; mount the part differently, or raise the limit</source>
+        <source>the tool axis would be {0} deg from the vertical, but build_direction.max_from_vertical allows {1} deg and the positioner cannot compensate; mount the part differently, or raise the limit</source>
         <translation>l&apos;axe de l&apos;outil serait à {0} deg de la verticale, build_direction.max_from_vertical permet {1} deg, et le positionneur ne peut pas compenser ; montez la pièce autrement, ou augmentez la limite</translation>
     </message>
     <message>
@@ -13950,6 +13995,11 @@
         <location filename="../../freecad_am/objects/joint_path.py"/>
         <source>the toolpath to run</source>
         <translation>la trajectoire d&apos;outil à exécuter</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/gui/views/joint_path.py"/>
+        <source>the toolpath was deleted; choose another toolpath, or delete the joint path too</source>
+        <translation>la trajectoire d&apos;outil a été supprimée ; choisissez-en une autre, ou supprimez aussi la trajectoire articulaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -13982,14 +14032,24 @@
         <translation>la torche s&apos;approche à moins de {0} mm de {1}, ou touche cet objet ; déplacez la pièce ou cell.deposition_point, essayez une autre cell.branch, ou diminuez cell.arm_clearance</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/kinematics/torch.py"/>
+        <source>the torch extends {0} mm beyond its origin along Z, into the deposit; point Z of the file out of the nozzle, away from the torch, with the origin at the tip</source>
+        <translation>la torche dépasse de {0} mm son origine selon Z, dans le dépôt ; faites pointer le Z du fichier hors de la buse, à l&apos;opposé de la torche, avec l&apos;origine à la pointe</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/kinematics/torch.py"/>
+        <source>the torch is {0} mm away from its origin, the point where the material exits; put the tip of the wire or nozzle at the origin of the file, with Z pointing out of the nozzle, in mm</source>
+        <translation>la torche est à {0} mm de son origine, le point d&apos;où sort la matière ; placez la pointe du fil ou de la buse à l&apos;origine du fichier, Z sortant de la buse, en mm</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/gui/in_language.py"/>
         <source>the torch touches {what}</source>
         <translation>la torche touche {what}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>the touched points are {0} times as far apart as planned; one set is in {1}; give both in mm</source>
-        <translation>les points touchés sont {0} fois plus écartés que prévu ; l&apos;un des deux est en {1} ; donnez les deux en mm</translation>
+        <source>the touched points are {0} times as far apart as planned; one set is in {1}; give both sets in mm</source>
+        <translation>les points touchés sont {0} fois plus éloignés que prévu ; un des jeux est en {1} ; donnez les deux jeux en mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
@@ -14012,14 +14072,19 @@
         <translation>les cordons sont déposés de {0} à {1} mm/s, et {2} de {3} à {4} mm/s ; changez process.travel_speed, process.bead_width ou process.classes, ou mesurez des cordons à ces vitesses</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the triggers of the move are not numbered consecutively</source>
+        <translation>les déclencheurs du mouvement ne sont pas numérotés à la suite</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
         <source>the unit in {0} is not supported; use mm, cm, m, um or inch</source>
         <translation>l&apos;unité dans {0} n&apos;est pas lue ; utilisez mm, cm, m, um ou inch</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>the unit of V is a setting of the controller of {0}, and a wrong one changes the speed; set controller.speed_unit in your own machine file, or use `motion: joint`</source>
-        <translation>l&apos;unité de V est un réglage de la commande de {0}, et une autre unité est une autre vitesse ; donnez controller.speed_unit dans un fichier machine à vous, ou utilisez `motion: joint`</translation>
+        <source>the unit of V is a setting of the controller of {0}, and a wrong unit changes the speed; set controller.speed_unit in your own machine file, or use `motion: joint`</source>
+        <translation>l&apos;unité de V est un réglage de la commande de {0}, et une unité fausse change la vitesse ; fixez controller.speed_unit dans votre propre fichier machine, ou utilisez `motion: joint`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -14033,8 +14098,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>the unit {0} is not one of {1}</source>
+        <translation>l&apos;unité {0} n&apos;est pas l&apos;une de {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
         <source>the unknown element {0}</source>
         <translation>l&apos;élément inconnu {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/arguments.py"/>
+        <source>the value cannot follow an expression; enter a plain value</source>
+        <translation>la valeur ne peut pas suivre une expression ; saisissez une valeur simple</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
@@ -14045,6 +14120,11 @@
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
         <source>the value is missing; give {0}</source>
         <translation>il n&apos;y a pas de valeur ; donnez {0}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/sections/tree.py"/>
+        <source>the value is nested too deeply; give at most {0} levels</source>
+        <translation>la valeur est trop imbriquée ; donnez au plus {0} niveaux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/modules.py"/>
@@ -14058,8 +14138,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>the velocity {0} is negative; give a positive one</source>
-        <translation>la vitesse {0} est négative ; donnez-en une positive</translation>
+        <source>the velocity {0} is negative; give a positive velocity</source>
+        <translation>la vitesse {0} est négative ; donnez une vitesse positive</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/point_file.py"/>
+        <source>the vertices in the file lack plain x, y and z; export the file again</source>
+        <translation>les sommets du fichier n&apos;ont pas de x, y et z simples ; exportez le fichier de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/point_file.py"/>
@@ -14067,9 +14152,14 @@
         <translation>les sommets d&apos;un maillage sont pris comme points</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/gui/placement/dock.py"/>
+        <source>the view was closed</source>
+        <translation>la vue a été fermée</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
-        <source>the wall and its substrate are the same object, {0}; choose the part below the wall, or none if the wall starts on the platform or from edges</source>
-        <translation>la paroi et son substrat sont le même objet, {0} ; choisissez la pièce sous la paroi, ou aucune si la paroi part du plateau ou d&apos;arêtes</translation>
+        <source>the wall and its substrate are the same object, {0}; choose the part below the wall, or clear the substrate if the wall starts on the platform or from edges</source>
+        <translation>la paroi et son substrat sont le même objet, {0} ; choisissez la pièce sous la paroi, ou effacez le substrat si la paroi part du plateau ou d&apos;arêtes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/tubes/constant_distance.py"/>
@@ -14078,7 +14168,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>the wall bends too sharply: the error is {0} mm between {1} x {2} samples; smooth it, or cut it at the crease</source>
+        <source>the wall bends too sharply: the error is {0} mm between {1} x {2} samples; smooth the wall, or cut it at the crease</source>
         <translation>la paroi se courbe trop fort : {0} mm d&apos;écart entre {1} x {2} échantillons ; lissez-la, ou coupez-la là où elle a une arête</translation>
     </message>
     <message>
@@ -14088,18 +14178,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
-        <source>the wall does not meet {0} in a closed curve (nearest {1} mm); extend it into the substrate all around</source>
-        <translation>la paroi ne rencontre pas {0} en une courbe fermée (au plus près {1} mm) ; faites-la pénétrer sur tout le tour</translation>
+        <source>the wall does not meet {0} in a closed curve (nearest {1} mm); extend the wall into the substrate all around</source>
+        <translation>la paroi ne rencontre pas {0} en une courbe fermée (au plus près {1} mm) ; prolongez la paroi dans le substrat sur tout le tour</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/first_layer.py"/>
-        <source>the wall does not rise out of the substrate everywhere (at v = {0}, for instance): extend it into the substrate all around, or choose start edges</source>
-        <translation>la paroi ne sort pas partout du substrat (en v = {0}, par exemple) : faites-la pénétrer dans le substrat sur tout le tour, ou choisissez les arêtes de départ</translation>
+        <source>the wall does not rise out of the substrate everywhere (at v = {0}, for instance); extend the wall into the substrate all around, or choose start edges</source>
+        <translation>la paroi ne sort pas partout du substrat (en v = {0}, par exemple) ; prolongez la paroi dans le substrat sur tout le tour, ou choisissez des arêtes de départ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>the wall does not touch {0}: its nearest point is {1}, {2} mm away; extend it to within {3} mm of the substrate</source>
-        <translation>la paroi ne touche pas {0} : elle en est au plus près en {1}, à {2} mm ; déplacez-la pour qu&apos;elle y pénètre, il peut manquer {3} mm au plus</translation>
+        <source>the wall does not touch {0}: the nearest point of the wall is {1}, {2} mm away; extend the wall to within {3} mm of the substrate</source>
+        <translation>la paroi ne touche pas {0} : le point le plus proche de la paroi est {1}, à {2} mm ; prolongez la paroi jusqu&apos;à {3} mm du substrat au plus</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
@@ -14122,24 +14212,29 @@
         <translation>la paroi n&apos;a pas de départ : aucune de ses arêtes n&apos;est sur le plateau, le plan Z = {0} mm par son point le plus bas {1} ; choisissez un substrat ou des arêtes de départ</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/walls/wall_on.py"/>
+        <source>the wall has {0} separate pieces, and no layer starts on the piece at {1}, {2} mm from the start of the layers; choose a start edge of this piece too, or deposit the piece as a separate feature</source>
+        <translation>la paroi a {0} morceaux séparés, et aucune couche ne commence sur le morceau en {1}, à {2} mm du départ des couches ; choisissez aussi une arête de départ de ce morceau, ou déposez le morceau comme un élément à part</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
         <source>the wall intersects itself at {0} ({1}); {2}</source>
         <translation>la paroi se coupe en {0} ({1}) ; {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/walls/mesh_wall.py"/>
-        <source>the wall intersects itself: {0} pairs of triangles cross, for instance at {1}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid with holes up to strategy.mend closed</source>
+        <source>the wall intersects itself: {0} pairs of triangles cross, for instance at {1}; repair the mesh (Mesh, Analyze, Self-intersections), or deposit the mesh as a solid with holes up to strategy.mend closed</source>
         <translation>la paroi se coupe elle-même : {0} paires de ses triangles se croisent, par exemple en {1} ; réparez le maillage (Mesh, Analyser, Auto-intersections), ou déposez-le comme solide, les trous jusqu&apos;à strategy.mend étant fermés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>the wall is entirely inside {0} (at {1} it is {2} mm deep, the least depth); extend one end outside the substrate</source>
-        <translation>la paroi est entièrement dans {0} (en {1} elle est à {2} mm de profondeur, au moins) ; prolongez un bout hors du substrat</translation>
+        <source>the wall is entirely inside {0} (smallest depth at {1}: {2} mm); extend one end outside the substrate</source>
+        <translation>la paroi est entièrement dans {0} (plus petite profondeur en {1} : {2} mm) ; prolongez une extrémité hors du substrat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/patch_wall.py"/>
-        <source>the wall meets {0} in no curve long enough to start a layer (all shorter than a few {1} mm); extend it into the substrate all around, or choose start edges</source>
-        <translation>la paroi ne rencontre {0} en aucune courbe d&apos;où une couche puisse partir (plus courte que quelques fois {1} mm) ; faites-la pénétrer sur tout le tour, ou choisissez les arêtes de départ</translation>
+        <source>the wall meets {0} in no curve long enough to start a layer (all shorter than a few {1} mm); extend the wall into the substrate all around, or choose start edges</source>
+        <translation>la paroi ne rencontre {0} en aucune courbe assez longue pour commencer une couche (toutes plus courtes que quelques fois {1} mm) ; prolongez la paroi dans le substrat sur tout le tour, ou choisissez des arêtes de départ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/surface_feature.py"/>
@@ -14162,6 +14257,11 @@
         <translation>les données de soudage copiées de la commande ne sont pas déclarées dans le module, ou sont copiées deux fois</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/posts/abb/read_process.py"/>
+        <source>the weld data of the move has no speed, or belongs to another seam</source>
+        <translation>les données de soudage du mouvement n&apos;ont pas de vitesse, ou appartiennent à un autre joint</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/posts/abb/columns.py"/>
         <source>the wire feed continues after the bead</source>
         <translation>l&apos;avance du fil continue après le cordon</translation>
@@ -14173,8 +14273,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
-        <source>the wire feeds {0} mm3/s, but beads of these classes, at their own travel speeds, need {1} mm3/s, so they are over- or under-filled; give them a schedule with a matching wire feed, or the travel speed of the other beads</source>
-        <translation>le fil amène {0} mm3/s, mais les cordons de ces classes, à leurs propres vitesses d&apos;avance, demandent {1} mm3/s, si bien qu&apos;ils reçoivent trop ou trop peu ; donnez-leur un programme de soudage au dévidage voulu, ou la vitesse d&apos;avance des autres cordons</translation>
+        <source>the wire feeds {0} mm3/s, but beads of these classes need {1} mm3/s at their own travel speeds, so they are over- or under-filled; give the classes a schedule with a matching wire feed, or the travel speed of the other beads</source>
+        <translation>le fil amène {0} mm3/s, mais les cordons de ces classes demandent {1} mm3/s à leurs propres vitesses d&apos;avance, donc ils reçoivent trop ou trop peu de matière ; donnez aux classes un programme de soudage au dévidage voulu, ou la vitesse d&apos;avance des autres cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
@@ -14212,9 +14312,14 @@
         <translation>le poignet n&apos;est pas sphérique : l&apos;axe {0} passe à {1} mm du point où les axes 5 et 6 se rencontrent</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
-        <source>there are too many values; give at most {0}</source>
-        <translation>il y a trop de valeurs ; donnez-en au plus {0}</translation>
+        <location filename="../../freecad_am/objects/checks/placed.py"/>
+        <source>the {0} is missing; choose another and recompute</source>
+        <translation>le {0} manque ; choisissez-en un autre et recalculez</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/interop.py"/>
+        <source>the {0} workbench is not installed in this FreeCAD; install the workbench, or {1}</source>
+        <translation>l&apos;atelier {0} n&apos;est pas installé dans ce FreeCAD ; installez l&apos;atelier, ou {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/program.py"/>
@@ -14227,24 +14332,9 @@
         <translation>il n&apos;y a pas encore de trajectoire articulaire ; recalculez le document</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>there is no joint; add one for each axis</source>
-        <translation>il n&apos;y a pas d&apos;articulation ; ajoutez-en une par axe</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
-        <source>there is no key {0}; did you mean {1}?</source>
-        <translation>il n&apos;y a pas de clé {0} ; vouliez-vous dire {1} ?</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/fields.py"/>
-        <source>there is no key {0}; use one of {1}</source>
-        <translation>il n&apos;y a pas de clé {0} ; utilisez l&apos;une de {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
-        <source>there is no layer above {0}: the last one of {1} is {2}; give a lower one</source>
-        <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière des {1} est {2} ; donnez-en une plus basse</translation>
+        <source>there is no layer above {0}: the last layer of {1} is {2}; give a lower layer</source>
+        <translation>il n&apos;y a pas de couche au-dessus de {0} : la dernière couche de {1} est {2} ; donnez une couche plus basse</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
@@ -14258,98 +14348,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/plots/canvas.py"/>
-        <source>these layers have nothing to show</source>
-        <translation>il n&apos;y a rien à voir dans ces couches</translation>
+        <source>these layers have no values to show</source>
+        <translation>ces couches n&apos;ont pas de valeurs à montrer</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/denavit_hartenberg.py"/>
-        <source>theta, d, a and alpha must be numbers; give all four</source>
-        <translation>theta, d, a et alpha doivent être des nombres ; donnez les quatre</translation>
+        <source>theta, d, a and alpha must be numbers; give all four numbers</source>
+        <translation>theta, d, a et alpha doivent être des nombres ; donnez les quatre nombres</translation>
     </message>
     <message>
         <location filename="../../freecad_am/interop.py"/>
-        <source>this FreeCAD has no {0} workbench; install it or {1} instead</source>
-        <translation>ce FreeCAD n&apos;a pas d&apos;atelier {0} ; installez-le, ou {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/interop.py"/>
-        <source>this FreeCAD lacks the module Import; use DXF instead</source>
-        <translation>ce FreeCAD n&apos;a pas de module Import ; écrivez DXF</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
-        <source>this Python cannot read YAML; install PyYAML into it</source>
-        <translation>ce Python ne sait pas lire YAML ; installez-y PyYAML</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>this controller does not name tracks (the track is {0}); remove unit</source>
-        <translation>cette commande ne nomme pas les rails (le rail est {0}) ; supprimez unit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>this controller programs joint moves in percent of the maximum axis speeds, which the machine file of {0} lacks; add {1}</source>
-        <translation>cette commande programme les mouvements articulaires en pourcentage des vitesses maximales des axes, qui manquent dans le fichier machine de {0} ; ajoutez {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>this is &lt;{0}&gt;, not the &lt;robot&gt; of a URDF; choose a robot URDF</source>
-        <translation>c&apos;est &lt;{0}&gt;, et non le &lt;robot&gt; d&apos;un URDF ; choisissez l&apos;URDF d&apos;un robot</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
-        <source>this is nested too deeply; give at most {0} levels</source>
-        <translation>l&apos;imbrication est trop profonde ; donnez au plus {0} niveaux</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
-        <source>this is nested too deeply; give keys such as {0}</source>
-        <translation>l&apos;imbrication est trop profonde ; donnez des clés comme {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>this is not XML: {0}; export the URDF again</source>
-        <translation>ce n&apos;est pas du XML : {0} ; exportez de nouveau l&apos;URDF</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/api.py"/>
-        <source>this is not a cell; choose one</source>
-        <translation>ceci n&apos;est pas une cellule ; choisissez-en une</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/geometry/job_files.py"/>
-        <source>this is not a file but a device, a pipe or a folder; name a file</source>
-        <translation>ce n&apos;est pas un fichier mais un périphérique, un tube ou un dossier ; nommez un fichier</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
-        <source>this is not a mapping; give keys such as {0}</source>
-        <translation>ce n&apos;est pas un ensemble de clés ; donnez des clés comme {0}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/sections/tree.py"/>
-        <source>this is not valid YAML: {0}; correct it</source>
-        <translation>ce n&apos;est pas du YAML : {0} ; corrigez cet endroit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>this is xacro; convert it to URDF first, with the ROS program xacro</source>
-        <translation>c&apos;est du xacro ; faites-en d&apos;abord un URDF, avec le programme xacro de ROS</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
-        <source>this key is missing; use the file as ur_calibration wrote it</source>
-        <translation>cette clé manque ; donnez le fichier tel que ur_calibration l&apos;a écrit</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
-        <source>this layer closes around the hub and is filled with {0}; strategy.fill = {1} needs regions that do not</source>
-        <translation>cette couche se ferme autour du moyeu et est remplie de {0} ; strategy.fill = {1} demande des régions qui ne le font pas</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/gui/plots/canvas.py"/>
-        <source>this machine has no condition number</source>
-        <translation>cette machine n&apos;a pas de conditionnement</translation>
+        <source>this FreeCAD lacks the module Import; use DXF instead of STEP</source>
+        <translation>ce FreeCAD n&apos;a pas le module Import ; utilisez DXF au lieu de STEP</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -14383,7 +14393,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/developable.py"/>
-        <source>to deposit on one, name it as the substrate</source>
+        <source>to deposit on one of the solids, name it as the substrate</source>
         <translation>pour déposer sur l&apos;un d&apos;eux, nommez-le comme substrat</translation>
     </message>
     <message>
@@ -14403,8 +14413,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>tool length offsets are not supported; switch them off in the slicer</source>
-        <translation>les correcteurs de longueur d&apos;outil ne sont pas pris en charge ; désactivez-les dans le trancheur</translation>
+        <source>tool length offsets are not supported; switch off the offsets in the slicer</source>
+        <translation>les correcteurs de longueur d&apos;outil ne sont pas pris en charge ; désactivez les correcteurs dans le trancheur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/choices.py"/>
@@ -14418,13 +14428,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>tool radius compensation and moves to points of a mesh are not supported; remove it</source>
-        <translation>la compensation de rayon d&apos;outil et les déplacements vers des points d&apos;un maillage ne sont pas pris en charge ; retirez-le</translation>
+        <source>tool radius compensation and moves to points of a mesh are not supported; remove the command</source>
+        <translation>la compensation de rayon d&apos;outil et les déplacements vers des points d&apos;un maillage ne sont pas pris en charge ; retirez la commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>tool radius compensation is not supported; remove it</source>
-        <translation>la compensation de rayon d&apos;outil n&apos;est pas prise en charge ; retirez-la</translation>
+        <source>tool radius compensation is not supported; remove the command</source>
+        <translation>la compensation de rayon d&apos;outil n&apos;est pas prise en charge ; retirez la commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -14453,7 +14463,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>touched points calibrate a part that the robot moves, but here the part is fixed and the robot holds the tool; remove them, and measure cell.platform or the pose of the positioner</source>
+        <source>touched points calibrate a part that the robot moves, but here the part is fixed and the robot holds the tool; remove the touched points, and measure cell.platform or the pose of the positioner</source>
         <translation>on palpe les points d&apos;une pièce immobile sous un outil porté par le robot ; retirez-les, et mesurez cell.platform ou la pose de ce qui porte la pièce</translation>
     </message>
     <message>
@@ -14492,11 +14502,6 @@
         <translation>rotation par longueur</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>turning it about the centre of the sphere</source>
-        <translation>une rotation autour du centre de la sphère</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/posts/abb/read_process.py"/>
         <source>two analogue scales set the wire feed at once, or the wire feed ends before it begins or within a bead</source>
         <translation>deux échelles analogiques règlent l&apos;avance du fil à la fois, ou l&apos;avance finit avant de commencer ou au sein d&apos;un cordon</translation>
@@ -14513,8 +14518,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>two files in it assign different roles to object {0}</source>
-        <translation>deux de ses fichiers donnent à l&apos;objet {0} des rôles différents</translation>
+        <source>two files in the archive assign different roles to object {0}</source>
+        <translation>deux fichiers de l&apos;archive donnent des rôles différents à l&apos;objet {0}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -14523,13 +14528,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/read.py"/>
-        <source>unknown &lt;{0}&gt; in the joint {1}, which may move links; remove it</source>
-        <translation>&lt;{0}&gt; dans l&apos;articulation {1} est inconnu et peut déplacer les corps ; supprimez-le</translation>
+        <source>unknown &lt;{0}&gt; in the joint {1}, which may move links; remove the element</source>
+        <translation>&lt;{0}&gt; dans l&apos;articulation {1} est inconnu et peut déplacer des corps ; supprimez l&apos;élément</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/wire.py"/>
-        <source>unknown column {0}; remove it, or rename it to one of {1}</source>
-        <translation>la colonne {0} est inconnue ; supprimez-la ou nommez-la l&apos;un de {1}</translation>
+        <source>unknown column {0}; remove the column, or rename it to one of {1}</source>
+        <translation>colonne {0} inconnue ; retirez la colonne, ou renommez-la en l&apos;un de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -14573,8 +14578,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
-        <source>up to {0} mm of the wall remain above the last whole layer</source>
-        <translation>jusqu&apos;à {0} mm de la paroi restent au-dessus de la dernière couche entière</translation>
+        <source>up to {0} mm of the wall above the last whole layer are not deposited</source>
+        <translation>jusqu&apos;à {0} mm de la paroi au-dessus de la dernière couche entière ne sont pas déposés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/deviation.py"/>
@@ -14613,12 +14618,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/clearance.py"/>
-        <source>use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set cell.platform_diameter to the real diameter (0 for none)</source>
-        <translation>utilisez mount: feature, qui pose son extrémité la plus basse sur le plateau, remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur le diamètre réel (0 pour aucun)</translation>
+        <source>use mount: feature, which puts the lowest end of the part on the platform, move the part up in its file, or set cell.platform_diameter to the real diameter (0 for none)</source>
+        <translation>utilisez mount: feature, qui pose l&apos;extrémité la plus basse de la pièce sur le plateau, remontez la pièce dans son fichier, ou réglez cell.platform_diameter sur le diamètre réel (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
-        <source>use other layers or another direction, or exclude the region of these points</source>
+        <source>use other layers or another direction, or exclude this region</source>
         <translation>prenez d&apos;autres couches ou une autre direction, ou laissez de côté ce à quoi ces points appartiennent</translation>
     </message>
     <message>
@@ -14688,8 +14693,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>waits for {0}; recompute</source>
-        <translation>attend {0} ; recalculez</translation>
+        <source>waits for {0}; recompute the object</source>
+        <translation>attend {0} ; recalculez l&apos;objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/wording.py"/>
@@ -14708,12 +14713,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/interop.py"/>
-        <source>waypoints are written as .csv; use this extension</source>
-        <translation>les points sont écrits en .csv ; terminez le nom ainsi</translation>
+        <source>waypoints are written as .csv; use the extension .csv</source>
+        <translation>les points sont écrits en .csv ; utilisez l&apos;extension .csv</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
-        <source>weaving is already on, or not on yet</source>
+        <source>weaving is already on, or still off</source>
         <translation>le balayage est déjà actif, ou ne l&apos;est pas encore</translation>
     </message>
     <message>
@@ -14748,8 +14753,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/interop.py"/>
-        <source>wires are written as .step or .dxf; use one of these extensions</source>
-        <translation>les fils sont écrits en .step ou .dxf ; terminez le nom par l&apos;un d&apos;eux</translation>
+        <source>wires are written as .step or .dxf; use the extension .step or .dxf</source>
+        <translation>les fils sont écrits en .step ou .dxf ; utilisez l&apos;extension .step ou .dxf</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
@@ -14768,18 +14773,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/post.py"/>
-        <source>with the part on the robot KRL needs a fixed tool ($IPO_MODE #TCP) for linear moves, and it is unconfirmed whether their points refer to nozzle or part; use `setup: tool-on-robot`</source>
-        <translation>avec la pièce sur le robot, KRL demande un outil fixe ($IPO_MODE #TCP) pour les mouvements linéaires, et il n&apos;est pas confirmé si leurs points se rapportent à la buse ou à la pièce ; utilisez `setup: tool-on-robot`</translation>
+        <source>with the part on the robot KRL needs a fixed tool ($IPO_MODE #TCP) for linear moves, and the documentation does not say whether their points refer to nozzle or part; use `setup: tool-on-robot`</source>
+        <translation>avec la pièce sur le robot, KRL demande un outil fixe ($IPO_MODE #TCP) pour les mouvements linéaires, et la documentation ne dit pas si leurs points se rapportent à la buse ou à la pièce ; utilisez `setup: tool-on-robot`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/catalogue.py"/>
-        <source>with the {0} digits of its parts it has more than {1} characters</source>
-        <translation>avec les {0} chiffres de ses parties il a plus de {1} caractères</translation>
+        <source>with the {0} digits of its parts the name has more than {1} characters</source>
+        <translation>avec les {0} chiffres de ses parties le nom a plus de {1} caractères</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/estimated_size.py"/>
-        <source>with tilts for clearance the tool turns faster than build_direction.max_turn on beads of {0} points; the search for slower tilts takes up to {1} min of processor time; a larger build_direction.max_turn, a slimmer nozzle, or clearance: none avoids it</source>
-        <translation>avec des inclinaisons qui dégagent la buse, l&apos;outil tourne plus vite que build_direction.max_turn sur des cordons de {0} points ; en chercher de plus lentes prend jusqu&apos;à {1} min de processeur ; un build_direction.max_turn plus grand, une buse plus fine, ou clearance: none, l&apos;évitent</translation>
+        <source>with tilts for clearance the tool turns faster than build_direction.max_turn on beads of {0} points, and the search for slower tilts takes up to {1} min of processor time; use a larger build_direction.max_turn, a slimmer nozzle, or clearance: none, to avoid the search</source>
+        <translation>avec des inclinaisons qui dégagent la buse, l&apos;outil tourne plus vite que build_direction.max_turn sur des cordons de {0} points, et la recherche d&apos;inclinaisons plus lentes prend jusqu&apos;à {1} min de processeur ; utilisez un plus grand build_direction.max_turn, une buse plus fine, ou clearance: none, pour éviter la recherche</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/clearance/tilt_search.py"/>
@@ -14788,8 +14793,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>with {0} the nozzle is clear; the toolpath was planned with it, the joint path was not</source>
-        <translation>avec {0} la buse est dégagée ; la trajectoire d&apos;outil a été planifiée ainsi, les articulations non</translation>
+        <source>with {0} the nozzle is clear; the toolpath, but not the joint path, was planned with this change</source>
+        <translation>avec {0} la buse est dégagée ; la trajectoire d&apos;outil, mais pas la trajectoire articulaire, a été planifiée avec ce changement</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/placement/place.py"/>
+        <source>with {0} the part is not placed by {1}; use {2}</source>
+        <translation>avec {0} la pièce n&apos;est pas placée par {1} ; utilisez {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/remedies.py"/>
@@ -14803,8 +14813,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/toolpaths.py"/>
-        <source>without a bead model or a ramp the travel speed is constant, so the wire feed has nothing to follow; use constant, a process.bead_model, or process.start.ramp or process.end.ramp</source>
-        <translation>sans modèle de cordon ni rampe, la vitesse d&apos;avance ne varie pas et le fil n&apos;a rien à suivre ; utilisez constant, un process.bead_model, ou process.start.ramp ou process.end.ramp</translation>
+        <source>without a bead model or a ramp the travel speed is constant, and a proportional wire feed has no effect; use constant, a process.bead_model, or process.start.ramp or process.end.ramp</source>
+        <translation>sans modèle de cordon ni rampe, la vitesse d&apos;avance est constante, et une avance de fil proportionnelle est sans effet ; utilisez constant, un process.bead_model, ou process.start.ramp ou process.end.ramp</translation>
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
@@ -14828,23 +14838,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
-        <source>write it as in: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5</source>
-        <translation>écrivez-le comme dans : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5</translation>
+        <source>write, for example: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5</source>
+        <translation>écrivez par exemple : 0 0 0 = 900.4 2.1 -99.7 ; 100 0 0 = 1000.3 1.2 -99.9 ; 0 80 0 = 901 82 -99.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
-        <source>write it as in: contour: travel_speed 8, schedule 3; fill: lead 5</source>
-        <translation>écrivez-le comme dans `contour: travel_speed 8, schedule 3; fill: lead 5`</translation>
+        <source>write, for example: contour: travel_speed 8, schedule 3; fill: lead 5</source>
+        <translation>écrivez par exemple `contour: travel_speed 8, schedule 3; fill: lead 5`</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
-        <source>write it as in: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</source>
-        <translation>écrivez-le comme dans : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</translation>
+        <source>write, for example: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</source>
+        <translation>écrivez par exemple : motoman-motopos-d500 at 1500 0 0 0 0 0 carries part</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
-        <source>write it as in: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0</source>
-        <translation>écrivez-le comme dans : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0</translation>
+        <source>write, for example: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0</source>
+        <translation>écrivez par exemple : table = table.step at 0 0 -200 0 0 0 ; post = box 60 60 400 at 900 200 0 0 0 0</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
@@ -14863,8 +14873,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/model_notes.py"/>
-        <source>{0} % of the length bends more tightly than the beads of the table, of {1} mm radius or more, and is treated like these; widths are only estimates there</source>
-        <translation>{0} % de la longueur est plus courbée que les cordons du tableau, de {1} mm ou plus, et compte comme courbée pareillement ; les largeurs n&apos;y sont qu&apos;estimées</translation>
+        <source>{0} % of the length bends more tightly than the beads of the table, which have radii of {1} mm or more; the model uses the smallest radius there, so widths are only estimates</source>
+        <translation>{0} % de la longueur est plus courbée que les cordons du tableau, dont les rayons sont de {1} mm ou plus ; le modèle y utilise le plus petit rayon, donc les largeurs ne sont qu&apos;estimées</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/curved_field.py"/>
@@ -14873,8 +14883,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/issues.py"/>
-        <source>{0} (and {1} more like it)</source>
-        <translation>{0} (et {1} autres semblables)</translation>
+        <source>{0} (and {1} similar findings)</source>
+        <translation>{0} (et {1} constats semblables)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -14893,18 +14903,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} a flange {1} mm and {2} (largest entry of the rotation) from it; correct the geometry or the pose</source>
+        <source>{0} a flange pose that deviates by {1} mm and {2} (largest entry of the rotation); correct the geometry or the pose</source>
         <translation>{0} une bride à {1} mm et {2} (plus grand terme de la rotation) de celle-ci ; corrigez la géométrie ou la pose</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>{0} all have a wall; select the faces of one</source>
-        <translation>{0} ont toutes une paroi ; nommez les faces de celle à déposer</translation>
+        <source>{0} all have a wall; select the faces of one wall</source>
+        <translation>{0} ont tous une paroi ; sélectionnez les faces d&apos;une seule paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>{0} always fills everything, not {1} %; use 100 %, or fill: contours, lines, zigzag, grid, triangles, honeycomb or gyroid</source>
-        <translation>{0} remplit tout, non pas {1} % ; choisissez 100 %, ou fill : contours, lines, zigzag, grid, triangles, honeycomb ou gyroid</translation>
+        <source>{0} always fills the whole region, not {1} %; use 100 %, or fill: contours, lines, zigzag, grid, triangles, honeycomb or gyroid</source>
+        <translation>{0} remplit toujours toute la région, et non {1} % ; utilisez 100 %, ou fill : contours, lines, zigzag, grid, triangles, honeycomb ou gyroid</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/other_cells.py"/>
@@ -14978,8 +14988,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
-        <source>{0} appears twice in {1}; remove one</source>
-        <translation>{0} est deux fois dans {1} ; retirez-en un</translation>
+        <source>{0} appears twice in {1}; remove one of them</source>
+        <translation>{0} apparaît deux fois dans {1} ; retirez l&apos;un des deux</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -15018,8 +15028,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/fronts.py"/>
-        <source>{0} bead(s) close gaps between merging fronts, closer to them than a layer height; the first in layer {1}</source>
-        <translation>{0} cordon(s) comblent les jours entre des fronts qui se rencontrent, à moins d&apos;une hauteur de couche d&apos;eux ; le premier dans la couche {1}</translation>
+        <source>{0} bead(s) close gaps between merging fronts, closer to the fronts than a layer height; the first is in layer {1}</source>
+        <translation>{0} cordon(s) comblent les jours entre des fronts qui se rencontrent, à moins d&apos;une hauteur de couche des fronts ; le premier est dans la couche {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
@@ -15043,8 +15053,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>{0} bytes follow its {1} triangles, possibly more triangles; export the part again, as one solid</source>
-        <translation>{0} octets suivent ses {1} triangles et peuvent en être d&apos;autres ; exportez la pièce de nouveau en un solide</translation>
+        <source>{0} bytes follow the {1} triangles, and may be more triangles; export the part again, as one solid</source>
+        <translation>{0} octets suivent les {1} triangles, et peuvent être d&apos;autres triangles ; exportez la pièce de nouveau, en un seul solide</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -15058,8 +15068,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>{0} cannot be computed: the add-on that created it is missing; install it, or remove the value</source>
-        <translation>{0} ne peut pas être calculé : l&apos;extension qui l&apos;a créé manque ; installez-la, ou retirez la valeur</translation>
+        <source>{0} cannot be computed: the add-on that created the object is missing; install the add-on, or remove the value</source>
+        <translation>{0} ne peut pas être calculé : l&apos;extension qui a créé l&apos;objet manque ; installez l&apos;extension, ou retirez la valeur</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/arrangement.py"/>
@@ -15098,13 +15108,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/staleness.py"/>
-        <source>{0} changed; recompute</source>
-        <translation>{0} a changé ; recalculez</translation>
+        <source>{0} changed; recompute the object</source>
+        <translation>{0} a changé ; recalculez l&apos;objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>{0} changes no deviation: the points do not determine it</source>
-        <translation>{0} ne change aucun écart : les points ne le disent pas</translation>
+        <source>{0} changes no deviation, so the points do not determine it</source>
+        <translation>{0} ne change aucun écart, donc les points ne déterminent pas ce mouvement</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -15113,7 +15123,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/seams.py"/>
-        <source>{0} closed bead(s) are in a plane across process.seam.away_from, so no side of them is hidden, and they start by process.seam.angle; choose a direction along the layers</source>
+        <source>{0} closed bead(s) are in a plane across process.seam.away_from without a hidden side, and start by process.seam.angle; choose a direction along the layers</source>
         <translation>{0} cordon(s) fermé(s) sont dans un plan perpendiculaire à process.seam.away_from : aucun de leurs côtés n&apos;est caché, et ils commencent selon process.seam.angle ; choisissez une direction le long des couches</translation>
     </message>
     <message>
@@ -15128,8 +15138,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/in_sequence.py"/>
-        <source>{0} cm3 overlap {1} and would be deposited twice; cut one from the other</source>
-        <translation>{0} cm3 recouvrent {1} et seraient déposés deux fois ; coupez l&apos;un de l&apos;autre</translation>
+        <source>{0} cm3 overlap {1} and would be deposited twice; cut one solid from the other</source>
+        <translation>{0} cm3 recouvrent {1} et seraient déposés deux fois ; coupez un solide de l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -15153,8 +15163,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} contains holes drilled by the slicer, which the mesh lacks; remove them, or export the drilled part as a mesh</source>
-        <translation>{0} y dit que le trancheur perce des trous que le maillage n&apos;a pas ; supprimez-les ou exportez la pièce percée en maillage</translation>
+        <source>{0} contains holes drilled by the slicer, which the mesh lacks; remove the holes, or export the drilled part as a mesh</source>
+        <translation>{0} contient des trous percés par le trancheur, que le maillage n&apos;a pas ; supprimez les trous, ou exportez la pièce percée en maillage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
@@ -15168,13 +15178,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>{0} differs from the file name, {1}; rename it</source>
-        <translation>{0} n&apos;est pas le nom du fichier, {1} ; renommez-le</translation>
+        <source>{0} differs from the file name, {1}; rename the machine or the file</source>
+        <translation>{0} diffère du nom du fichier, {1} ; renommez la machine ou le fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>{0} do not form one wall; select the faces of the wall, or deposit them in turn</source>
-        <translation>{0} ne se joignent pas en une paroi ; nommez les faces de la paroi, ou déposez-les une à une</translation>
+        <source>{0} do not form one wall; select the faces of the wall, or deposit the faces in turn</source>
+        <translation>{0} ne forment pas une paroi ; sélectionnez les faces de la paroi, ou déposez les faces l&apos;une après l&apos;autre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
@@ -15193,18 +15203,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/nested.py"/>
-        <source>{0} does not exist in {1}; choose it in the 3D view, or on the original object</source>
-        <translation>{0} n&apos;existe pas dans {1} ; choisissez-le dans la vue 3D, ou sur l&apos;objet d&apos;origine</translation>
+        <source>{0} does not exist in {1}; choose the face or edge in the 3D view, or on the original object</source>
+        <translation>{0} n&apos;existe pas dans {1} ; choisissez la face ou l&apos;arête dans la vue 3D, ou sur l&apos;objet d&apos;origine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} does not take the word {1}; remove it, or use one of {2}</source>
-        <translation>{0} n&apos;a pas de mot {1} ; donnez {2} ou corrigez la ligne</translation>
+        <source>{0} does not take the word {1}; remove the word, or use one of {2}</source>
+        <translation>{0} n&apos;accepte pas le mot {1} ; retirez le mot, ou utilisez l&apos;un de {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/deposit.py"/>
-        <source>{0} does not touch its substrate {1}: the smallest gap is {2} mm, at ({3}, {4}, {5}); move it onto the substrate, or remove the substrate</source>
-        <translation>{0} ne touche pas son substrat {1} : il en est à {2} mm en ({3}, {4}, {5}), au plus près ; posez-le sur le substrat ou retirez le substrat</translation>
+        <source>{0} does not touch its substrate {1}: the smallest gap is {2} mm, at ({3}, {4}, {5}); move the part onto the substrate, or remove the substrate</source>
+        <translation>{0} ne touche pas son substrat {1} : le plus petit jour est de {2} mm, en ({3}, {4}, {5}) ; déplacez la pièce sur le substrat, ou retirez le substrat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -15218,8 +15228,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/slicing/solids/equidistant.py"/>
-        <source>{0} edges do not have two faces, one at ({1}, {2}, {3}) mm from the hub base; close the mesh</source>
-        <translation>{0} arêtes n&apos;ont pas deux faces, l&apos;une à ({1}, {2}, {3}) mm de la base du moyeu ; fermez le maillage</translation>
+        <source>{0} edges do not have two faces, for instance at ({1}, {2}, {3}) mm from the hub base; close the mesh</source>
+        <translation>{0} arêtes n&apos;ont pas deux faces, par exemple à ({1}, {2}, {3}) mm de la base du moyeu ; fermez le maillage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
@@ -15233,8 +15243,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>{0} excludes 100 %, the usual width; include it</source>
-        <translation>{0} ne contient pas 100 %, la largeur habituelle ; incluez-la</translation>
+        <source>{0} excludes 100 %, the usual width; extend the range to include 100 %</source>
+        <translation>{0} exclut 100 %, la largeur habituelle ; étendez la plage pour inclure 100 %</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/collisions.py"/>
@@ -15268,13 +15278,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/issues.py"/>
-        <source>{0} findings in layers {1}, the worst here: {2}</source>
-        <translation>{0} constats dans les couches {1}, le pire ici : {2}</translation>
+        <source>{0} findings in layers {1}, of which the worst is: {2}</source>
+        <translation>{0} constats dans les couches {1}, dont le pire est : {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} follows a move on the same line; put it on its own line</source>
-        <translation>{0} suit un déplacement dans sa ligne ; donnez-lui sa propre ligne</translation>
+        <source>{0} follows a move on the same line; begin a new line there</source>
+        <translation>{0} suit un déplacement sur la même ligne ; commencez là une nouvelle ligne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
@@ -15323,8 +15333,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} gives {1}, which is not a number; write one that gives a number</source>
-        <translation>{0} donne {1}, qui n&apos;est pas un nombre ; écrivez-en une qui donne un nombre</translation>
+        <source>{0} gives {1}, which is not a number; write an expression that gives a number</source>
+        <translation>{0} donne {1}, qui n&apos;est pas un nombre ; écrivez une expression qui donne un nombre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
@@ -15335,6 +15345,16 @@
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
         <source>{0} has a decimal comma; use a decimal point</source>
         <translation>{0} a une virgule décimale ; écrivez les nombres avec un point</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} has a unit other than {1}, which programs interpret differently; use one unit and export again</source>
+        <translation>{0} a une autre unité que {1}, ce que les programmes interprètent différemment ; utilisez une seule unité et exportez de nouveau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0} has a value that is not a number ({1})</source>
+        <translation>{0} a une valeur qui n&apos;est pas un nombre ({1})</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/kuka/read.py"/>
@@ -15355,11 +15375,6 @@
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
         <source>{0} has neither {1} and {2} nor R; give the centre of the arc or its radius</source>
         <translation>{0} n&apos;a ni {1} et {2} ni R ; donnez le centre de l&apos;arc ou son rayon</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
-        <source>{0} has no calibration, only Universal Robots arms do; remove it</source>
-        <translation>{0} n&apos;a pas d&apos;étalonnage, seuls les bras de Universal Robots en ont ; retirez-le</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -15383,8 +15398,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/machine.py"/>
-        <source>{0} has no link {1}; name one of {2}</source>
-        <translation>{0} n&apos;a pas de corps {1} ; nommez-en un de {2}</translation>
+        <source>{0} has no link {1}; use one of {2}</source>
+        <translation>{0} n&apos;a pas de corps {1} ; utilisez l&apos;un de {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -15393,8 +15408,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} has no number; add one</source>
-        <translation>{0} n&apos;a pas de nombre ; donnez-en un</translation>
+        <source>{0} has no number; add a number</source>
+        <translation>{0} n&apos;a pas de nombre ; ajoutez un nombre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/machine.py"/>
@@ -15402,14 +15417,14 @@
         <translation>{0} n&apos;a pas de limites {1} ; utilisez {2}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
+        <source>{0} has no setting {1}; use one of {2}</source>
+        <translation>{0} n&apos;a pas de réglage {1} ; utilisez l&apos;un de {2}</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
         <source>{0} has no spherical wrist, and the configuration names of its controller are unknown for Cartesian positions; use joint</source>
         <translation>{0} n&apos;a pas de poignet sphérique, et le nom que sa commande donne aux configurations des positions cartésiennes n&apos;est pas connu ; utilisez joint</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/bead_classes.py"/>
-        <source>{0} has no {1}; use one of {2}</source>
-        <translation>{0} n&apos;a pas de {1} ; utilisez l&apos;un de {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
@@ -15443,28 +15458,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/linked_files.py"/>
-        <source>{0} in it does not begin as XML; save it again</source>
-        <translation>{0} n&apos;y commence pas comme du XML ; enregistrez-le de nouveau</translation>
+        <source>{0} in the file does not begin as XML; save the document again</source>
+        <translation>{0} dans le fichier ne commence pas comme du XML ; enregistrez le document de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/linked_files.py"/>
-        <source>{0} in it has a document type, which FreeCAD documents never have, and is not read; save it again</source>
-        <translation>{0} y a un type de document, qu&apos;aucun document de FreeCAD n&apos;a, et n&apos;est pas lu ; enregistrez-le de nouveau</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} in it has a unit other than {1}, which programs interpret differently; use one unit and export again</source>
-        <translation>{0} y est dans une autre unité que {1}, ce que les programmes lisent différemment ; exportez dans une seule unité</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} in it has a value that is not a number ({1})</source>
-        <translation>{0} y a une valeur qui n&apos;est pas un nombre ({1})</translation>
+        <source>{0} in the file has a document type, which FreeCAD documents never have, and is not read; save the document again</source>
+        <translation>{0} dans le fichier a un type de document, qu&apos;aucun document FreeCAD n&apos;a, et n&apos;est pas lu ; enregistrez le document de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/bodies.py"/>
-        <source>{0} in it has no shape; choose an object with a shape</source>
-        <translation>{0} qu&apos;il contient n&apos;a pas de forme ; choisissez un objet qui en a une</translation>
+        <source>{0} in the group has no shape; choose an object with a shape</source>
+        <translation>{0} dans le groupe n&apos;a pas de forme ; choisissez un objet avec une forme</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -15483,8 +15488,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/checks/controllers.py"/>
-        <source>{0} is a URDF, which does not define the display of the controller; plan without a program, or convert it with New Machine…</source>
-        <translation>{0} est un URDF, qui ne définit pas l&apos;affichage de la commande ; planifiez sans programme, ou convertissez-le avec Nouvelle machine…</translation>
+        <source>{0} is a URDF, which does not define the display of the controller; plan without a program, or convert the URDF with New Machine…</source>
+        <translation>{0} est un URDF, qui ne définit pas l&apos;affichage de la commande ; planifiez sans programme, ou convertissez l&apos;URDF avec Nouvelle machine…</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_words.py"/>
@@ -15492,19 +15497,14 @@
         <translation>{0} est une condition, une boucle ou une variable ; écrivez les déplacements</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/objects/families/cladding.py"/>
-        <source>{0} is a flat rather than upright open mesh, {1} at less than 45 deg to the platform, so it is a face to cover</source>
-        <translation>{0} est un maillage ouvert couché plutôt que dressé, à {1} sous moins de 45 deg du plateau, donc une face à couvrir</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/families/cladding.py"/>
-        <source>{0} is a flat rather than upright open surface, {1} at less than 45 deg to the platform, so it is a face to cover</source>
-        <translation>{0} est une surface ouverte couchée plutôt que dressée, à {1} sous moins de 45 deg du plateau, donc une face à couvrir</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/sections/fields.py"/>
-        <source>{0} is a list; give one value</source>
+        <source>{0} is a list; give a single value</source>
         <translation>{0} est une liste ; donnez une seule valeur</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/inspection/inspect.py"/>
+        <source>{0} is a mesh with an accuracy of {1} mm</source>
+        <translation>{0} est un maillage d&apos;une précision de {1} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/solid_feature.py"/>
@@ -15518,12 +15518,12 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} is a negative volume that cannot be subtracted here: the geometry kernel finds no valid result, as when a mesh touches or crosses itself; subtract it in the CAD system, or remove it in the slicer, and export again</source>
+        <source>{0} is a negative volume that cannot be subtracted here: the geometry kernel finds no valid result, as when a mesh touches or crosses itself; subtract the volume in the CAD system, or remove it in the slicer, and export again</source>
         <translation>{0} est un volume négatif et ne peut pas être soustrait de la pièce ici : le noyau géométrique n&apos;en fait pas de solide sain, comme pour un maillage qui se touche ou se croise ; soustrayez-le là où la pièce a été dessinée ou supprimez-le dans le trancheur, et exportez de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} is a negative volume that cannot be subtracted here: {1} triangles are involved, and the limit is {2}; subtract it in the CAD system, or remove it in the slicer, and export again</source>
+        <source>{0} is a negative volume that cannot be subtracted here: {1} triangles are involved, and the limit is {2}; subtract the volume in the CAD system, or remove it in the slicer, and export again</source>
         <translation>{0} est un volume négatif et ne peut pas être soustrait de la pièce ici : {1} triangles sont concernés, et au plus {2} sont coupés ; soustrayez-le là où la pièce a été dessinée ou supprimez-le dans le trancheur, et exportez de nouveau</translation>
     </message>
     <message>
@@ -15553,8 +15553,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>{0} is a surface without an {1} wall; it is used as it is</source>
-        <translation>{0} est une surface : elle n&apos;a pas de paroi {1}, et est prise telle quelle</translation>
+        <source>{0} is a surface without an {1} wall; the surface is deposited</source>
+        <translation>{0} est une surface sans paroi {1} ; la surface est déposée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/surface.py"/>
@@ -15565,11 +15565,6 @@
         <location filename="../../freecad_am/objects/families/surface.py"/>
         <source>{0} is a thin wall that grows on {1}</source>
         <translation>{0} est une paroi mince qui croît sur {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/inspection/inspect.py"/>
-        <source>{0} is accurate to {1} mm, as a mesh</source>
-        <translation>{0} est connu à {1} mm près, par des triangles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
@@ -15588,33 +15583,43 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
-        <source>{0} is ambiguous; write decimals with a point and one kind of separator, as in 10.5 20.5</source>
-        <translation>{0} peut se lire de deux façons ; écrivez les décimales avec un point et une seule sorte de séparateur, comme dans 10.5 20.5</translation>
+        <source>{0} is ambiguous; write decimals with a point and a single kind of separator, as in 10.5 20.5</source>
+        <translation>{0} est ambigu ; écrivez les décimales avec un point et une seule sorte de séparateur, comme dans 10.5 20.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0} is an open mesh that intersects itself at {1} pairs of triangles, as at {2}, so it is not a wall of one bead: it is filled, with its {3} holes of up to {4} mm closed</source>
-        <translation>{0} est un maillage ouvert qui se coupe lui-même en {1} paires de ses triangles, par exemple en {2}, ce n&apos;est donc pas une paroi d&apos;un cordon : il est rempli, ses {3} trous jusqu&apos;à {4} mm étant fermés</translation>
+        <source>{0} is an open mesh that intersects itself at {1} pairs of triangles, as at {2}, so a wall of one bead is impossible; the mesh is filled, with its {3} holes of up to {4} mm closed</source>
+        <translation>{0} est un maillage ouvert qui se coupe lui-même en {1} paires de triangles, par exemple en {2}, donc une paroi d&apos;un cordon est impossible ; le maillage est rempli, ses {3} trous jusqu&apos;à {4} mm étant fermés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/surface.py"/>
-        <source>{0} is an open mesh, so it is a thin wall that grows on {1}</source>
-        <translation>{0} est un maillage ouvert, donc une paroi mince qui croît sur {1}</translation>
+        <source>{0} is an open mesh, and becomes a thin wall that grows on {1}</source>
+        <translation>{0} est un maillage ouvert, et devient une paroi mince qui croît sur {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/surface.py"/>
-        <source>{0} is an open mesh, so it is a thin wall that starts on the platform</source>
-        <translation>{0} est un maillage ouvert, donc une paroi mince qui part du plateau</translation>
+        <source>{0} is an open mesh, and becomes a thin wall that starts on the platform</source>
+        <translation>{0} est un maillage ouvert, et devient une paroi mince qui part du plateau</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/families/cladding.py"/>
+        <source>{0} is an open mesh, flat rather than upright ({1} at less than 45 deg to the platform), and is covered as a face</source>
+        <translation>{0} est un maillage ouvert, couché plutôt que dressé ({1} à moins de 45 deg du plateau), et est recouvert comme une face</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/surface.py"/>
-        <source>{0} is an open surface without an axis of revolution, and no other strategy applies; it needs a substrate or start edges, and regions that do not grow from there are omitted</source>
-        <translation>{0} est une surface ouverte sans axe de révolution, et aucune autre stratégie ne convient ; il faut un substrat ou des arêtes de départ, et les régions qui n&apos;en partent pas sont omises</translation>
+        <source>{0} is an open surface without an axis of revolution, and becomes a thin wall, which starts on the platform without another support</source>
+        <translation>{0} est une surface ouverte sans axe de révolution, et devient une paroi mince, qui part du plateau sans autre appui</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/surface.py"/>
-        <source>{0} is an open surface without an axis of revolution, so it is a thin wall, which starts on the platform if nothing else supports it</source>
-        <translation>{0} est une peau ouverte qui n&apos;est pas de révolution, donc une paroi mince, qui part du plateau là où rien ne la porte</translation>
+        <source>{0} is an open surface without an axis of revolution, and no other strategy applies; choose a substrate or start edges: regions that do not grow from there are omitted</source>
+        <translation>{0} est une surface ouverte sans axe de révolution, et aucune autre stratégie ne convient ; choisissez un substrat ou des arêtes de départ : les régions qui n&apos;en partent pas sont omises</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/families/cladding.py"/>
+        <source>{0} is an open surface, flat rather than upright ({1} at less than 45 deg to the platform), and is covered as a face</source>
+        <translation>{0} est une surface ouverte, couchée plutôt que dressée ({1} à moins de 45 deg du plateau), et est recouverte comme une face</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/ur/read.py"/>
@@ -15648,13 +15653,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} is followed by the word {1}; put it on its own line</source>
-        <translation>{0} est suivi du mot {1} ; donnez-lui sa propre ligne</translation>
+        <source>{0} is followed by the word {1} on the same line; begin a new line there</source>
+        <translation>{0} est suivi du mot {1} sur la même ligne ; commencez là une nouvelle ligne</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/table_part.py"/>
-        <source>{0} is for G-code, but {1} is not G-code; remove it</source>
-        <translation>{0} est pour le G-code, ce que {1} n&apos;est pas ; retirez-le</translation>
+        <source>{0} is for G-code, but {1} is not G-code; remove the setting</source>
+        <translation>{0} est pour le G-code, mais {1} n&apos;est pas du G-code ; retirez le réglage</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -15667,14 +15672,9 @@
         <translation>{0} ne peut pas être exécuté : {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/joints.py"/>
-        <source>{0} is listed twice; keep one entry per bead</source>
-        <translation>{0} y est deux fois ; donnez chaque cordon une fois</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} is listed twice; remove one, or give the second one its own pose</source>
-        <translation>{0} est dans la liste deux fois ; retirez-en un, ou donnez au second sa propre pose</translation>
+        <source>{0} is listed twice; remove one entry, or give the second entry its own pose</source>
+        <translation>{0} est dans la liste deux fois ; retirez une entrée, ou donnez à la seconde sa propre pose</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/staubli/read.py"/>
@@ -15687,14 +15687,9 @@
         <translation>{0} est lui-même fait à partir de {1} ; choisissez un autre objet</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0} is missing in it</source>
-        <translation>il y manque {0}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
-        <source>{0} is missing in this document. Create it first: button {0} in the toolbar.</source>
-        <translation>{0} manque dans ce document. Faites-le d&apos;abord : bouton {0} de la barre d&apos;outils.</translation>
+        <source>{0} is missing in this document; create it with the button {0} in the toolbar.</source>
+        <translation>{0} manque dans ce document ; créez-le avec le bouton {0} de la barre d&apos;outils.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
@@ -15708,8 +15703,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
-        <source>{0} is neither a group ({1}) nor a type of {2} ({3}); choose a listed one</source>
-        <translation>{0} n&apos;est ni un groupe ({1}) ni un type de {2} ({3}) ; utilisez l&apos;un d&apos;eux</translation>
+        <source>{0} is neither a group ({1}) nor a type of {2} ({3}); choose a group or a type</source>
+        <translation>{0} n&apos;est ni un groupe ({1}) ni un type de {2} ({3}) ; choisissez un groupe ou un type</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell.py"/>
@@ -15733,8 +15728,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>{0} is not a bend of a torus, so it has no plane of symmetry; give the normal as build_direction.plane, or use local, layer or fixed</source>
-        <translation>{0} n&apos;est pas le coude d&apos;un tore, son plan de symétrie n&apos;est donc pas connu ; donnez sa normale comme build_direction.plane, ou utilisez local, layer ou fixed</translation>
+        <source>{0} is not a bend of a torus, so there is no plane of symmetry; give the normal as build_direction.plane, or use local, layer or fixed</source>
+        <translation>{0} n&apos;est pas le coude d&apos;un tore, il n&apos;y a donc pas de plan de symétrie ; donnez la normale comme build_direction.plane, ou utilisez local, layer ou fixed</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/cell.py"/>
@@ -15773,8 +15768,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not a document; pass one, such as FreeCAD.ActiveDocument</source>
-        <translation>{0} n’est pas un document ; donnez-en un, tel que FreeCAD.ActiveDocument</translation>
+        <source>{0} is not a document; pass a document, such as FreeCAD.ActiveDocument</source>
+        <translation>{0} n’est pas un document ; donnez un document, tel que FreeCAD.ActiveDocument</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/developable_feature.py"/>
@@ -15793,8 +15788,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/work/progress.py"/>
-        <source>{0} is not a function; pass one</source>
-        <translation>{0} n’est pas une fonction ; donnez-en une</translation>
+        <source>{0} is not a function; pass a function</source>
+        <translation>{0} n’est pas une fonction ; donnez une fonction</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -15813,13 +15808,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not a list of objects; pass one, such as [doc.Clamp]</source>
-        <translation>{0} n’est pas une liste d’objets ; donnez-en une, telle que [doc.Clamp]</translation>
+        <source>{0} is not a list of objects; pass a list, such as [doc.Clamp]</source>
+        <translation>{0} n’est pas une liste d’objets ; donnez une liste, telle que [doc.Clamp]</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not a list of {1}; write one in square brackets</source>
-        <translation>{0} n&apos;est pas une liste de {1} ; écrivez-en une entre crochets</translation>
+        <source>{0} is not a list of {1}; write a list in square brackets</source>
+        <translation>{0} n&apos;est pas une liste de {1} ; écrivez une liste entre crochets</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
@@ -15828,18 +15823,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not a list; pass one, such as []</source>
-        <translation>{0} n’est pas une liste ; donnez-en une, telle que []</translation>
+        <source>{0} is not a list; pass a list, such as []</source>
+        <translation>{0} n’est pas une liste ; donnez une liste, telle que []</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not a list; write one in square brackets</source>
-        <translation>{0} n&apos;est pas une liste ; écrivez-en une entre crochets</translation>
+        <source>{0} is not a list; write a list in square brackets</source>
+        <translation>{0} n&apos;est pas une liste ; écrivez une liste entre crochets</translation>
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not a mapping of keys to values; pass one</source>
-        <translation>{0} ne sont pas des valeurs par clé ; donnez un dictionnaire</translation>
+        <source>{0} is not a mapping of keys to values; pass a dictionary</source>
+        <translation>{0} n&apos;associe pas des valeurs à des clés ; donnez un dictionnaire</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
@@ -15848,18 +15843,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/fields.py"/>
-        <source>{0} is not a number; enter one such as 0.1</source>
-        <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 0.1</translation>
+        <source>{0} is not a number; enter a number such as 0.1</source>
+        <translation>{0} n&apos;est pas un nombre ; saisissez un nombre comme 0.1</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
-        <source>{0} is not a number; give one such as 2</source>
-        <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2</translation>
+        <source>{0} is not a number; give a number such as 2</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez un nombre comme 2</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
-        <source>{0} is not a number; give one such as 2 or {1}</source>
-        <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2 ou {1}</translation>
+        <source>{0} is not a number; give a number such as 2 or {1}</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez un nombre comme 2 ou {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/quantities.py"/>
@@ -15873,8 +15868,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not a number; pass one such as 2</source>
-        <translation>{0} n&apos;est pas un nombre ; donnez-en un comme 2</translation>
+        <source>{0} is not a number; pass a number such as 2</source>
+        <translation>{0} n&apos;est pas un nombre ; donnez un nombre comme 2</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/calibration.py"/>
@@ -15883,8 +15878,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not a number; write one such as 12.5</source>
-        <translation>{0} n&apos;est pas un nombre ; écrivez-en un comme 12.5</translation>
+        <source>{0} is not a number; write a number such as 12.5</source>
+        <translation>{0} n&apos;est pas un nombre ; écrivez un nombre comme 12.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/inspection.py"/>
@@ -15893,8 +15888,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not a path; pass one as a text, such as &quot;cup.step&quot;</source>
-        <translation>{0} n’est pas un chemin ; donnez-en un sous forme de texte, tel que &quot;cup.step&quot;</translation>
+        <source>{0} is not a path; pass a path as a text, such as &quot;cup.step&quot;</source>
+        <translation>{0} n’est pas un chemin ; donnez un chemin sous forme de texte, tel que &quot;cup.step&quot;</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/cell.py"/>
@@ -15992,24 +15987,19 @@
         <translation>{0} n&apos;est pas une forme qui puisse être dessinée ; utilisez {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/parameters/field.py"/>
-        <source>{0} is not a text; put it in quotes</source>
-        <translation>{0} n’est pas un texte ; donnez-en un entre guillemets</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/sections/fields.py"/>
-        <source>{0} is not a text; put numbers in quotes</source>
+        <source>{0} is not a text; write numbers in quotes</source>
         <translation>{0} n&apos;est pas un texte ; donnez-en un, entre guillemets si c&apos;est un nombre</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not a text; write one in quotes</source>
-        <translation>{0} n&apos;est pas un texte ; écrivez-en un entre guillemets</translation>
+        <source>{0} is not a text; write the text in quotes</source>
+        <translation>{0} n’est pas un texte ; écrivez le texte entre guillemets</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall.py"/>
-        <source>{0} is not a torus, cylinder or cone, as a wall of several faces requires; choose one face</source>
-        <translation>{0} n&apos;est ni un tore, ni un cylindre, ni un cône : une paroi de plusieurs faces doit être de l&apos;un d&apos;eux ; choisissez une seule face</translation>
+        <source>{0} is not a torus, cylinder or cone, as a wall of several faces requires; choose a single face</source>
+        <translation>{0} n&apos;est ni un tore, ni un cylindre, ni un cône, comme l&apos;exige une paroi de plusieurs faces ; choisissez une seule face</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
@@ -16025,6 +16015,11 @@
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
         <source>{0} is not a unit vector; give a vector of length 1</source>
         <translation>{0} n&apos;est pas un vecteur unitaire ; donnez-en un de longueur 1</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/macro/features.py"/>
+        <source>{0} is not a valid choice; choose one of {1}</source>
+        <translation>{0} n&apos;est pas un choix valable ; choisissez l&apos;un de {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
@@ -16048,23 +16043,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/scan.py"/>
-        <source>{0} is not a whole number; give one such as 1</source>
-        <translation>{0} n&apos;est pas un nombre entier ; donnez par exemple 1</translation>
+        <source>{0} is not a whole number; give a number such as 1</source>
+        <translation>{0} n&apos;est pas un nombre entier ; donnez un nombre comme 1</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/field.py"/>
-        <source>{0} is not a whole number; give one such as 3</source>
-        <translation>{0} n&apos;est pas un nombre entier ; donnez-en un comme 3</translation>
+        <source>{0} is not a whole number; give a number such as 3</source>
+        <translation>{0} n&apos;est pas un nombre entier ; donnez un nombre comme 3</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/nc_numbers.py"/>
-        <source>{0} is not a word such as M7 or H2=1; give one for on and one for off</source>
-        <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez-en un pour la marche et un pour l&apos;arrêt</translation>
+        <source>{0} is not a word such as M7 or H2=1; give a word for on and a word for off</source>
+        <translation>{0} n&apos;est pas un mot comme M7 ou H2=1 ; donnez un mot pour la marche et un mot pour l&apos;arrêt</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>{0} is not a {1}; choose one</source>
-        <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
+        <source>{0} is not a {1}; choose another object</source>
+        <translation>{0} n&apos;est pas : {1} ; choisissez un autre objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/vectors.py"/>
@@ -16083,18 +16078,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/macro/arguments.py"/>
-        <source>{0} is not an object of a document; pass one, such as doc.Body</source>
-        <translation>{0} n’est pas un objet d’un document ; donnez-en un, tel que doc.Body</translation>
+        <source>{0} is not an object of a document; pass an object, such as doc.Body</source>
+        <translation>{0} n’est pas un objet d’un document ; donnez un objet, tel que doc.Body</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not an object with the keys {1}; write one in braces</source>
-        <translation>{0} n&apos;est pas un objet avec les clés {1} ; écrivez-le comme tel entre accolades</translation>
+        <source>{0} is not an object with the keys {1}; write an object in braces</source>
+        <translation>{0} n&apos;est pas un objet avec les clés {1} ; écrivez un objet entre accolades</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not an object; write one in braces</source>
-        <translation>{0} n&apos;est pas un objet ; écrivez-en un entre accolades</translation>
+        <source>{0} is not an object; write an object in braces</source>
+        <translation>{0} n&apos;est pas un objet ; écrivez un objet entre accolades</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
@@ -16103,8 +16098,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>{0} is not an {1}; choose one</source>
-        <translation>{0} n&apos;est pas : {1} ; choisissez-en un</translation>
+        <source>{0} is not an {1}; choose another object</source>
+        <translation>{0} n&apos;est pas : {1} ; choisissez un autre objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/sections/fields.py"/>
@@ -16115,11 +16110,6 @@
         <location filename="../../freecad_am/macro/arguments.py"/>
         <source>{0} is not known; use one of {1}</source>
         <translation>{0} n&apos;est pas connu ; utilisez l&apos;un de {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/macro/features.py"/>
-        <source>{0} is not one of {1}; choose one</source>
-        <translation>{0} n&apos;est pas l&apos;un de {1} ; choisissez-en un</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/read.py"/>
@@ -16153,8 +16143,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/fields/rows.py"/>
-        <source>{0} is not understood ({1}); write it as in {2}Spreadsheet.height / 2</source>
-        <translation>{0} n&apos;est pas compris ({1}) ; écrivez-le comme {2}Spreadsheet.height / 2</translation>
+        <source>{0} is not understood ({1}); write an expression such as {2}Spreadsheet.height / 2</source>
+        <translation>{0} n&apos;est pas compris ({1}) ; écrivez une expression comme {2}Spreadsheet.height / 2</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/linuxcnc/read.py"/>
@@ -16168,8 +16158,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/sections/tree.py"/>
-        <source>{0} is not understood: {1}; write it as in a job file</source>
-        <translation>{0} n&apos;est pas compris : {1} ; écrivez-le comme dans un fichier de travail</translation>
+        <source>{0} is not understood: {1}; write the value as in a job file</source>
+        <translation>{0} n&apos;est pas compris : {1} ; écrivez la valeur comme dans un fichier de travail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/toolpath.py"/>
@@ -16198,7 +16188,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} is not {1}; give more than 0, or null where not known</source>
+        <source>{0} is not {1}; give more than 0, or null if unknown</source>
         <translation>{0} n&apos;est pas {1} ; donnez plus de 0, ou null si elle n&apos;est pas connue</translation>
     </message>
     <message>
@@ -16238,8 +16228,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/stacking.py"/>
-        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 overhang by more than {5} deg, and the height is {6} mm; along (0, 0, 1) they would be {7} mm^2 and {8} mm</source>
-        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 sont en surplomb de plus de {5} deg, et la hauteur est de {6} mm ; suivant (0, 0, 1) ce serait {7} mm^2 et {8} mm</translation>
+        <source>{0} is stacked along ({1}, {2}, {3}): {4} mm^2 overhang by more than {5} deg, and the height is {6} mm; along (0, 0, 1) the overhang would be {7} mm^2 and the height {8} mm</source>
+        <translation>{0} est empilé suivant ({1}, {2}, {3}) : {4} mm^2 surplombent de plus de {5} deg, et la hauteur est de {6} mm ; suivant (0, 0, 1) le surplomb serait de {7} mm^2 et la hauteur de {8} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
@@ -16253,8 +16243,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/parts.py"/>
-        <source>{0} is woven and has {1} points with its approach, but it is unconfirmed that a weave continues in another program; allow more points per program, or a larger chord error</source>
-        <translation>{0} est balayé et a {1} points avec son approche, mais il n&apos;est pas confirmé qu&apos;un balayage se poursuit dans un autre programme ; permettez plus de points par programme, ou une plus grande erreur de corde</translation>
+        <source>{0} is woven and has {1} points with its approach, but the weave may not continue in another program; allow more points per program, or a larger chord error</source>
+        <translation>{0} est balayé et a {1} points avec son approche, mais le balayage ne se poursuit peut-être pas dans un autre programme ; permettez plus de points par programme, ou une plus grande erreur de corde</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/bead_curves.py"/>
@@ -16273,13 +16263,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/patch.py"/>
-        <source>{0} leave more than one opening around the axis; choose one face</source>
-        <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez une face</translation>
+        <source>{0} leave more than one opening around the axis; choose a single face</source>
+        <translation>{0} laissent plus d&apos;une ouverture autour de l&apos;axe ; choisissez une seule face</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
-        <source>{0} links to nothing, as its target was deleted or is not loaded; choose another {1}</source>
-        <translation>{0} ne renvoie à rien, car sa cible a été supprimée ou n&apos;est pas chargée ; choisissez un autre {1}</translation>
+        <source>{0} links to no object, as its target was deleted or is not loaded; choose another {1}</source>
+        <translation>{0} ne renvoie à aucun objet, car sa cible a été supprimée ou n&apos;est pas chargée ; choisissez un autre {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/stage.py"/>
@@ -16293,8 +16283,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>{0} lists the contents of a group twice, so its face numbers are ambiguous; name an object in it, or remove the contents from the group</source>
-        <translation>{0} énumère deux fois le contenu d&apos;un groupe, si bien que les numéros de ses faces sont ambigus ; nommez un objet qu&apos;il contient, ou retirez le contenu du groupe</translation>
+        <source>{0} lists the contents of a group twice, so its face numbers are ambiguous; name an object in the group, or remove the contents from the group</source>
+        <translation>{0} énumère deux fois le contenu d&apos;un groupe, donc les numéros de ses faces sont ambigus ; nommez un objet du groupe, ou retirez le contenu du groupe</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
@@ -16308,13 +16298,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/external.py"/>
-        <source>{0} mechanisms carry the robot; choose one track</source>
-        <translation>{0} mécanismes portent le robot ; donnez un seul rail</translation>
+        <source>{0} mechanisms carry the robot; keep only one track</source>
+        <translation>{0} mécanismes portent le robot ; gardez un seul rail</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/walls/wall_on.py"/>
-        <source>{0} meets {1} in {2} loops; layers start at the uppermost</source>
-        <translation>{0} rencontre {1} en {2} boucles ; les couches commencent à la plus haute</translation>
+        <source>{0} meets {1} in {2} loops; layers start at the uppermost loop</source>
+        <translation>{0} rencontre {1} en {2} boucles ; les couches partent de la boucle la plus haute</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
@@ -16373,18 +16363,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/support.py"/>
-        <source>{0} mm of bead are unsupported, the longest run {1} mm from here: the surface below is more than {2} mm away, or beads overhang by more than half their width; deposit the support first, change the growth direction, or remove these beads</source>
-        <translation>{0} mm de cordon ne sont pas portés, {1} mm d&apos;affilée au plus à partir d&apos;ici : la surface dessous est à plus de {2} mm, ou les cordons dépassent de plus de la moitié de leur largeur ; déposez d&apos;abord le support, changez la direction de croissance, ou retirez ces cordons</translation>
+        <source>{0} mm of bead are unsupported, and the longest run, from here, is {1} mm: the surface below is more than {2} mm away, or beads overhang by more than half their width; deposit the support first, change the growth direction, or remove these beads</source>
+        <translation>{0} mm de cordon ne sont pas portés, et le plus long morceau, à partir d&apos;ici, est de {1} mm : la surface dessous est à plus de {2} mm, ou les cordons dépassent de plus de la moitié de leur largeur ; déposez d&apos;abord le support, changez la direction de croissance, ou retirez ces cordons</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/support.py"/>
-        <source>{0} mm of the first layer are unsupported, up to {1} mm above the platform; put the part on it by cell.mount: feature, move it in its file, or set its substrate</source>
-        <translation>{0} mm de la première couche ne sont pas portés, jusqu&apos;à {1} mm au-dessus du plateau ; mettez la pièce dessus par cell.mount: feature, déplacez-la dans son fichier, ou fixez son substrat</translation>
+        <source>{0} mm of the first layer are unsupported, up to {1} mm above the platform; use cell.mount: feature, move the part onto the platform in its file, or set its substrate</source>
+        <translation>{0} mm de la première couche ne sont pas portés, jusqu&apos;à {1} mm au-dessus du plateau ; utilisez cell.mount: feature, déplacez la pièce sur le plateau dans son fichier, ou fixez son substrat</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/support.py"/>
-        <source>{0} mm of the first layer overhang the platform edge, by up to {1} mm; centre the part by cell.mount: feature, move it, or correct cell.platform_diameter (0 for none)</source>
-        <translation>{0} mm de la première couche dépassent le bord du plateau, jusqu&apos;à {1} mm ; centrez la pièce par cell.mount: feature, déplacez-la, ou corrigez cell.platform_diameter (0 pour aucun)</translation>
+        <source>{0} mm of the first layer overhang the platform edge, by up to {1} mm; centre the part by cell.mount: feature, move the part, or correct cell.platform_diameter (0 for none)</source>
+        <translation>{0} mm de la première couche dépassent le bord du plateau, jusqu&apos;à {1} mm ; centrez la pièce par cell.mount: feature, déplacez la pièce, ou corrigez cell.platform_diameter (0 pour aucun)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/support.py"/>
@@ -16393,13 +16383,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>{0} mm of the height remain at the top, less than a layer</source>
-        <translation>{0} mm de la hauteur restent en haut, moins qu&apos;une couche</translation>
+        <source>{0} mm of the height at the top, less than a layer, are not deposited</source>
+        <translation>{0} mm de la hauteur au sommet, moins qu&apos;une couche, ne sont pas déposés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>{0} mm of the wall remain at the top, less than a layer</source>
-        <translation>{0} mm de la paroi restent en haut, moins qu&apos;une couche</translation>
+        <source>{0} mm of the wall at the top, less than a layer, are not deposited</source>
+        <translation>{0} mm de la paroi au sommet, moins qu&apos;une couche, ne sont pas déposés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/yaskawa/post.py"/>
@@ -16423,8 +16413,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
-        <source>{0} mm/s is more than the fastest, {1} mm/s; give the slower speed here</source>
-        <translation>{0} mm/s est plus que le plus rapide, {1} mm/s ; donnez ici la vitesse la plus lente</translation>
+        <source>{0} mm/s is above the fastest speed, {1} mm/s; give a slower speed</source>
+        <translation>{0} mm/s est au-dessus de la vitesse la plus rapide, {1} mm/s ; donnez une vitesse plus lente</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
@@ -16433,8 +16423,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/beads/speeds.py"/>
-        <source>{0} mm/s would work, but the bead model needs {1} mm/s, and too much material would pile up: turn the torch more slowly (build_direction.max_turn), tilt it less, mount the part differently, or use a wider bead (process.bead_width), which is slower</source>
-        <translation>{0} mm/s conviendrait, mais le modèle de cordon demande {1} mm/s, et trop de matière s&apos;accumulerait : tournez la torche plus lentement (build_direction.max_turn), inclinez-la moins, montez la pièce autrement, ou prenez un cordon plus large (process.bead_width), qui est plus lent</translation>
+        <source>{0} mm/s would work, but the bead model needs {1} mm/s, and too much material would pile up; turn the torch more slowly (build_direction.max_turn), tilt the torch less, mount the part differently, or use a wider bead (process.bead_width), which is slower</source>
+        <translation>{0} mm/s conviendrait, mais le modèle de cordon demande {1} mm/s, et trop de matière s&apos;accumulerait ; tournez la torche plus lentement (build_direction.max_turn), inclinez moins la torche, montez la pièce autrement, ou prenez un cordon plus large (process.bead_width), qui est plus lent</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/inspection.py"/>
@@ -16448,8 +16438,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/abb/read.py"/>
-        <source>{0} modules have a routine main, but exactly one must</source>
-        <translation>{0} modules ont une routine main, mais il en faut exactement un</translation>
+        <source>{0} modules have a routine main, but exactly one module must</source>
+        <translation>{0} modules ont une routine main, mais il faut exactement un module qui en ait une</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -16478,13 +16468,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
-        <source>{0} must be 1 or -1 each; give one for each joint</source>
-        <translation>{0} doivent être 1 ou -1 chacun ; donnez-en un par articulation</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
-        <source>{0} must be either a file or a box; give exactly one</source>
-        <translation>{0} doit être soit un fichier soit une boîte ; donnez exactement l&apos;un des deux</translation>
+        <source>{0} must be 1 or -1 each; give one sign per joint</source>
+        <translation>{0} doivent être 1 ou -1 chacun ; donnez un signe par articulation</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/file.py"/>
@@ -16503,8 +16488,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/nested.py"/>
-        <source>{0} names faces or edges of several objects ({1}, {2}); choose from one object</source>
-        <translation>{0} désigne des faces ou des arêtes de plusieurs objets ({1}, {2}) ; choisissez celles d’un seul</translation>
+        <source>{0} names faces or edges of several objects ({1}, {2}); choose from a single object</source>
+        <translation>{0} désigne des faces ou des arêtes de plusieurs objets ({1}, {2}) ; choisissez celles d’un seul objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/surface.py"/>
@@ -16532,6 +16517,11 @@
         <translation>{0} est pour une machine qui est l&apos;URDF de toute la cellule, comme machine: bay.urdf ; ou donnez une liste de mécanismes</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/core/parameters/cell_records.py"/>
+        <source>{0} needs either a file or a box; give exactly one of the two</source>
+        <translation>{0} demande soit un fichier, soit une boîte ; donnez exactement l&apos;un des deux</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/planning/external/optimised.py"/>
         <source>{0} needs polynomials per bead, which the method {1} lacks; use method: {2}, or external_axes: {3}</source>
         <translation>{0} : ce sont des polynômes par cordon, la méthode {1} n&apos;en a pas ; utiliser method : {2}, ou external_axes : {3}</translation>
@@ -16553,23 +16543,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>{0} objects have the label {1}; change one label</source>
-        <translation>{0} objets s&apos;appellent {1} ; donnez un autre nom à l&apos;un d&apos;eux</translation>
+        <source>{0} objects have the label {1}; change the label of one object</source>
+        <translation>{0} objets ont l&apos;étiquette {1} ; changez l&apos;étiquette d&apos;un objet</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/cell_records.py"/>
         <source>{0} obstacles are called {1}; use unique names</source>
         <translation>{0} obstacles s&apos;appellent {1} ; utilisez des noms uniques</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>{0} of its {1} faces have no surfaces, only triangles; export exact faces, or a mesh (STL, OBJ, 3MF)</source>
-        <translation>{0} de ses {1} faces n&apos;ont pas de surfaces, seulement des triangles ; exportez des faces exactes ou un maillage (STL, OBJ, 3MF)</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>{0} of its {1} solids and {2} of its {3} faces cannot be read; check them in the CAD system, and export the part again</source>
-        <translation>{0} de ses {1} solides et {2} de ses {3} faces ne peuvent pas être lus ; vérifiez-les là où ils ont été dessinés et exportez la pièce de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
@@ -16578,13 +16558,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0} of {1} beads are deposited at {2} mm/s instead of {3} mm/s, so that a constant wire feed makes them {4}</source>
-        <translation>{0} des {1} cordons sont déposés à {2} mm/s au lieu de {3} mm/s, pour qu’une avance de fil constante leur donne {4}</translation>
+        <source>{0} of {1} beads are deposited at {2} mm/s instead of {3} mm/s, so that a constant wire feed makes the beads {4}</source>
+        <translation>{0} des {1} cordons sont déposés à {2} mm/s au lieu de {3} mm/s, pour qu&apos;une avance de fil constante leur donne {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0} of {1} beads are deposited at {2} mm/s, so that a constant wire feed makes them {3}</source>
-        <translation>{0} des {1} cordons sont déposés à {2} mm/s, pour qu’une avance de fil constante leur donne {3}</translation>
+        <source>{0} of {1} beads are deposited at {2} mm/s, so that a constant wire feed makes the beads {3}</source>
+        <translation>{0} des {1} cordons sont déposés à {2} mm/s, pour qu&apos;une avance de fil constante leur donne {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/process/deposit/on_part.py"/>
+        <source>{0} of {1} checked points are off the part, the point at {2} by {3} mm, with {4} mm allowed, so the toolpath is wrong; choose another strategy or other faces, and report the part</source>
+        <translation>{0} des {1} points vérifiés sont hors de la pièce, le point en {2} de {3} mm, avec {4} mm permis, donc la trajectoire d&apos;outil est fausse ; choisissez une autre stratégie ou d&apos;autres faces, et signalez la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
@@ -16592,9 +16577,14 @@
         <translation>{0} de {1} directions ne peuvent pas être tournées vers la torche par cette machine ; inclinez moins, ou montez la pièce autrement</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/read.py"/>
+        <source>{0} of {1} faces have no surfaces, only triangles; export exact faces, or a mesh (STL, OBJ, 3MF)</source>
+        <translation>{0} des {1} faces n&apos;ont pas de surfaces, seulement des triangles ; exportez des faces exactes, ou un maillage (STL, OBJ, 3MF)</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/strategies/walls/beads.py"/>
-        <source>{0} of {1} fronts have corners, first layer {2}; the sharpest turns by {3} deg. The robot slows down there</source>
-        <translation>{0} de {1} fronts ont des angles, d&apos;abord la couche {2} ; le plus vif tourne de {3} deg. Le robot y ralentit</translation>
+        <source>{0} of {1} fronts have corners, first in layer {2}; the sharpest corner turns by {3} deg, and the robot slows down there</source>
+        <translation>{0} fronts sur {1} ont des angles, d&apos;abord dans la couche {2} ; l&apos;angle le plus vif tourne de {3} deg, et le robot y ralentit</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
@@ -16608,13 +16598,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>{0} of {1} is a step of {2} mm in the wall; it is kept</source>
-        <translation>{0} de {1} est une marche de {2} mm dans la paroi ; elle est gardée</translation>
+        <source>{0} of {1} is a step of {2} mm in the wall; the step is kept</source>
+        <translation>{0} de {1} est une marche de {2} mm dans la paroi ; la marche est gardée</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/nested.py"/>
-        <source>{0} of {1} is ambiguous: FreeCAD lists the contents of its group twice and numbers both; choose it on the original object</source>
-        <translation>{0} de {1} est ambigu : FreeCAD énumère deux fois le contenu de son groupe et numérote les deux ; choisissez-le sur l&apos;objet d&apos;origine</translation>
+        <source>{0} of {1} is ambiguous: FreeCAD lists the contents of its group twice and numbers both; choose the face or edge on the original object</source>
+        <translation>{0} de {1} est ambigu : FreeCAD énumère deux fois le contenu de son groupe et numérote les deux ; choisissez la face ou l&apos;arête sur l&apos;objet d&apos;origine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
@@ -16638,18 +16628,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/nested.py"/>
-        <source>{0} of {1} is {2} of {3}; choose it on the latter</source>
-        <translation>{0} de {1} est {2} de {3} ; choisissez-la sur cet objet</translation>
+        <source>{0} of {1} is {2} of {3}; choose it on the original object</source>
+        <translation>{0} de {1} est {2} de {3} ; choisissez-la sur l&apos;objet d&apos;origine</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/revolution/plan.py"/>
-        <source>{0} of {1} layers deviate by more than 20 % from the layer height of {2} mm, first layer {3}; layer {4} is {5} mm above the previous one; layers along the wall (spacing: arc-length) are even</source>
-        <translation>{0} de {1} couches s&apos;écartent de plus de 20 % de la hauteur de couche de {2} mm, d&apos;abord la couche {3} ; la couche {4} est à {5} mm de celle du dessous ; des couches le long de la paroi (spacing: arc-length) sont égales</translation>
+        <source>{0} of {1} layers deviate by more than 20 % from the layer height of {2} mm, the first of them layer {3}; layer {4} is {5} mm above the previous layer; for even layers use spacing: arc-length</source>
+        <translation>{0} de {1} couches s&apos;écartent de plus de 20 % de la hauteur de couche de {2} mm, la première étant la couche {3} ; la couche {4} est à {5} mm au-dessus de la précédente ; pour des couches égales utilisez spacing: arc-length</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/layers/guide_field.py"/>
-        <source>{0} of {1} layers deviate from the layer height: layer {2} is {3} to {4} mm high, farthest off the {5} mm at {6}; strategy.band allows {7} %, but {8} % is needed: raise it, or choose a guide in the middle of the part or with a gentler bend</source>
-        <translation>{0} couches sur {1} ne sont pas partout de la hauteur demandée : la couche {2} a {3} à {4} mm, le plus loin des {5} mm en {6} ; strategy.band permet {7} %, et il faudrait {8} % : augmentez-le, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
+        <source>{0} of {1} layers deviate from the layer height: layer {2} is {3} to {4} mm high, farthest off the {5} mm at {6}; strategy.band allows {7} %, but {8} % is needed; raise strategy.band, or choose a guide in the middle of the part or with a gentler bend</source>
+        <translation>{0} couches sur {1} s&apos;écartent de la hauteur de couche : la couche {2} a {3} à {4} mm de haut, le plus loin des {5} mm en {6} ; strategy.band permet {7} %, mais il faut {8} % ; augmentez strategy.band, ou choisissez un guide au milieu de la pièce ou moins courbé</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/planning/findings.py"/>
@@ -16662,14 +16652,14 @@
         <translation>{0} de {1} points sont hors de portée dans cette configuration ; déplacez le positionneur, choisissez une autre branche ou inclinez moins</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/process/deposit/on_part.py"/>
-        <source>{0} of {1} points checked are off the part, this one at {2} by {3} mm, with {4} mm allowed, so the toolpath is wrong; choose another strategy or other faces, and report the part</source>
-        <translation>{0} des {1} endroits regardés sont hors de la pièce, celui-ci en {2} de {3} mm, et {4} mm sont permis : cette trajectoire dépose autre chose ; choisissez une autre stratégie, ou d&apos;autres faces, et signalez la pièce</translation>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>{0} of {1} solids and {2} of {3} faces cannot be read; check the part in the CAD system, and export it again</source>
+        <translation>{0} des {1} solides et {2} des {3} faces ne peuvent pas être lus ; vérifiez la pièce dans le système de CAO, et exportez-la de nouveau</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/notes.py"/>
-        <source>{0} of {1} solids or groups of solids get a single layer, on the hub: they are no higher than strategy.layer_height, {2} mm</source>
-        <translation>{0} de {1} solides ou groupes de solides ne reçoivent qu&apos;une couche, sur le moyeu : ils ne sont pas plus hauts que strategy.layer_height, {2} mm</translation>
+        <source>{0} of {1} solids or groups of solids get only one layer, on the hub, because they are no higher than strategy.layer_height, {2} mm</source>
+        <translation>{0} de {1} solides ou groupes de solides ne reçoivent qu&apos;une couche, sur le moyeu, car ils ne sont pas plus hauts que strategy.layer_height, {2} mm</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/chosen.py"/>
@@ -16698,8 +16688,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
-        <source>{0} pairs of points are too few; give at least three</source>
-        <translation>{0} paires de points ; donnez-en trois ou plus</translation>
+        <source>{0} pairs of points are too few; give at least three pairs</source>
+        <translation>{0} paires de points ne suffisent pas ; donnez au moins trois paires</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/repair.py"/>
@@ -16728,8 +16718,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/cell.py"/>
-        <source>{0} point(s) cannot locate a part; touch at least {1}, spread out and not collinear</source>
-        <translation>{0} point(s) ne peuvent pas localiser une pièce ; touchez-en au moins {1}, écartés et non alignés</translation>
+        <source>{0} point(s) cannot locate a part; touch at least {1} points, spread out and not collinear</source>
+        <translation>{0} point(s) ne suffisent pas à localiser une pièce ; touchez au moins {1} points, répartis et non alignés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/preflight/promise.py"/>
@@ -16743,8 +16733,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/registration.py"/>
-        <source>{0} points cannot locate a part; measure at least {1}, spread over it</source>
-        <translation>{0} points ne tiennent pas une pièce ; mesurez-en {1} ou plus partout</translation>
+        <source>{0} points cannot locate a part; measure at least {1} points, spread over the part</source>
+        <translation>{0} points ne suffisent pas à localiser une pièce ; mesurez au moins {1} points, répartis sur la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/figures.py"/>
@@ -16783,8 +16773,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} restores a state that was never stored; store it first</source>
-        <translation>{0} nomme un état qui n&apos;a pas été mémorisé ; mémorisez-le d&apos;abord</translation>
+        <source>{0} restores a state that was never stored; store the state first</source>
+        <translation>{0} rétablit un état qui n&apos;a pas été mémorisé ; mémorisez d&apos;abord l&apos;état</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
@@ -16808,13 +16798,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/places.py"/>
-        <source>{0} scales or mirrors it; choose {1} itself</source>
-        <translation>{0} le met à l&apos;échelle ou le retourne ; choisissez {1} lui-même</translation>
+        <source>{0} scales or mirrors the object; choose {1} itself</source>
+        <translation>{0} met l&apos;objet à l&apos;échelle ou le retourne ; choisissez {1} lui-même</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0} sets unknown offsets; remove it</source>
-        <translation>{0} fixe des décalages, qui sont inconnus ; retirez-le</translation>
+        <source>{0} sets unknown offsets; remove the command</source>
+        <translation>{0} fixe des décalages inconnus ; retirez la commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/filling.py"/>
@@ -16833,8 +16823,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/strategies/solids/plan.py"/>
-        <source>{0} solid(s) fit between the cuts of two layers, {1} mm apart, and get no bead, {2} cm3 in total: {3}{4}; set strategy.layer_height to at most their height, or fuse them with the adjacent solid</source>
-        <translation>{0} solide(s) se trouvent entre les coupes de deux couches, distantes de {1} mm, et ne reçoivent aucun cordon, {2} cm3 en tout : {3}{4} ; réglez strategy.layer_height à leur hauteur au plus, ou fusionnez-les avec le solide voisin</translation>
+        <source>{0} solid(s) fit between the cuts of two layers, {1} mm apart, and get no bead, {2} cm3 in total: {3}{4}; set strategy.layer_height to at most their height, or fuse these solids with adjacent ones</source>
+        <translation>{0} solide(s) se trouvent entre les coupes de deux couches, distantes de {1} mm, et ne reçoivent aucun cordon, {2} cm3 en tout : {3}{4} ; réglez strategy.layer_height à leur hauteur au plus, ou fusionnez ces solides avec des solides voisins</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
@@ -16848,8 +16838,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
-        <source>{0} states its own unit; remove the scale, which is for STL and OBJ</source>
-        <translation>{0} dit lui-même son unité ; retirez l&apos;échelle, elle est pour STL et OBJ</translation>
+        <source>{0} states a unit; remove the scale, which is for STL and OBJ</source>
+        <translation>{0} indique une unité ; retirez l&apos;échelle, qui est pour STL et OBJ</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/file_unit.py"/>
@@ -16893,8 +16883,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/shapes/part_file.py"/>
-        <source>{0} was recomputed for {1}: a linked document changed after this one was saved</source>
-        <translation>{0} a été recalculé pour {1} : un document lié a changé après l&apos;enregistrement de celui-ci</translation>
+        <source>{0} was recomputed for {1}, because a linked document is newer than the file</source>
+        <translation>{0} a été recalculé pour {1}, car un document lié est plus récent que le fichier</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/siemens/read.py"/>
@@ -16933,8 +16923,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/read_back/selected.py"/>
-        <source>{0} {1} is selected after moves in {2}, but only one can be simulated, so all moves use it; use a program with a single one</source>
-        <translation>{0} {1} est choisi après des mouvements dans {2}, mais un seul peut être simulé, donc tous les mouvements l&apos;emploient ; utilisez un programme avec un seul</translation>
+        <source>{0} {1} is selected after moves in {2}, but all moves are simulated in one selection; use a program with a single selection</source>
+        <translation>{0} {1} est choisi après des mouvements dans {2}, mais tous les mouvements sont simulés dans une seule sélection ; utilisez un programme avec une seule sélection</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/bead_model.py"/>
@@ -16973,18 +16963,28 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, and layers along the path through the part support this surface</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, et des couches le long du chemin à travers la pièce portent cette surface</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, and layers along the path through the part support this surface; stacked along {2} the share would be {3}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, et des couches le long du chemin à travers la pièce portent cette surface ; empilé suivant {2}, la part serait de {3}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/objects/families/solid.py"/>
         <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}</source>
         <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}, which layers along the path through it support</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}, and layers along the path through the part support this surface</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, et des couches le long du chemin à travers la pièce portent cette surface</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}, which layers along the path through it support; stacked along {3} it would be {4}</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, que portent des couches le long du chemin à travers elle ; empilé suivant {3}, ce serait {4}</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}, and layers along the path through the part support this surface; stacked along {3} the share would be {4}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2}, et des couches le long du chemin à travers la pièce portent cette surface ; empilé suivant {3}, la part serait de {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
@@ -16993,28 +16993,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; a machine that tilts can use layers: {3}, which need no support; stacked along {4} it would be {5}</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline peut utiliser layers: {3}, qui se passe de support ; empilé suivant {4}, ce serait {5}</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; a machine that tilts can use layers: {3}, which need no support; stacked along {4} the share would be {5}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; une machine qui incline peut utiliser layers: {3}, qui se passe de support ; empilé suivant {4}, la part serait de {5}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; curved layers need a flat base face, which it lacks</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; des couches courbes demandent une face de base plane, qui manque</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; curved layers need a flat base face, which the part lacks</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; des couches courbes demandent une face de base plane, qui manque à la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; curved layers need a flat base face, which it lacks; stacked along {3} it would be {4}</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; des couches courbes demandent une face de base plane, qui manque ; empilé suivant {3}, ce serait {4}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0}, and {1} of its surface overhangs by more than 45 deg, which layers along the path through it support</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0}, and {1} of its surface overhangs by more than 45 deg, which layers along the path through it support; stacked along {2} it would be {3}</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, que portent des couches le long du chemin à travers elle ; empilé suivant {2}, ce serait {3}</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg, stacked along {2}; curved layers need a flat base face, which the part lacks; stacked along {3} the share would be {4}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg, empilé suivant {2} ; des couches courbes demandent une face de base plane, qui manque à la pièce ; empilé suivant {3}, la part serait de {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
@@ -17023,18 +17013,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0}, and {1} of its surface overhangs by more than 45 deg; a machine that tilts can use layers: {2}, which need no support; stacked along {3} it would be {4}</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline peut utiliser layers: {2}, qui se passe de support ; empilé suivant {3}, ce serait {4}</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg; a machine that tilts can use layers: {2}, which need no support; stacked along {3} the share would be {4}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; une machine qui incline peut utiliser layers: {2}, qui se passe de support ; empilé suivant {3}, la part serait de {4}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0}, and {1} of its surface overhangs by more than 45 deg; curved layers need a flat base face, which it lacks</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; des couches courbes demandent une face de base plane, qui manque</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg; curved layers need a flat base face, which the part lacks</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; des couches courbes demandent une face de base plane, qui manque à la pièce</translation>
     </message>
     <message>
         <location filename="../../freecad_am/objects/families/solid.py"/>
-        <source>{0}, and {1} of its surface overhangs by more than 45 deg; curved layers need a flat base face, which it lacks; stacked along {2} it would be {3}</source>
-        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; des couches courbes demandent une face de base plane, qui manque ; empilé suivant {2}, ce serait {3}</translation>
+        <source>{0}, and {1} of its surface overhangs by more than 45 deg; curved layers need a flat base face, which the part lacks; stacked along {2} the share would be {3}</source>
+        <translation>{0}, et {1} de sa surface surplombent de plus de 45 deg ; des couches courbes demandent une face de base plane, qui manque à la pièce ; empilé suivant {2}, la part serait de {3}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -17053,7 +17043,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>{0}: all {1} {2} are mapped to that of the cell</source>
+        <source>{0}: all {1} {2} are replaced by that of the cell</source>
         <translation>{0} : {1} {2} sont pris pour celui de la cellule</translation>
     </message>
     <message>
@@ -17068,13 +17058,23 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/joint_path.py"/>
-        <source>{0}: checked against the nozzle during planning, against links and part only after planning; set cell.arm_clearance to check these during planning too</source>
-        <translation>{0} : contrôlé par rapport à la buse pendant la planification, par rapport aux corps et à la pièce seulement après ; fixez cell.arm_clearance pour les contrôler aussi pendant la planification</translation>
+        <source>{0}: checked against the nozzle during planning, but against links and part only after planning; set cell.arm_clearance to check links and part during planning too</source>
+        <translation>{0} : contrôlé par rapport à la buse pendant la planification, mais par rapport aux corps et à la pièce seulement après ; fixez cell.arm_clearance pour contrôler aussi les corps et la pièce pendant la planification</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/step_content.py"/>
+        <source>{0}: construction geometry (axes, planes) is not read</source>
+        <translation>{0} : sa géométrie de construction (axes, plans) n&apos;est pas lue</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/machines/draft.py"/>
         <source>{0}: controller.matrix</source>
         <translation>{0} : controller.matrix</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: data of these extensions is ignored, as no object uses it for its shape: {1}</source>
+        <translation>{0} : les données de ces extensions sont ignorées, car aucun objet ne les utilise pour sa forme : {1}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/plots/pictures.py"/>
@@ -17097,44 +17097,9 @@
         <translation>{0} : donnez source, et au besoin {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0}: ignored files that no built object uses: {1}</source>
-        <translation>{0} : fichiers contenus qui ne sont pas lus, car rien de ce qui est construit ne les utilise : {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0}: ignored, as no object uses it for its shape: data of the extensions: {1}</source>
-        <translation>{0} : non lu, car aucun objet ne l&apos;utilise pour sa forme : ce qu&apos;ajoutent ces extensions : {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0}: ignored, as they are not part of the shape: {1}</source>
-        <translation>{0} : omis, car ne faisant pas partie de la forme : {1}</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
-        <source>{0}: ignored, because they bound no shape: {1}</source>
-        <translation>{0} : ignorés, car ils ne bornent aucune forme : {1}</translation>
-    </message>
-    <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>{0}: items marked as invisible are read like the others</source>
-        <translation>{0} : il marque des éléments comme invisibles ; ils sont lus comme les autres</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>{0}: its construction geometry (axes, planes) is not read</source>
-        <translation>{0} : sa géométrie de construction (axes, plans) n&apos;est pas lue</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0}: its objects are on {1} plates, and all are deposited, with the distance between plates; to deposit one plate, export only that plate</source>
-        <translation>{0} : ses objets se trouvent sur {1} plateaux, et tous sont déposés, aussi loin les uns des autres que les plateaux ; pour déposer un plateau, exportez-le seul</translation>
-    </message>
-    <message>
-        <location filename="../../freecad_am/brep/hub.py"/>
-        <source>{0}: its triangles enclose {1} cm3 but its faces {2} cm3; check the part and export it again, or deposit it from a mesh</source>
-        <translation>{0} : ses triangles enferment {1} cm3 et ses faces {2} cm3 ; contrôlez la pièce et exportez-la de nouveau, ou déposez-la à partir d&apos;un maillage</translation>
+        <source>{0}: items marked as invisible are read like visible ones</source>
+        <translation>{0} : les éléments marqués comme invisibles sont lus comme les éléments visibles</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/inspection/fit_layers.py"/>
@@ -17153,13 +17118,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/objects/planned/scan.py"/>
-        <source>{0}: only a scan in the coordinates of the part shows how far it has grown; remove it</source>
-        <translation>{0} : seule une numérisation dans les coordonnées de la pièce dit jusqu&apos;où une pièce a grandi ; donnez none</translation>
+        <source>{0}: only a scan in part coordinates shows how far the part has grown; use none</source>
+        <translation>{0} : seule une numérisation dans les coordonnées de la pièce montre jusqu&apos;où la pièce a grandi ; utilisez none</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/three_mf.py"/>
-        <source>{0}: slicer settings that change the shape are not applied; the meshes are deposited as they are: {1}{2}</source>
-        <translation>{0} : réglages du trancheur qui ne sont pas appliqués, de sorte que les solides sont déposés comme leurs maillages : {1}{2}</translation>
+        <source>{0}: slicer settings that change the shape are not applied, and the meshes are deposited unchanged: {1}{2}</source>
+        <translation>{0} : les réglages du trancheur qui changent la forme ne sont pas appliqués, et les maillages sont déposés tels quels : {1}{2}</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -17172,9 +17137,24 @@
         <translation>{0} : soustrait de la pièce : {1}</translation>
     </message>
     <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: the objects on all {1} plates are deposited, as far apart as the plates; to deposit a single plate, export only that plate</source>
+        <translation>{0} : les objets de tous les {1} plateaux sont déposés, aussi loin les uns des autres que les plateaux ; pour déposer un seul plateau, n&apos;exportez que celui-là</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/hub.py"/>
+        <source>{0}: the triangles enclose {1} cm3, but the faces {2} cm3; check the part and export it again, or deposit it from a mesh</source>
+        <translation>{0} : les triangles enferment {1} cm3, mais les faces {2} cm3 ; contrôlez la pièce et exportez-la de nouveau, ou déposez-la à partir d&apos;un maillage</translation>
+    </message>
+    <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
         <source>{0}: the unknown types {1} are deposited as the part; list roles in strategy.roles to exclude them</source>
         <translation>{0} : les types {1} sont inconnus et déposés comme la pièce ; nommez des rôles dans strategy.roles pour les omettre</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
+        <source>{0}: the values of external axes are ignored, because the cell plans its own external axes</source>
+        <translation>{0} : les valeurs des axes externes sont ignorées, car la cellule planifie ses propres axes externes</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/process/deposit/balance.py"/>
@@ -17187,14 +17167,24 @@
         <translation>{0} : là où des facettes se rencontrent sous un angle la paroi est lissée, jusqu&apos;à {1} mm de celles-ci, en {2}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
-        <source>{0}: tools {1} all deposit, and are mapped to the tool of the cell</source>
-        <translation>{0} : les outils {1} déposent, tous pris pour celui de la cellule</translation>
+        <location filename="../../freecad_am/brep/files/obj_mesh.py"/>
+        <source>{0}: these entries are ignored, as they define no shape: {1}</source>
+        <translation>{0} : ces entrées sont ignorées, car elles ne définissent aucune forme : {1}</translation>
     </message>
     <message>
-        <location filename="../../freecad_am/core/geometry/curves/ada3dp.py"/>
-        <source>{0}: values of external axes are ignored; the cell plans its own</source>
-        <translation>{0} : les valeurs des axes externes ne sont pas lues ; celles de la cellule sont replanifiées</translation>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: these files are ignored, as no built object uses them: {1}</source>
+        <translation>{0} : ces fichiers sont ignorés, car aucun objet construit ne les utilise : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/brep/files/three_mf.py"/>
+        <source>{0}: these objects are ignored, as they are not part of the shape: {1}</source>
+        <translation>{0} : ces objets sont ignorés, car ils ne font pas partie de la forme : {1}</translation>
+    </message>
+    <message>
+        <location filename="../../freecad_am/core/geometry/curves/gcode.py"/>
+        <source>{0}: tools {1} all deposit, and are replaced by the tool of the cell</source>
+        <translation>{0} : les outils {1} déposent, tous pris pour celui de la cellule</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/issues.py"/>
@@ -17208,8 +17198,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/read.py"/>
-        <source>{0}: {1} bytes after its triangles are not read</source>
-        <translation>{0} : {1} octets après ses triangles ne sont pas lus</translation>
+        <source>{0}: {1} bytes after the triangles are ignored</source>
+        <translation>{0} : {1} octets après les triangles sont ignorés</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/mesh/solid.py"/>
@@ -17233,7 +17223,7 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/geometry/curves/gcode_roles.py"/>
-        <source>{0}: {1} ignored by strategy.roles = {2}; add roles to deposit more</source>
+        <source>{0}: {1} ignored because of strategy.roles = {2}; add roles to deposit more</source>
         <translation>{0} : {1} omis, car strategy.roles vaut {2} ; nommez d&apos;autres rôles pour déposer davantage</translation>
     </message>
     <message>
@@ -17258,17 +17248,17 @@
     </message>
     <message>
         <location filename="../../freecad_am/brep/revolution/wall.py"/>
-        <source>{0}: {1} mm off; select the wall faces if this face does not belong to the wall</source>
-        <translation>{0} : écart de {1} mm ; nommez les faces de la paroi si elle n&apos;en fait pas partie</translation>
+        <source>{0}: {1} mm off; select the wall faces if the face does not belong to the wall</source>
+        <translation>{0} : écart de {1} mm ; sélectionnez les faces de la paroi si la face n&apos;appartient pas à la paroi</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>{0}: {1} of its {2} faces belong to no shape; check the part (Part, Check geometry)</source>
+        <source>{0}: {1} of {2} faces belong to no shape; check the part (Part, Check geometry)</source>
         <translation>{0} : {1} de ses {2} faces ne sont dans aucune forme lue ; vérifiez la pièce (Part, Vérifier la géométrie)</translation>
     </message>
     <message>
         <location filename="../../freecad_am/brep/files/step_content.py"/>
-        <source>{0}: {1} of its {2} solids are read as faces that enclose no volume; check the part (Part, Check geometry)</source>
+        <source>{0}: {1} of {2} solids are read as faces that enclose no volume; check the part (Part, Check geometry)</source>
         <translation>{0} : {1} de ses {2} solides sont lus comme des faces qui n&apos;enferment rien ; vérifiez la pièce (Part, Vérifier la géométrie)</translation>
     </message>
     <message>
@@ -17318,8 +17308,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
-        <source>{0}; remove it, or use another controller</source>
-        <translation>{0} ; omettez-le, ou utilisez une autre commande</translation>
+        <source>{0}; remove the setting, or use another controller</source>
+        <translation>{0} ; retirez le réglage, ou utilisez une autre commande</translation>
     </message>
     <message>
         <location filename="../../freecad_am/posts/refusals.py"/>
@@ -17363,13 +17353,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>{0}={1} of &lt;{2}&gt; holds {3}, which is not a number; write one such as 0.25</source>
-        <translation>{0}={1} de &lt;{2}&gt; contient {3}, qui n&apos;est pas un nombre ; écrivez-en un comme 0.25</translation>
+        <source>{0}={1} of &lt;{2}&gt; holds {3}, which is not a number; write a number such as 0.25</source>
+        <translation>{0}={1} de &lt;{2}&gt; contient {3}, qui n&apos;est pas un nombre ; écrivez un nombre comme 0.25</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/kinematics/urdf/elements.py"/>
-        <source>{0}={1} of &lt;{2}&gt; needs {3} numbers; separate them with spaces</source>
-        <translation>{0}={1} de &lt;{2}&gt; demande {3} nombres ; séparez-les par des espaces</translation>
+        <source>{0}={1} of &lt;{2}&gt; needs {3} numbers; separate the numbers with spaces</source>
+        <translation>{0}={1} de &lt;{2}&gt; demande {3} nombres ; séparez les nombres par des espaces</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/dock.py"/>
@@ -17568,18 +17558,18 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/dock.py"/>
-        <source>{} has no joint path to map; make one first, or select another job.</source>
-        <translation>{} n&apos;a pas de trajectoire articulaire pour une carte ; faites-en d&apos;abord une, ou sélectionnez un autre travail.</translation>
+        <source>{} has no joint path to map; make a joint path first, or select another job.</source>
+        <translation>{} n&apos;a pas de trajectoire articulaire à cartographier ; faites d&apos;abord une trajectoire articulaire, ou sélectionnez un autre travail.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/simulation/dock.py"/>
-        <source>{} has no joint path to simulate; make one first, or select another job.</source>
-        <translation>{} n&apos;a pas de trajectoire articulaire à simuler ; faites-en d&apos;abord une, ou sélectionnez un autre travail.</translation>
+        <source>{} has no joint path to simulate; make a joint path first, or select another job.</source>
+        <translation>{} n&apos;a pas de trajectoire articulaire à simuler ; faites d&apos;abord une trajectoire articulaire, ou sélectionnez un autre travail.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/path/infill_dock.py"/>
-        <source>{} has no measured layers. Only solids in plane layers have them; recompute one.</source>
-        <translation>{} n&apos;a pas de couches mesurées. Seuls les solides en couches planes en ont ; recalculez-en un.</translation>
+        <source>{} has no measured layers; recompute a toolpath of a solid in planar layers.</source>
+        <translation>{} n&apos;a pas de couches mesurées ; recalculez une trajectoire d&apos;outil d&apos;un solide en couches planes.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/whats_this.py"/>
@@ -17593,8 +17583,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/dock.py"/>
-        <source>{} has no toolpath with a cell to place; make one first, or select another job.</source>
-        <translation>{} n&apos;a pas de trajectoire d&apos;outil avec une cellule à placer ; faites-en d&apos;abord une, ou sélectionnez une autre tâche.</translation>
+        <source>{} has no toolpath with a cell to place; make a toolpath first, or select another job.</source>
+        <translation>{} n&apos;a pas de trajectoire d&apos;outil avec une cellule à placer ; faites d&apos;abord une trajectoire d&apos;outil, ou sélectionnez une autre tâche.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
@@ -17603,13 +17593,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/hub.py"/>
-        <source>{} is another object; the hub faces must belong to one object. Clear it first to start again.</source>
-        <translation>{} est un autre objet ; les faces d&apos;un moyeu sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
+        <source>{} is another object, but the hub faces must belong to one object; clear the field to start again.</source>
+        <translation>{} est un autre objet, mais les faces du moyeu doivent appartenir à un seul objet ; effacez le champ pour recommencer.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/wall.py"/>
-        <source>{} is another object; the wall faces must belong to one object. Clear it first to start again.</source>
-        <translation>{} est un autre objet ; les faces d&apos;une paroi sont d&apos;un seul objet. Effacez d&apos;abord pour recommencer.</translation>
+        <source>{} is another object, but the wall faces must belong to one object; clear the field to start again.</source>
+        <translation>{} est un autre objet, mais les faces de la paroi doivent appartenir à un seul objet ; effacez le champ pour recommencer.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/busy.py"/>
@@ -17638,13 +17628,13 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/widgets/shape_inputs.py"/>
-        <source>{} is missing: select it and press its Pick.</source>
-        <translation>{} manque : sélectionnez-le et appuyez sur son Choisir.</translation>
+        <source>{} is missing: select the object and press Pick.</source>
+        <translation>{} manque : sélectionnez l&apos;objet et appuyez sur Choisir.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/figure_table.py"/>
-        <source>{} is not a number; enter one such as 12.5</source>
-        <translation>{} n&apos;est pas un nombre ; saisissez-en un comme 12.5</translation>
+        <source>{} is not a number; enter a number such as 12.5</source>
+        <translation>{} n&apos;est pas un nombre ; saisissez un nombre comme 12.5</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/machine_wizard/wizard.py"/>
@@ -17673,8 +17663,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/picking.py"/>
-        <source>{} links to nothing: its target was deleted or is not loaded.</source>
-        <translation>{0} ne renvoie à rien : sa cible a été supprimée ou n&apos;est pas chargée.</translation>
+        <source>{} links to no object: its target was deleted or is not loaded.</source>
+        <translation>{0} ne renvoie à aucun objet : sa cible a été supprimée ou n&apos;est pas chargée.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/panels/toolpath.py"/>
@@ -17698,8 +17688,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/redundancy_map/beside.py"/>
-        <source>{} of the tested points fail: they are red</source>
-        <translation>{} des points regardés ne conviennent pas : ils sont rouges</translation>
+        <source>{} of the tested points fail and are red</source>
+        <translation>{} des points essayés échouent et sont rouges</translation>
     </message>
     <message>
         <location filename="../../freecad_am/gui/placement/figures.py"/>
@@ -17966,8 +17956,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/gui/tools/commands.py"/>
-        <source>Opens a part or mesh from a file in a separate process, even if it is damaged</source>
-        <translation>Ouvre une pièce ou un maillage d&apos;un fichier, qui peut être abîmé : il est lu dans un processus à part</translation>
+        <source>Opens a part or mesh from a file in a separate process, even if the file is damaged</source>
+        <translation>Ouvre une pièce ou un maillage d&apos;un fichier dans un processus à part, même si le fichier est endommagé</translation>
     </message>
 </context>
 <context>

@@ -96,7 +96,7 @@ def test_beads_of_layers_along_a_guide_have_one_speed_in_planes(workshop, planne
     """Where a note on their speeds says so."""
     _, report, rows = planned(elbow(spine(30, 5.0)), band="35 %")
     (told,) = [issue["message"] for issue in report["issues"] if issue["code"] == "SPEED_VARIES"]
-    assert "as high as their layer" in told
+    assert "as high as the layer" in told
     assert told.endswith(
         "; for a constant speed set strategy.layers: planes and strategy.narrowest: 100 %"
     )
@@ -297,7 +297,7 @@ def test_the_example_is_planned_and_its_report_shows_layers_in_their_planes(work
     cell = read_job(str(path)).cell
     assert row_limits.over_all(workshop.folder / "out", cell.machine, cell.limits) <= 0.0
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
-    pictures = [part for part in page.split("<svg") if ", laid flat</" in part]
+    pictures = [part for part in page.split("<svg") if ", flattened</" in part]
     assert len(pictures) == 2
     for picture in pictures:
         box = re.search(r'viewBox="0 0 ([\d.]+) ([\d.]+)"', picture)

@@ -174,8 +174,8 @@ def test_a_nozzle_that_deposits_below_the_platform_is_told(workshop, sound, dept
 @pytest.mark.parametrize(
     ("below", "words"),
     [
-        (1, "at 1 point below the platform, by 2 mm; correct its height,"),
-        (2, "at 2 points below the platform, here 2 mm; correct their heights,"),
+        (1, "at 1 point below the platform, by 2 mm; correct the height of the point,"),
+        (2, "at 2 points below the platform, here by 2 mm; correct the heights of these points,"),
     ],
 )
 def test_one_point_below_the_platform_is_not_called_points(sound, below, words):

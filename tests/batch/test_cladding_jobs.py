@@ -319,7 +319,7 @@ def two_boxes():
     ("shape", "faces", "more", "code", "words"),
     [
         (Part.makeBox(20, 20, 20), ", edges: [Edge1]", "", "NOT_FOR_FAMILY", "part.edges"),
-        (Part.makeBox(20, 20, 20), "", "", "NO_FACES", "none is selected"),
+        (Part.makeBox(20, 20, 20), "", "", "NO_FACES", "no face is selected"),
         (Part.makeBox(20, 20, 20), ", faces: [Face7]", "", "UNKNOWN_FACE", "no Face7"),
         (two_boxes(), ", faces: [Face1, Face8]", "", "SEVERAL_BODIES", "Face1 and Face8"),
         (

@@ -198,7 +198,12 @@ def test_a_job_without_classes_keeps_its_program(workshop):
             "process.classes.fill.schedule",
             "at least 1",
         ),
-        ("{classes: [contour]}", "BAD_VALUE", "process.classes", "write classes below it"),
+        (
+            "{classes: [contour]}",
+            "BAD_VALUE",
+            "process.classes",
+            "is not a mapping of bead classes",
+        ),
         ("{classes: {wall: 5}}", "BAD_VALUE", "process.classes.wall", "is not a section"),
         ("{schedule: -1}", "BAD_VALUE", "process.schedule", "at least 1"),
     ],
@@ -453,7 +458,12 @@ def test_speed_and_feed_of_a_ramp_are_in_the_text(workshop):
     [
         (
             "  end: {length: 8 mm, travel_speed: 3 mm/s, ramp: 21 mm}\n",
-            ["error[PHASE_LENGTH]", "29 mm with their ramps", "is 20 mm long", "shorten them"],
+            [
+                "error[PHASE_LENGTH]",
+                "29 mm with their ramps",
+                "is 20 mm long",
+                "shorten start and end of the class",
+            ],
         ),
         (
             "  start: {length: 5 mm, ramp: 5 mm}\n",

@@ -233,7 +233,7 @@ def test_a_cluster_of_another_version_or_none(workshop):
         other.end()
     assert done.status == 2
     assert re.search(
-        r"error\[SCHEDULER\] --scheduler: \S+ scheduler has distributed 1999.1.0, this command \d",
+        r"error\[SCHEDULER\] --scheduler: \S+ scheduler has distributed 1999.1.0, but the command has \d",
         done.err,
     )
     assert not (workshop.folder / "out").exists()
@@ -250,7 +250,7 @@ def test_a_cluster_without_workers_or_with_one_that_cannot_plan(workshop, cluste
     )
     assert len(found) == len(HEIGHTS)
     monkeypatch.setattr(module.Cluster, "_workers", lambda self: {})
-    with pytest.raises(InputError, match="has no workers; start some with: dask worker tcp://"):
+    with pytest.raises(InputError, match="has no workers; start workers with: dask worker tcp://"):
         module.Cluster(cluster.address, session)
     monkeypatch.undo()
     broken = io.BytesIO()
@@ -258,7 +258,7 @@ def test_a_cluster_without_workers_or_with_one_that_cannot_plan(workshop, cluste
         archive.writestr("freecad-am", "echo no FreeCAD here >&2; exit 2")
     monkeypatch.setattr(versions, "package", broken.getvalue)
     with pytest.raises(
-        InputError, match="this worker cannot plan: no FreeCAD here; install FreeCAD there"
+        InputError, match="the worker cannot plan: no FreeCAD here; install FreeCAD on its machine"
     ):
         module.Cluster(cluster.address, session)
     monkeypatch.undo()

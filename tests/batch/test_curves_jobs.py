@@ -88,8 +88,8 @@ def test_forms_of_a_table(planned, text):
 @pytest.mark.parametrize(
     ("text", "line", "words"),
     [
-        ("x,y,z\n0,0,0\n1,,0\n2,0,0\n", "line 3", "2 numbers in place of 3"),
-        ("0,0,0\n\n1,0,0\n", "line 2", "it is empty"),
+        ("x,y,z\n0,0,0\n1,,0\n2,0,0\n", "line 3", "2 numbers instead of 3"),
+        ("0,0,0\n\n1,0,0\n", "line 2", "the line is empty"),
         ("0,0,0\n1,nan,0\n", "line 2", "y is nan"),
         ("0,0,0\n1,inf,0\n", "line 2", "y is inf"),
         ("0,0,0\n1,0,0\n1,0,0\n", "line 3", "remove it"),
@@ -238,8 +238,8 @@ def test_a_program_of_a_slicer_is_laid_in_its_layers(planned):
         column(rows, "bx", "by", "bz"), np.tile([0, 0, 1], (len(rows), 1)), atol=1e-12
     )
     for part, words in (
-        ("G20\n", "none of its moves extrudes"),
-        ("G0 X1\n", "none of its moves extrudes"),
+        ("G20\n", "none of the moves extrudes"),
+        ("G0 X1\n", "none of the moves extrudes"),
     ):
         done, _, _ = planned("slicer.gcode", part)
         assert done.status == 2 and "error[BAD_GCODE]" in done.err and words in done.err, done.err

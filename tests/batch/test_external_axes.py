@@ -216,7 +216,7 @@ def test_a_part_too_heavy_for_its_table_gets_no_program(workshop, written):
     (workshop.folder / "light.json").write_text(json.dumps(told), encoding="utf-8")
     written(lambda job: job["cell"]["external"][0].update(machine="light.json"))
     done = workshop.run("plan", "dome.yaml", "--no-page", "-o", "out")
-    assert done.status == 3 and "error[PAYLOAD]" in done.err and "above the payload of" in done.err
+    assert done.status == 3 and "error[PAYLOAD]" in done.err and "), the payload of" in done.err
     report = json.loads(workshop.files("out")["report.json"])
     assert report["status"] == "infeasible" and report["programs"] == []
     assert report["totals"]["mass_g"] > 500.0

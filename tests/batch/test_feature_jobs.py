@@ -430,7 +430,7 @@ def test_each_feature_has_the_figures_of_a_job_of_its_own(workshop):
     assert both["spacing_comparison"] == [] and both["beads"] is None
     page = (workshop.folder / "out" / "report.html").read_text(encoding="utf-8")
     for title in (
-        "What spacing costs: elbow",
+        "Distances between layers: elbow",
         "block: distance to the previous layer",
         "elbow: distance to the previous layer",
     ):

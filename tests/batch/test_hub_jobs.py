@@ -204,7 +204,7 @@ def test_a_mesh_in_another_unit_is_scaled(workshop, ending, scale, factor):
 @pytest.mark.parametrize(
     ("part", "code", "told"),
     [
-        ("{file: blades.step, scale: 25.4}", "BAD_VALUE", "states its own unit"),
+        ("{file: blades.step, scale: 25.4}", "BAD_VALUE", "states a unit"),
         ("{file: blades.stl, scale: 0 mm}", "BAD_VALUE", "0 mm is not a unit"),
         ("{file: blades.stl, scale: inf}", "BAD_VALUE", "inf mm is not a unit"),
         ("{file: blades.stl, scale: 90 deg}", "BAD_UNIT", "an angle"),

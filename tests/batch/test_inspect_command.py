@@ -111,7 +111,7 @@ POINTS = "inspection/hemisphere-synthetic.csv"
         (["hemisphere.yaml", "--measured", "nowhere.csv"], "cannot be read"),
         (["hemisphere.yaml", "--measured", POINTS, "--set", "tolerance"], "not a setting"),
         (["hemisphere.yaml", "--measured", POINTS, "--set", "colour=3"], "colour is not known"),
-        (["hemisphere.yaml", "--measured", POINTS, "--object", "X"], "from FCStd documents"),
+        (["hemisphere.yaml", "--measured", POINTS, "--object", "X"], "of an FCStd document"),
         (["nowhere.FCStd", "--measured", POINTS], "the file does not exist"),
     ],
 )

@@ -200,7 +200,7 @@ def test_a_calibration_is_beside_the_job(read, tmp_path):
         (
             "{file: arm.urdf, top: tool0}",
             "cell.machine.top",
-            "there is no key 'top'; did you mean tip",
+            "the key 'top' is unknown; did you mean tip",
         ),
         ("{file: arm.urdf, tip: 3}", "cell.machine.tip", "3 is not a text"),
     ],
@@ -233,7 +233,7 @@ def test_a_cell_is_a_file_of_its_own(read, tmp_path):
             "part: {file: part.step}",
             "UNKNOWN_KEY",
             "mine.yaml: cell.part",
-            "there is no key 'part'",
+            "the key 'part' is unknown",
         ),
         (None, "NO_FILE", "mine.yaml", "the file does not exist"),
     ],
@@ -387,7 +387,7 @@ LINE = {
             "substrate: {file: part.step}\nstrategy:\n",
             "NOT_FOR_FAMILY",
             "substrate",
-            "remove it",
+            "remove the substrate",
         ),
     ],
 )

@@ -117,8 +117,8 @@ def test_a_material_may_be_told_in_the_job(folder):
 @pytest.mark.parametrize(
     ("change", "code", "where", "told"),
     [
-        (("density: 7.8\n", ""), "BAD_VALUE", "density", "the material lacks"),
-        (("source: lab book 7\n", ""), "BAD_VALUE", "source", "the material lacks"),
+        (("density: 7.8\n", ""), "BAD_VALUE", "density", "the material has no density"),
+        (("source: lab book 7\n", ""), "BAD_VALUE", "source", "the material has no source"),
         (("density: 7.8", "density: -7.8"), "BAD_VALUE", "density", "more than 0 (line 3)"),
         (("density: 7.8", "density: 7.8 mm"), "BAD_UNIT", "density", "line 3"),
         (("density", "densty"), "UNKNOWN_KEY", "densty", "did you mean density?"),
@@ -234,7 +234,7 @@ def test_a_slowest_speed_above_the_fastest(workshop):
     assert (
         done.status == 2
         and "error[BAD_VALUE]" in done.err
-        and "9 mm/s is more than the fastest, 5 mm/s" in done.err
+        and "9 mm/s is above the fastest speed, 5 mm/s" in done.err
     )
 
 

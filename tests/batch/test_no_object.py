@@ -14,14 +14,18 @@ strategy: {{kind: solid, layer_height: 5 mm}}
 @pytest.mark.parametrize(
     ("boxes", "more", "message"),
     [
-        ([], "", "no object in it has a shape; recompute and save it"),
+        ([], "", "no object in the document has a shape; recompute and save the document"),
         (["Left", "Right"], "", "2 objects have a shape of their own (Left, Right)"),
         (
             ["Left"],
             ", object: Middle",
-            "no object with a shape is called 'Middle'; name one of Left",
+            "no object with a shape is called 'Middle'; use one of Left",
         ),
-        (["Left", "Left"], ", object: Left", "2 objects have the label 'Left'; change one"),
+        (
+            ["Left", "Left"],
+            ", object: Left",
+            "2 objects have the label 'Left'; change the label of one object",
+        ),
         (["Left"], ", object: Left, set: {Right: {Length: 4}}", "no object is called 'Right'"),
         (
             ["Left", "Left"],

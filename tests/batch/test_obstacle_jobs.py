@@ -105,7 +105,7 @@ def test_links_of_a_written_path_keep_clear_of_a_post_that_is_a_file(job):
 
 
 @pytest.mark.parametrize(("obstacle", "told"), [
-    ({"box": [200, 200, 400], "pose": [1045, 0, 0, 0, 0, 0]}, "cell.obstacles box 1: it already touches the nozzle"),
+    ({"box": [200, 200, 400], "pose": [1045, 0, 0, 0, 0, 0]}, "cell.obstacles box 1: the obstacle touches the nozzle"),
     ({"file": "none.step"}, "error[NO_FILE] dome.yaml: cell.obstacles[0].file"),
     ({"file": "dome.yaml"}, "error[UNSUPPORTED_FILE] dome.yaml: cell.obstacles dome"),
     ({"box": [1, 2], "pose": [0, 0, 0, 0, 0, 0]}, "error[BAD_VALUE] dome.yaml: cell.obstacles[0].box"),

@@ -82,7 +82,7 @@ def test_programs_that_nobody_can_check_are_refused(workshop):
     assert (
         done.status == 2
         and "error[WRONG_CONTROLLER]" in done.err
-        and "no post for it yet" in done.err
+        and "no post supports the controller yet" in done.err
     )
     workshop.write_job(JOB.format(machine="motoman-ma2010", cell=cell, post="yaskawa"))
     done = workshop.run("plan", "cup.yaml")

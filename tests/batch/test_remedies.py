@@ -116,7 +116,7 @@ def test_a_positioner_out_of_reach_is_called_so_and_told_where_it_could_stand(wo
     done = workshop.run("plan", "cup.yaml", "--no-page")
     assert done.status == 3
     found = re.search(
-        r"error\[UNREACHABLE\] job: the positioner is out of reach of the robot: the nearest point of the part is (\d+) mm from the shoulder, and arm and tool reach (\d+) mm",
+        r"error\[UNREACHABLE\] job: the robot cannot reach the positioner: the nearest point of the part is (\d+) mm from the shoulder, but arm and tool reach only (\d+) mm",
         done.err,
     )
     assert found, done.err
@@ -201,7 +201,7 @@ def test_one_direction_for_a_wall_that_leans_is_told_and_chosen(
     issues = json.loads(workshop.files()["report.json"])["issues"]
     told = [issue["message"] for issue in issues if issue["code"] == "PROPOSED"]
     assert told[0].startswith(f"kind: {kind}: ") and told[0].endswith(
-        f"ends with {code}, so they are one (build_direction.mode: fixed)"
+        f"end with {code}, so all directions are the same (build_direction.mode: fixed)"
     )
     workshop.write_job(written_for("auto", more + "build_direction: {mode: local}\n"))
     assert workshop.run("plan", "cup.yaml", "--no-page").status == 3, (

@@ -91,7 +91,7 @@ def test_of_a_wall_it_compares_spacings_with_the_robots_motion(workshop):
     assert workshop.run("plan", "cup.yaml").status in (0, 3)
     theirs, ours = both(workshop, "bend", "joint path")
     assert (
-        ours == theirs and "What spacing gains in motion" in ours and "What spacing costs" in ours
+        ours == theirs and "Joint motion by spacing" in ours and "Distances between layers" in ours
     )
 
 
@@ -118,9 +118,9 @@ def test_what_does_not_fit_its_inputs_is_refused(doc, tmp_path):
         api.export_report(toolpath, str(tmp_path / "page.txt"))
     with pytest.raises(InputError, match=re.escape(f"the folder {tmp_path}/none does not exist")):
         api.export_report(toolpath, str(tmp_path / "none" / "page.html"))
-    with pytest.raises(InputError, match="it has no path"):
+    with pytest.raises(InputError, match="the object has no path"):
         api.export_report(toolpath.Feature, str(tmp_path / "page.html"))
     part.Radius = 40.0
-    with pytest.raises(InputError, match="recompute it first"):
+    with pytest.raises(InputError, match="recompute the object first"):
         api.export_report(toolpath, str(tmp_path / "page.html"))
     assert not any(tmp_path.iterdir())

@@ -94,7 +94,7 @@ def test_a_block_stands_on_the_plate_as_it_was_scanned(job, parts):
     assert deposit(folder, scan["layers"])[:, 2] == pytest.approx(4.0 * scan["layers"])
     page = (folder / "report.html").read_text(encoding="utf-8")
     assert (
-        page.count("Layer 0 as planned") == 2 and page.count("Layer 0 as laid") == 2
+        page.count("Layer 0 as planned") == 2 and page.count("Layer 0 as deposited") == 2
     )  # a picture each, and its name
 
 

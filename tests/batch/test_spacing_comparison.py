@@ -69,8 +69,8 @@ def test_a_job_tells_what_its_spacing_costs_and_gains(elbow):
         assert motion["axis_limited_s"] >= motion["deposit_s"] > 0.0
     page = files["report.html"].decode()
     for text in (
-        "What spacing costs",
-        "What spacing gains in motion",
+        "Distances between layers",
+        "Joint motion by spacing",
         "Normal to the centreline: ",
         "Both paths",
     ):

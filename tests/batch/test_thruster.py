@@ -191,7 +191,7 @@ def test_it_is_planned_whole(whole):
     assert report["joints"]["feasible"] is True
     assert "THRUSTER.MPF" in whole.texts and any("TRAORI" in text for text in whole.texts.values())
     assert {"BEAD_MODEL", "BEAD_HEIGHT"} <= {issue["code"] for issue in report["issues"]}
-    assert whole.page.count("laid flat</text>") == 6 and "Predicted width of the bead" in whole.page
+    assert whole.page.count("flattened</text>") == 6 and "Predicted width of the bead" in whole.page
 
 
 def test_its_layers_lie_on_their_cones(whole):

@@ -80,7 +80,10 @@ def test_a_job_with_a_torch(shop):
         ("{path: torch.step}", "error[UNKNOWN_KEY] cup.yaml: cell.nozzle.shape.path"),
         ("cup.yaml", "error[UNSUPPORTED_FILE] cup.yaml: cell.nozzle.shape"),
         ("open.stl", "error[TORCH] cup.yaml: cell.nozzle.shape: the shape is open"),
-        ("far.step", "error[TORCH] cup.yaml: cell.nozzle.shape: it is 200 mm away from its origin"),
+        (
+            "far.step",
+            "error[TORCH] cup.yaml: cell.nozzle.shape: the torch is 200 mm away from its origin",
+        ),
         ("[1]", "error[BAD_VALUE] cup.yaml: cell.nozzle.shape"),
     ],
 )

@@ -56,7 +56,7 @@ def test_a_robot_with_its_track_is_refused_and_told_where_the_robot_begins(plann
             and "error[NO_CLOSED_FORM] cup.yaml: cell.machine: rail.urdf" in done.err
         )
         assert (
-            "rail.urdf from base_link to tool0: its kinematics cannot be planned: its first axis is prismatic"
+            "rail.urdf from base_link to tool0: the kinematics of the machine is not supported: the first axis is prismatic"
             in done.err
         )
         assert (
@@ -108,7 +108,7 @@ def test_an_arm_without_a_closed_form_is_refused_with_the_reason(planned, worksh
     done = planned("arm.urdf")
     assert done.status == 2 and "error[NO_CLOSED_FORM]" in done.err
     assert (
-        "arm.urdf from base_link to tool0: its kinematics cannot be planned: the wrist is not spherical"
+        "arm.urdf from base_link to tool0: the kinematics of the machine is not supported: the wrist is not spherical"
         in done.err
     )
     assert "axes 4 and 5 do not meet" in done.err

@@ -342,7 +342,13 @@ def blade():
             "NO_CONTACT",
             ["mm away"],
         ),
-        (lambda: bend(start=0, width=180), lambda: Part.makeSphere(300.0), 5.0, "INSIDE", ["deep"]),
+        (
+            lambda: bend(start=0, width=180),
+            lambda: Part.makeSphere(300.0),
+            5.0,
+            "INSIDE",
+            ["smallest depth"],
+        ),
         (lambda: bend(start=0, width=180), reversed_solid, 5.0, "INSIDE_OUT", ["volume"]),
         (lambda: bend(), open_mesh, 5.0, "OPEN_MESH", ["mm across"]),
         (

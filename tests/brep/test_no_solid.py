@@ -57,7 +57,7 @@ def test_what_the_kernel_cannot_do_is_told_with_its_place():
     with pytest.raises(InputError) as caught, limits.reported("Box", box):
         Part.makeCircle(-1.0)
     assert caught.value.code == "BAD_SHAPE"
-    assert "each of its 6 face(s), about (2, 3, 4), is valid" in caught.value.message
+    assert "all 6 face(s), about (2, 3, 4), are valid" in caught.value.message
 
 
 def test_a_damaged_face_is_named_with_its_place():

@@ -199,7 +199,11 @@ DEEP = "".join(holder(k + 1, placed("component", k)) for k in range(1, 2000))
             "missing vertices",
         ),
         (model(mesh(1), placed("item", 2)), "BAD_FILE", "object 2"),
-        (model(holder(1, placed("component", 1)), placed("item", 1)), "BAD_FILE", "holds itself"),
+        (
+            model(holder(1, placed("component", 1)), placed("item", 1)),
+            "BAD_FILE",
+            "contains itself",
+        ),
         (model(mesh(1), placed("item", 1, np.diag([1.0, 1.0, 0.0, 1.0]))), "BAD_FILE", "flattens"),
         (model(mesh(1), '<item objectid="1" transform="1 0 0"/>'), "BAD_FILE", "transform"),
         (
@@ -734,7 +738,7 @@ def test_a_file_of_a_component_has_the_unit_of_the_model(tmp_path, unit, right):
         points, _ = three_mf.triangles(path)
         assert np.ptp(points[:, 0]) == pytest.approx(25.4 * np.ptp(CORNERS[:, 0]))
     else:
-        with pytest.raises(InputError, match=r"inner\.model in it has a unit other") as raised:
+        with pytest.raises(InputError, match=r"inner\.model has a unit other") as raised:
             read_mesh(path)
         assert raised.value.code == "UNSUPPORTED_FILE"
 

@@ -22,7 +22,9 @@ def test_the_worst_place_stands_for_all_layers():
         0,
         3,
     )
-    expected = "4 findings in layers 1 to 3, 9, the worst here: 30 mm of beads lie over nothing"
+    expected = (
+        "4 findings in layers 1 to 3, 9, of which the worst is: 30 mm of beads lie over nothing"
+    )
     assert line.message == expected
     assert line.message.values[2].values == (
         "30",
@@ -48,7 +50,7 @@ def test_other_levels_codes_and_messages_stay_apart():
 def test_several_in_one_layer_keep_their_place():
     (line,) = summarised([hanging(4, 1.0), hanging(4, 3.0), hanging(4, 2.0)])
     assert line.layer == 4
-    assert line.message == "3 mm of beads lie over nothing (and 2 more like it)"
+    assert line.message == "3 mm of beads lie over nothing (and 2 similar findings)"
 
 
 @pytest.mark.parametrize(

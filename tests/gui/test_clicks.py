@@ -333,13 +333,13 @@ def test_a_program_that_failed_asks_for_no_folder(person, hemisphere, coarse, mo
     assert program.Status == "failed"
     person.until(lambda: not button.isEnabled(), "the button to be grey", 5)
     assert (
-        "no program fits its inputs" in button.toolTip()
+        "no program matches its inputs" in button.toolTip()
         and "exceeds the length of the wall" in button.toolTip()
     )
     before = len(person.console())
-    assert "no program fits its inputs" in program_window.export(program)  # of the context menu
+    assert "no program matches its inputs" in program_window.export(program)  # of the context menu
     person.until(
-        lambda: "no program fits its inputs" in person.console()[before:],
+        lambda: "no program matches its inputs" in person.console()[before:],
         "why, in the report view",
         5,
     )

@@ -63,7 +63,8 @@ def test_wires_are_written_where_the_panel_says(person, job, tmp_path):
     note = person.field(panel, "FileNote")
     assert (
         note.isVisible()
-        and note.text() == f"the folder {folder} does not exist; create it, or choose another"
+        and note.text()
+        == f"the folder {folder} does not exist; create the folder, or choose another"
     )
     assert not folder.exists()
     folder.mkdir()
@@ -147,7 +148,8 @@ def test_the_report_of_a_joint_path_is_a_page(person, job, tmp_path):
     note = person.field(panel, "FileNote")
     assert (
         note.isVisible()
-        and note.text() == f"the folder {file.parent} does not exist; create it, or choose another"
+        and note.text()
+        == f"the folder {file.parent} does not exist; create the folder, or choose another"
     )
     file.parent.mkdir()
     person.screenshot("export_report")
@@ -209,7 +211,7 @@ def test_what_cannot_be_written_is_told_in_the_panel(person, job, tmp_path):
     person.type(panel, "File", str(tmp_path / "a.txt"))
     assert not note.isVisible()  # what it was about is no more
     refused(person)
-    assert note.isVisible() and "use one of these extensions" in note.text()
+    assert note.isVisible() and "use the extension .step or .dxf" in note.text()
     person.choose(panel, "Kind", "CAM path in this document")
     assert not note.isVisible()
     person.press("Cancel")

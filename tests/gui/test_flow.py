@@ -237,12 +237,15 @@ def test_what_is_not_of_revolution_asks_for_what_it_grows_on(person):
     panel = person.panel("RoboticAM_NewJob")
     reason = person.field(panel, "reason")
     person.until(
-        lambda: "without an axis of revolution" in reason.text() and "grows on" in reason.text(),
+        lambda: (
+            "without an axis of revolution" in reason.text()
+            and "Ctrl+click the substrate" in reason.text()
+        ),
         "the question",
         30,
     )
     person.press("Ok")
-    assert "grows on" in person.panel_error(panel) and api.stages_of(doc) == []
+    assert "Ctrl+click the substrate" in person.panel_error(panel) and api.stages_of(doc) == []
     person.gui.Selection.addSelection(doc.Name, block.Name)  # with Ctrl, while the panel is open
     person.until(
         lambda: "Block" in person.field(panel, "Ground").text(), "the block to be taken", 5
@@ -268,7 +271,7 @@ def test_a_wrong_selection_is_named_and_the_panel_waits(person, hemisphere, coar
     for obj, words in (
         (cell, "Cell belongs to a job"),
         (sheet, "Table has no shape"),
-        (broken, "Nowhere links to nothing"),
+        (broken, "Nowhere links to no object"),
     ):
         person.select(obj)
         person.idle(0.3)

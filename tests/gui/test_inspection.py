@@ -132,7 +132,7 @@ def test_what_is_wrong_is_told_beside_its_field_and_nothing_is_left(person, part
     panel = person.panel(PANEL)
     assert person.field(panel, "Planned").currentText() == part.Label
     person.press("Ok")
-    assert "choose one" in person.panel_error(panel)
+    assert "choose a file" in person.panel_error(panel)
     (tmp_path / "empty.csv").write_text("")
     (tmp_path / "scan.docx").write_text("1 2 3")
     (tmp_path / "words.csv").write_text("a;b;c\n")

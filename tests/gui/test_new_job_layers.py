@@ -48,5 +48,5 @@ def test_planes_are_laid_where_curved_layers_that_were_proposed_cannot_be(
         ) and "Joint path is infeasible" in status
     else:
         assert (feature.Layers, path.Status) == ("planes", "up to date"), said
-        assert "layers: planes, for geodesic ones end with " in said
-        assert status.startswith("In planar layers, as curved ones were infeasible. ")
+        assert "layers: planes, because geodesic layers end with " in said
+        assert status.startswith("Planar layers are used, as curved layers were infeasible. ")

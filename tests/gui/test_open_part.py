@@ -94,7 +94,7 @@ def test_a_file_that_crashes_the_kernel_is_refused_and_the_window_goes_on(
     )
     chosen(crash)
     assert len(told) == 1 and told[0].startswith(
-        "damaged.step: it is damaged: FreeCAD crashes on it"
+        "damaged.step: the file is damaged: FreeCAD crashes while reading it"
     ), told
     assert not App.listDocuments()  # the one that was made for it is gone
     chosen(EXAMPLES / "hemisphere.step")  # and FreeCAD is there

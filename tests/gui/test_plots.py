@@ -271,7 +271,7 @@ def test_changes_are_followed(person, planned, panel):
     doc.removeObject(planned.Name)
     doc.removeObject(toolpath.Name)
     person.idle(0.4)
-    assert dock.picture is None and "nothing to plot" in dock.canvas.text
+    assert dock.picture is None and "no path to plot" in dock.canvas.text
     doc.undo()
 
 
@@ -300,7 +300,7 @@ def test_that_there_is_nothing_to_plot_is_seen(person, planned, panel):
     canvas = take(person, panel, "angles").canvas
     assert canvas.minimumHeight() == 6 * canvases.PER_CHART
     App.closeDocument(planned.Document.Name)
-    person.until(lambda: "nothing to plot" in canvas.text, "the text", 5)
+    person.until(lambda: "no path to plot" in canvas.text, "the text", 5)
     person.until(
         lambda: canvas.visibleRegion().boundingRect().contains(canvas.rect().center()),
         "the text in sight",

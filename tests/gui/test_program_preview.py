@@ -89,7 +89,7 @@ def test_what_the_controller_refuses_is_told_beside_its_field_as_it_is_typed(
     for fold in ("FoldInputs", "FoldStartat"):
         hand.click(person.field(panel, fold))
     for name, text, words in (
-        ("ProgramName", "1CUP", "it must start with a letter"),
+        ("ProgramName", "1CUP", "a name must start with a letter"),
         ("Post", "siemens", "does not read siemens"),
         ("StartAtLayer", "99", "there is no bead 0 in a layer 99"),
     ):

@@ -141,7 +141,7 @@ def test_a_link_whose_object_goes_is_told(person, hemisphere):
     doc.recompute()
     person.select(link)
     person.click("RoboticAM_NewJob")
-    assert "links to nothing" in person.panel_error(person.panel("RoboticAM_NewJob"))
+    assert "links to no object" in person.panel_error(person.panel("RoboticAM_NewJob"))
     person.press("Cancel")
     person.panel_closed()
 

@@ -168,7 +168,10 @@ def test_tools_tell_what_the_job_lacks_and_take_no_other(person, stages, jobs, o
     for command, told in (("Simulate", "to simulate"), ("SpinMap", "to map")):
         person.click(f"RoboticAM_{command}")
         said = person.window.statusBar().currentMessage()
-        assert said == f"First has no joint path {told}; make one first, or select another job."
+        assert (
+            said
+            == f"First has no joint path {told}; make a joint path first, or select another job."
+        )
     assert opened == []
     person.gui.Selection.clearSelection()
     person.click("RoboticAM_Simulate")

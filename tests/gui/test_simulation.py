@@ -484,7 +484,7 @@ def test_two_simulations_replace_one_another_and_without_a_path_it_says_so(perso
     assert "make a joint path" in person.button("RoboticAM_Simulate").toolTip()
     tool.simulate()  # as a macro may
     assert docks._open == []
-    assert "make one first" in person.window.statusBar().currentMessage()
+    assert "make a joint path first" in person.window.statusBar().currentMessage()
 
 
 def test_positioner_and_its_bodies_are_drawn_where_its_axes_are(person, hemisphere):

@@ -137,7 +137,9 @@ def test_new_job_fills_what_is_no_wall(person, coarse):
     for name in ("Face1", "Face2"):
         person.gui.Selection.addSelection(doc.Name, part.Name, name)
     person.until(
-        lambda: "so they are covered" in reason.text(), "faces to be proposed for cladding", 30
+        lambda: "so these faces are covered" in reason.text(),
+        "faces to be proposed for cladding",
+        30,
     )
     assert person.field(panel, "Kind").currentText() == "Cladding of faces"
     assert person.field(panel, "Source").text() == f"{part.Label} Face1 Face2"

@@ -155,9 +155,11 @@ def test_what_is_not_a_document_or_a_path_is_refused_by_name(doc, part):
     with pytest.raises(InputError) as caught:
         api.open_part("cup.step", doc)
     assert caught.value.line() == (
-        "error[BAD_INPUT] doc: 'cup.step' is not a document; pass one, such as FreeCAD.ActiveDocument"
+        "error[BAD_INPUT] doc: 'cup.step' is not a document; pass a document, such as FreeCAD.ActiveDocument"
     )
-    with pytest.raises(InputError, match=f"path: {part.Label} is not a path; pass one as a text"):
+    with pytest.raises(
+        InputError, match=f"path: {part.Label} is not a path; pass a path as a text"
+    ):
         api.open_part(doc, part)
     assert [obj.Name for obj in doc.Objects] == [part.Name]
 

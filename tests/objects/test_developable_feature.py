@@ -279,11 +279,11 @@ def test_solids_from_exact_shapes_are_told_what_to_do_with_shapes(thruster):
         doc, Part.makeBox(50, 5, 40).fuse(Part.makeBox(5, 50, 40)).removeSplitter(), "Bracket"
     )
     for arguments, code, told, untold in (
-        ((small, hub), "NOT_ON_HUB", "is not on the hub", "unit"),
+        ((small, hub), "NOT_ON_HUB", "not on the hub", "unit"),
         (
             (touching, hub),
             "NOT_ON_HUB",
-            "it passes Hub",
+            "the solid passes Hub",
             "mesh",
         ),  # that it touches itself along an edge is mended
         ((bracket,), "NO_HUB", "for a flat base use kind: solid", "mesh"),

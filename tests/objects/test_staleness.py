@@ -118,7 +118,7 @@ def test_a_bad_parameter_fails_and_what_follows_waits(job, capfd, tmp_path):
         "Feature.LayerHeight: 0 mm is out of range; give more than 0 mm"
     )
     with pytest.raises(
-        InputError, match=r"^Program: no program fits its inputs \(waits for Joint path: "
+        InputError, match=r"^Program: no program matches its inputs \(waits for Joint path: "
     ):
         api.export(job.program, str(tmp_path))
     assert "Traceback" not in "".join(capfd.readouterr())
@@ -193,7 +193,7 @@ def test_an_infeasible_path_is_kept_and_stops_the_program(job, no_remedies):
     issues = api.issues(job.joint_path)
     assert any(issue.level == "error" and issue.layer is not None for issue in issues)
     assert api.result(job.joint_path).joint_path.method == "constant"
-    with pytest.raises(InputError, match="no program fits"):
+    with pytest.raises(InputError, match="no program matches"):
         api.export(job.program, "anywhere")
     with pytest.raises(InfeasibleError):
         api.make_program(job.doc, job.joint_path, name="NEXT")
@@ -233,7 +233,7 @@ def test_a_link_to_the_wrong_kind_is_told(job):
     job.doc.recompute()
     assert (
         job.toolpath.Status == FAILED
-        and job.toolpath.Message == "Toolpath.Feature: Cell is not a feature; choose one"
+        and job.toolpath.Message == "Toolpath.Feature: Cell is not a feature; choose another object"
     )
 
 

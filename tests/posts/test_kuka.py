@@ -717,9 +717,9 @@ def test_a_module_by_hand():
 
 
 @pytest.mark.parametrize(("old", "new", "why"), [
-    ("DEF hand()", "DEF other()", "its routine DEF other() and the file have different names"),
-    ("DEF hand()", "GLOBAL DEF hand( )  ; by hand", "one routine named like the file, that begins with &ACCESS RVP, &REL 1 and DEF and ends with END: it has GLOBAL DEF hand( );"), ("DEF hand()", "", "END: it has no DEF;"),
-    ("\nEND\n", "\nEND\nDEF more()\nEND\n", "END: it has DEF hand(), DEF more();"),
+    ("DEF hand()", "DEF other()", "the routine DEF other() and the file have different names"),
+    ("DEF hand()", "GLOBAL DEF hand( )  ; by hand", "one routine of the same name that begins with &ACCESS RVP, &REL 1 and DEF and ends with END: the file has GLOBAL DEF hand( );"), ("DEF hand()", "", "END: the file has no DEF;"),
+    ("\nEND\n", "\nEND\nDEF more()\nEND\n", "END: the file has DEF hand(), DEF more();"),
     ("\nEND\n", "\n", "one routine"), ("BAS(#BASE,3)\n", "", "does not set base, tool, speed and rounding"),
     ("$IPO_MODE=#BASE", "$IPO_MODE=#TCP", "not understood"), ("BAS(#VEL_PTP,25)\n", "", "does not set base, tool, speed and rounding"),
     ("VEL_PTP,25", "VEL_PTP,125", "1 to 100"), ("$APO.CDIS=0.5\n", "", "does not set base, tool, speed and rounding"), ("$VEL.CP=0.0305\n", "", "does not set base, tool, speed and rounding"),

@@ -42,10 +42,10 @@ ON_TABLES = (
 # what is refused, by its code and a word of its reason
 NOT_WRITTEN, BOTH = ("UNSUPPORTED_AXES", "not written with a"), "track and positioner"
 RAIL = {
-    "fanuc": "depends on the setup of the rail",
-    "yaskawa": "whether their speed includes its motion",
+    "fanuc": "depending on the setup of the rail",
+    "yaskawa": "their speed may include this motion",
 }
-COUPLED = {"fanuc": "the user frame of its positions is unconfirmed", "yaskawa": "SMOVL"}
+COUPLED = {"fanuc": "the user frame of its positions is not documented", "yaskawa": "SMOVL"}
 REFUSED = (
     {
         ("fanuc", "cartesian", "part-on-robot"): (

@@ -234,7 +234,7 @@ def test_random_programs_come_back(random_application, seed, motion, setup):
     ("l_nI-1],tPrint", "l_nI],tPrint", "hand/layer_0001.pgx line 3", "has too few values"),
     ("l_nI-1],tPrint", "l_nI-2],tPrint", "hand/layer_0001.pgx line 3", "has too few values"),
     ("for l_nI=1 to 2", "for l_nI=2 to 1", "hand/layer_0001.pgx line 3", "loop"),
-    ("  endFor", "    doExtrude=false\n  endFor", "hand/layer_0001.pgx line 3", "loop over one move"),
+    ("  endFor", "    doExtrude=false\n  endFor", "hand/layer_0001.pgx line 3", "loop over a single move"),
     ("mTravel)\n  waitEndMove()\n  call", "mTravel)\n  call", "hand/start.pgx line 4", "does not wait"),
     ("endFor\n  waitEndMove()", "endFor", "hand/start.pgx line 6", "does not wait"),
     ("mTravel)\n  waitEndMove()\nend", "mTravel)\nend", "program", "ends before its last move"),
@@ -265,9 +265,9 @@ def test_random_programs_come_back(random_application, seed, motion, setup):
     ('name="start"', 'name="begin"', "hand/start.pgx", "start"),
     ("</Datas>", "", "hand/hand.dtx", "well-formed"),
     ('encoding="utf-8"', 'encoding="utf-9"', "hand/hand.pjx", "UTF-8"),
-    ('<Data file="hand.dtx" />', '<Data file="hand.dtx" /><Data file="hand.dtx" />', "hand/hand.pjx", "several files of data"),
+    ('<Data file="hand.dtx" />', '<Data file="hand.dtx" /><Data file="hand.dtx" />', "hand/hand.pjx", "several data files"),
     ("<Datas>", "<Datas><!-- -->", "", ""),
-    ("begin\n  // by", "// by", "hand/start.pgx", "begin to end"),
+    ("begin\n  // by", "// by", "hand/start.pgx", "`begin` to `end`"),
 ])  # fmt: skip
 def test_what_is_not_understood_is_refused(old, new, where, why):
     if not why:

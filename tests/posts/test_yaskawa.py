@@ -512,7 +512,7 @@ def test_pulses_are_those_of_a_machine_file(tmp_path):
     ("MOVL C00003", "SMOVL C00003", "is not understood"), ("C00003=", "C00004=", "is not position 3"),
     ("VJ=10.00", "VJ=110.00", "is not valid"), ("NOP", "NOP\r\nJUMP *A", "is not understood"),
     ("NOP", "NOP\r\nSPEED V=1.0", "is not understood"), ("DOUT OT#(7) OFF", "DOUT OT#(8) OFF", "a second output"),
-    ("//NAME LINEAR", "//NAME OTHER", "its job is called OTHER"), ("CALL JOB:CLEAN", "CALL JOB:LINEAR", "0 jobs are called"),
+    ("//NAME LINEAR", "//NAME OTHER", "the job in the file is called OTHER"), ("CALL JOB:CLEAN", "CALL JOB:LINEAR", "0 jobs are called"),
     ("///NPOS 6", "///NPOS 7", "is not position 6"), ("SC,RW", "SC,RO", "do not begin"), ("/JOB\r", "JOB\r", "not a job"),
     ("NOP", "NOP\r\n'pulses/deg S 1.0", "are missing or given twice"), ("'V in mm/s", "'V in m/s", "the unit of V is missing"),
     ("'V in mm/s", "'V in mm/s\r\n'V in cm/min", "two units"), ("S 1435.3", "S 0.0", "or are missing"),

@@ -151,7 +151,7 @@ def test_asked_to_end_while_files_are_moved_it_ends_with_all_of_them(monkeypatch
             break
         assert status == 130
         assert told.read_text() == (
-            "nothing was written" if found == OLD else "the outputs were in place already"
+            "nothing was written" if found == OLD else "the outputs were already complete"
         )
     assert found == NEW and step > 8
 

@@ -31,10 +31,10 @@ def save(document: Any, path: str) -> None:
             document.saveAs(path)
     except (OSError, RuntimeError) as error:
         raise InputError(
-            "UNWRITABLE", path, "the document cannot be saved ({}); free the disk", error
+            "UNWRITABLE", path, "the document cannot be saved ({}); free disk space", error
         ) from None
     if not os.path.isfile(path):
-        raise InputError("UNWRITABLE", path, "the document cannot be saved; free the disk")
+        raise InputError("UNWRITABLE", path, "the document cannot be saved; free disk space")
 
 
 @contextmanager

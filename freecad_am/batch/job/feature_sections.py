@@ -37,8 +37,8 @@ def with_classes(section: dict[str, Any]) -> dict[str, Any]:
         raise InputError(
             "BAD_VALUE",
             bead_classes.WHERE,
-            "{} is not understood; write classes below it such as contour: {{travel_speed: "
-            "8 mm/s, schedule: 3}}",
+            "{} is not a mapping of bead classes; write, for example, contour: {{travel_speed: 8 "
+            "mm/s, schedule: 3}}",
             quantities.quote(classes),
         )
     fields.known_keys(classes, bead_classes.CLASSES, bead_classes.WHERE)
@@ -108,19 +108,22 @@ def substrate_of(section: Any, strategy: Any, source: PartSource) -> PartSource 
         raise InputError(
             "NOT_FOR_FAMILY",
             "part.start_edges",
-            "only strategy.kind surface starts from edges; remove them",
+            "only strategy.kind surface starts from edges; remove the edges",
         )
     table = source.file.lower().endswith(tuple(POINT_FILES))
     if not family.takes_curves and (source.edges or table):
         where, what = ("part.edges", "edges") if source.edges else ("part.file", "tables of points")
         raise InputError(
-            "NOT_FOR_FAMILY", where, "only strategy.kind curves deposits {} as beads; use it", what
+            "NOT_FOR_FAMILY",
+            where,
+            "only strategy.kind curves deposits {} as beads; set kind: curves",
+            what,
         )
     if table and (source.edges or source.faces):
         raise InputError(
             "NOT_FOR_FAMILY",
             "part.edges" if source.edges else "part.faces",
-            "a table of points has no edges or faces; remove them",
+            "a table of points has no edges or faces; remove `edges` and `faces`",
         )
     if source.faces and not family.takes_faces:
         raise InputError(
@@ -149,7 +152,9 @@ def substrate_of(section: Any, strategy: Any, source: PartSource) -> PartSource 
         return substrate
     if section is not None and family.substrate == NONE:
         raise InputError(
-            "NOT_FOR_FAMILY", "substrate", "parts of revolution do not use a substrate; remove it"
+            "NOT_FOR_FAMILY",
+            "substrate",
+            "parts of revolution do not use a substrate; remove the substrate",
         )
     return None if section is None else part_of(fields.mapping(section, "substrate"), "substrate")
 
@@ -254,7 +259,7 @@ def _defaults(values: dict[str, Any], file: Path) -> dict[str, Any]:
             raise InputError(
                 "BAD_VALUE",
                 key,
-                "the material lacks {}; write {}: ...",
+                "the material has no {}; add {}: ...",
                 key,
                 key,
             )
@@ -327,7 +332,7 @@ def _checked(
             raise InputError(
                 "BAD_VALUE",
                 key,
-                "{} is outside speed_range; change one of the two",
+                "{} is outside speed_range; change the travel speed or the range",
                 quantities.quote(stated[key]),
             )
     if values.get("wire") in (None, {}):
@@ -358,7 +363,7 @@ def _schedules(value: Any) -> dict[str, Any]:
             raise InputError(
                 "BAD_VALUE",
                 f"schedules.{name}",
-                "{} is not a number of a schedule; give a whole number from 1 to {}",
+                "{} is not a schedule number; give a whole number from 1 to {}",
                 quantities.quote(number),
                 bead_classes.LARGEST_SCHEDULE,
             )
@@ -381,7 +386,7 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
             "BAD_VALUE",
             "beads",
             "the beads of {} were measured at {:.4g} to {:.4g} mm/s, but speed_range is {:.4g} "
-            "to {:.4g} mm/s; correct one of the two",
+            "to {:.4g} mm/s; correct the range or the bead model",
             os.path.basename(name),
             low,
             high,
@@ -397,7 +402,7 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
                 "BAD_VALUE",
                 "wire.feed",
                 "{:.4g} mm/s is not a wire feed of {}, whose beads were measured at {:.4g} to "
-                "{:.4g} mm/s; remove it, or use a measured feed",
+                "{:.4g} mm/s; remove the wire feed, or use a measured one",
                 wire_feed,
                 os.path.basename(name),
                 min_feed,

@@ -60,8 +60,8 @@ def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, A
         raise InputError(
             "BAD_VALUE",
             f"strategy.{key}",
-            "auto needs a bead model, and the job has none; give a length, a process.bead_model "
-            "or a process.material with one",
+            "auto needs a bead model, but the job has no bead model; give a length, "
+            "process.bead_model, or a process.material with a bead model",
         )
     speed = model.straight_speed(process.bead_width)
     section_with_numbers = dict(section)
@@ -132,7 +132,7 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
     """The feature of the sections of a job, or of a feature in it, whose files have absolute names.
     Raises InputError that names key and what to do."""
     if values.get("part") is None:
-        raise InputError("NO_PART", "part", "there is no part; write part: {file: shape.step}")
+        raise InputError("NO_PART", "part", "the job has no part; write part: {file: shape.step}")
     part_section = fields.mapping(values["part"], "part")
     if asked(values.get("strategy")):
         process = process_of(values.get("process") or {})
@@ -164,7 +164,7 @@ def one_feature(values: dict[str, Any], name: str) -> JobFeature:
             "NOT_FOR_FAMILY",
             "strategy.start_faces",
             "only layers: geodesic and layers: offset start from faces; remove the faces, or use "
-            "one of these layers",
+            "geodesic or offset",
         )
     ground, scanned = split(values.get("substrate"))
     return JobFeature(
@@ -382,6 +382,6 @@ def _add_fuse(section: Any, part_section: dict[str, Any]) -> Any:
     family = find_family(fields.mapping(section, "strategy").get("kind"))
     if family is None or not family.fuses_solids:
         raise InputError(
-            "NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; remove it"
+            "NOT_FOR_FAMILY", "part.fuse", "only strategy.kind solid fuses solids; remove the key"
         )
     return {**section, "fuse": part_section["fuse"]}

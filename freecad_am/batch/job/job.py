@@ -123,7 +123,9 @@ def read_without_part(path: str) -> WithoutPart:
         fields.known_keys(values, SECTIONS, "")
         cell = job_cell.read(values.get("cell"), folder)
         if cell is None:
-            raise InputError("NO_CELL", "cell", "the job has no cell to run a program in; add one")
+            raise InputError(
+                "NO_CELL", "cell", "the job has no cell to run a program in; add the section `cell`"
+            )
         return WithoutPart(
             cell, _joints(values.get("joints") or {}), _program(values.get("program"), cell)
         )
@@ -157,7 +159,7 @@ def _checked(job: tree.Tree, path: str) -> Job:
             raise InputError(
                 "BAD_VALUE",
                 "sequence",
-                "`sequence` needs `features`; remove it, or list the features",
+                "`sequence` needs `features`; remove `sequence`, or list the features",
             )
         features: tuple[JobFeature, ...] = (one_feature(values, name),)
         process = features[0].process
@@ -277,7 +279,8 @@ def _issues_of_cell(job: Job) -> Iterator[Issue]:
     joints, cell = (job.tree.values.get(section) for section in ("joints", "cell"))
     if _gives(joints, "rz") and "constant" not in (job.joints.method, *job.joints.compare):
         message = Text(
-            "joints.rz has no effect with joints.method: {}; remove it, or use the method constant",
+            "joints.rz has no effect with joints.method: {}; remove joints.rz, or use the method "
+            "constant",
             job.joints.method,
         )
         yield Issue(WARNING, NO_EFFECT, message)
@@ -285,7 +288,7 @@ def _issues_of_cell(job: Job) -> Iterator[Issue]:
     if fixed_part and _gives(cell, "platform"):
         message = Text(
             "cell.platform has no effect with cell.setup: {}: cell.deposition_point is the pose "
-            "of the platform; remove it",
+            "of the platform; remove cell.platform",
             job.cell.setup,
         )
         yield Issue(WARNING, NO_EFFECT, message)
@@ -293,7 +296,7 @@ def _issues_of_cell(job: Job) -> Iterator[Issue]:
     if arrangement.holds_part and _gives(nozzle, "tool"):
         message = Text(
             "cell.nozzle.tool has no effect with cell.setup: {}: cell.deposition_point is the "
-            "pose of the nozzle; remove it",
+            "pose of the nozzle; remove cell.nozzle.tool",
             job.cell.setup,
         )
         yield Issue(WARNING, NO_EFFECT, message)

@@ -75,7 +75,10 @@ def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
     is_document = file.lower().endswith(".fcstd")
     for entry in ("object", "set"):
         if section.get(entry) is not None and not is_document:
-            message = Text("only an FCStd part has objects; {} has none", os.path.basename(file))
+            message = Text(
+                "only FCStd files contain objects, and {} is not an FCStd file; remove the key",
+                os.path.basename(file),
+            )
             raise InputError("BAD_VALUE", f"{key}.{entry}", message)
     if not is_there(file):
         raise InputError(
@@ -89,7 +92,8 @@ def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
         raise InputError(
             "BAD_VALUE",
             f"{key}.solids",
-            "`faces` and `edges` refer to the whole file; use `solids` or them, not both",
+            "`faces` and `edges` refer to the whole file; remove `solids`, or remove `faces` and "
+            "`edges`",
         )
     if solids and file.lower().endswith(MESHES):
         message = Text("{} is a mesh without solids; remove `solids`", os.path.basename(file))
@@ -251,7 +255,7 @@ def scan_of(scan_keys: dict[str, Any], strategy: Any) -> ScanSource | None:
         raise InputError(
             "BAD_VALUE",
             f"{PREFIX}.scan_fit",
-            "{}: only a scan in the coordinates of the part shows how far it has grown; remove it",
+            "{}: only a scan in part coordinates shows how far the part has grown; use none",
             fit,
         )
     family, layers = family_of(strategy), getattr(strategy, "layers", PLANES)
@@ -259,8 +263,8 @@ def scan_of(scan_keys: dict[str, Any], strategy: Any) -> ScanSource | None:
         raise InputError(
             "NOT_YET",
             f"{PREFIX}.scan",
-            "{} cannot be fitted to a scan yet; only solids in planar layers and walls on a "
-            "substrate can: remove it",
+            "{} cannot be fitted to a scan yet, only solids in planar layers and walls on a "
+            "substrate; remove the scan",
             family.describe_layers(layers),
         )
     return ScanSource(file, scan_keys.get("scan_unit", AUTO), fit, pairs, parameters)

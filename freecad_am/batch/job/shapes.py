@@ -86,7 +86,7 @@ def _only_solids(obj: Any, source: PartSource, key: str) -> Any:
         raise InputError(
             "BAD_VALUE",
             f"{key}.solids",
-            "{} has {} solid(s), but no {}; choose others",
+            "{} has {} solid(s), but no {}; choose existing solids",
             obj.Label,
             len(solids),
             ", ".join(wrong),
@@ -112,7 +112,7 @@ def _change(source: Any, part: PartSource, section: str) -> list[Any]:
         raise InputError(
             "BAD_PART",
             f"{section}.set",
-            "{} cannot be built with these values; change them",
+            "{} cannot be built with these values; correct the values",
             names,
         )
     return changed
@@ -128,9 +128,11 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> Any:
         matches = matches or linked_document.getObjectsByLabel(name)
     if len(matches) != 1:
         names = ", ".join(obj.Label for obj in matches or document.Objects) or "none"
-        message = "no object is called {!r}; the document has {}"
+        message = "no object is called {!r}; use an object of the document: {}"
         if matches:
-            message = "{!r} is the label of several objects ({}); use the name of one"
+            message = (
+                "{!r} is the label of several objects ({}); use the name of the object instead"
+            )
             names = ", ".join(obj.Name for obj in matches)
         raise InputError("NO_OBJECT", where, message, name, names)
     obj = matches[0]
@@ -149,7 +151,7 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> Any:
             setattr(obj, key, _typed(getattr(obj, key), text))
     except (ValueError, TypeError, ArithmeticError, RuntimeError, IndexError, NameError):
         message = Text(
-            "{!r} does not fit this property; give a value of the same type as its current one",
+            "{!r} does not fit the property; give a value of the same type as its current value",
             text,
         )
         raise InputError("BAD_VALUE", where, message) from None
@@ -164,7 +166,7 @@ def _set_constraint(sketch: Any, name: str, text: str, where: str) -> None:
     constraints = [item for item in getattr(sketch, "Constraints", ()) if item.Name]
     if name not in [item.Name for item in constraints]:
         names = ", ".join(item.Name for item in constraints) or "none"
-        message = "{} has no constraint with this name (it has {}); name it in the sketch"
+        message = "{} has no constraint with this name, only {}; name the constraint in the sketch"
         raise InputError("BAD_VALUE", where, message, sketch.Label, names)
     now = sketch.getDatum(name)
     sketch.setExpression(f"Constraints.{name}", None)
@@ -178,7 +180,7 @@ def _set_cell(sheet: Any, key: str, text: str, where: str) -> None:
         message = "{} has no cell with the alias or address {!r}; check the spreadsheet"
         raise InputError("BAD_VALUE", where, message, sheet.Label, key)
     if not sheet.getContents(address):
-        message = "cell {} of {} is empty; name one that has a value"
+        message = "cell {} of {} is empty; name a cell with a value"
         raise InputError("BAD_VALUE", where, message, address, sheet.Label)
     now = sheet.get(address)
     if isinstance(now, str):
@@ -188,7 +190,7 @@ def _set_cell(sheet: Any, key: str, text: str, where: str) -> None:
     unit = ""
     if isinstance(value, App.Units.Quantity) and value.Unit != now.Unit:
         if now.Unit.Type not in UNIT_OF_BARE_NUMBERS:
-            raise InputError("BAD_VALUE", where, "{!r} has no unit; add one", text)
+            raise InputError("BAD_VALUE", where, "{!r} has no unit; add a unit", text)
         unit = UNIT_OF_BARE_NUMBERS[now.Unit.Type]
     sheet.set(address, f"={text} {unit}")
 
@@ -212,8 +214,8 @@ def _typed(now: Any, text: str) -> Any:
 
 
 TOUCHING = 0.01  # mm
-INSTEAD = "; but these end with {}, so planar layers are used instead"
-FIXED = "; but with directions that follow it this ends with {}, so they are one (build_direction.mode: fixed)"
+INSTEAD = "; but curved layers end with {}, so planar layers are used"
+FIXED = "; but tool directions that follow the wall end with {}, so all directions are the same (build_direction.mode: fixed)"
 
 
 class Shapes:
@@ -394,7 +396,7 @@ class Shapes:
         if len(substrates + touched) < 2:
             return next(iter(substrates + touched), None)
         compound = self.document.addObject("Part::Compound", "Standing")
-        compound.Label, compound.Links = f"What {self.of.name} stands on", substrates + touched
+        compound.Label, compound.Links = f"Support of {self.of.name}", substrates + touched
         compound.recompute()
         compound.purgeTouched()
         return compound

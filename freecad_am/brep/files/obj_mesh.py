@@ -85,7 +85,9 @@ class ObjMesh:
         if not self.left_out:
             return ()
         counts = ", ".join(f"{count} x {name}" for name, count in self.left_out.items())
-        text = Text("{}: ignored, because they bound no shape: {}", self.where, counts)
+        text = Text(
+            "{}: these entries are ignored, as they define no shape: {}", self.where, counts
+        )
         return (Issue(NOTE, CONTENT, text),)
 
     def _read(self, line: bytes, number: int) -> None:
@@ -118,7 +120,8 @@ class ObjMesh:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "it has free-form surfaces ({} in line {}), which are not read; export triangles, or STEP",
+                "the file has free-form surfaces ({} in line {}), which are not supported; "
+                "export triangles, or STEP",
                 key,
                 number,
             )
@@ -126,7 +129,8 @@ class ObjMesh:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "line {} refers to another file, which is not read; export everything in one file",
+                "line {} refers to another file, which is not read; export the part as a single "
+                "file",
                 number,
             )
         raise InputError(

@@ -53,7 +53,7 @@ def shape_content(path: str | os.PathLike[str]) -> FileContent:
     if not file.exists():
         raise InputError("NO_FILE", where, "the file does not exist; check its name and folder")
     if not file.is_file():
-        raise InputError("NO_FILE", where, "it is a folder; choose the file of the part")
+        raise InputError("NO_FILE", where, "the path is a folder; choose the file of the part")
     if suffix in MESHES:
         raise InputError(
             "UNSUPPORTED_FILE",
@@ -74,7 +74,7 @@ def shape_content(path: str | os.PathLike[str]) -> FileContent:
             stream.read(1)
     except OSError as error:
         raise InputError(
-            "BAD_FILE", where, "it cannot be read: {}; choose another file", error.strerror
+            "BAD_FILE", where, "the file cannot be read: {}; choose another file", error.strerror
         ) from error
     if size == 0:
         raise InputError("EMPTY_FILE", where, "the file is empty; export the part again")
@@ -130,7 +130,9 @@ def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]
         corners, issues = stl_triangles(file, where)
         _read_stl(mesh, file, corners)
     if not mesh.CountFacets:
-        raise InputError("EMPTY_FILE", where, "it holds no triangles; export the part again")
+        raise InputError(
+            "EMPTY_FILE", where, "the file contains no triangles; export the part again"
+        )
     with file.open("rb") as stream:
         issues += unit_issues(stream.read(HEAD), file.suffix.lower(), scale, where)
     _refuse_far(_reach(mesh.BoundBox) * scale, where)
@@ -174,7 +176,8 @@ def _shape(file: Path, where: str) -> tuple[Any, tuple[Issue, ...]]:
             raise InputError(
                 "EMPTY_FILE",
                 where,
-                "it holds no shape, only product data or annotations; export the part again",
+                "the file contains no shape, only product data or annotations; export the part "
+                "again",
             )
     elif file.suffix.lower() in IGES:
         issues += refuse_iges(file, where)
@@ -190,7 +193,7 @@ def _read_shape(file: Path, where: str) -> Any:
     bad = InputError(
         "BAD_FILE",
         where,
-        "it is damaged, or its extension does not match its content; export the part again",
+        "the file is damaged, or its extension does not match its content; export the part again",
     )
     shape = Part.Shape()
     try:
@@ -201,7 +204,7 @@ def _read_shape(file: Path, where: str) -> Any:
     if shape.isNull():
         raise bad
     if not (shape.Faces or shape.Edges):
-        raise InputError("EMPTY_FILE", where, "it holds no shape; export the part again")
+        raise InputError("EMPTY_FILE", where, "the file contains no shape; export the part again")
     return shape
 
 
@@ -212,7 +215,8 @@ def _refuse_bare(shape: Any, where: str) -> None:
         raise InputError(
             "UNSUPPORTED_FILE",
             where,
-            "{} of its {} faces have no surfaces, only triangles; export exact faces, or a mesh (STL, OBJ, 3MF)",
+            "{} of {} faces have no surfaces, only triangles; export exact faces, or a mesh "
+            "(STL, OBJ, 3MF)",
             bare,
             len(shape.Faces),
         )
@@ -235,8 +239,8 @@ def _refuse_far(reach: float, where: str) -> None:
         raise InputError(
             "BAD_FILE",
             where,
-            "it extends to {:.3g} mm, farther than {:.3g} mm; a coordinate is damaged or the "
-            "unit is wrong; export the part again",
+            "the part extends to {:.3g} mm, beyond the limit of {:.3g} mm, so a coordinate is "
+            "damaged or the unit is wrong; export the part again",
             reach,
             MAX_COORDINATE_MM,
         )
@@ -333,8 +337,8 @@ def _binary(data: bytes, count: int, where: str) -> tuple[Array, tuple[Issue, ..
         raise InputError(
             "BAD_FILE",
             where,
-            "it is truncated, or not an STL file: its header counts {:,} triangles, but its size "
-            "holds {:,}; export the part again",
+            "the file is truncated, or is not an STL file: its header announces {:,} triangles, "
+            "but its size fits {:,}; export the part again",
             count,
             available,
         )
@@ -343,14 +347,14 @@ def _binary(data: bytes, count: int, where: str) -> tuple[Array, tuple[Issue, ..
         raise InputError(
             "BAD_FILE",
             where,
-            "{:,} bytes follow its {:,} triangles, possibly more triangles; export the part "
+            "{:,} bytes follow the {:,} triangles, and may be more triangles; export the part "
             "again, as one solid",
             len(trailing),
             count,
         )
     issues: tuple[Issue, ...] = ()
     if trailing.strip(b"\0 \t\r\n"):
-        message = Text("{}: {} bytes after its triangles are not read", where, len(trailing))
+        message = Text("{}: {} bytes after the triangles are ignored", where, len(trailing))
         issues = (Issue(NOTE, CONTENT, message),)
     records = np.frombuffer(data, TRIANGLE, count, HEADER_BYTES)
     return records["corners"].astype(np.float64), issues
@@ -380,7 +384,9 @@ def _ascii(data: bytes, where: str) -> Array:
             raise _bad_line(number, line, where)
     if is_open or in_loop >= 0:
         raise InputError(
-            "BAD_FILE", where, "it is truncated: the last solid has no end; export the part again"
+            "BAD_FILE",
+            where,
+            "the file is truncated: the last solid has no end; export the part again",
         )
     return np.array(corners, dtype=np.float64).reshape(-1, 3, 3)
 

@@ -39,7 +39,7 @@ def read_in_sandbox(
     where = os.path.basename(os.fspath(path)) or os.fspath(path)
     if size > MAX_FILE_MB:
         message = Text(
-            "the file is larger than {} MB, the maximum; check that it is the right one",
+            "the file is larger than {} MB, the maximum; check that you chose the right file",
             MAX_FILE_MB,
         )
         raise InputError("BAD_FILE", where, message)
@@ -107,5 +107,5 @@ def _rejection(where: str, outcome: process.Outcome, seconds: float, memory: flo
             memory,
         )
     else:
-        why = "FreeCAD crashes on it"
-    return InputError("BAD_FILE", where, "it is damaged: {}; export it again", Word(why))
+        why = "FreeCAD crashes while reading it"
+    return InputError("BAD_FILE", where, "the file is damaged: {}; export it again", Word(why))

@@ -128,7 +128,7 @@ class StepContent:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "it has solids by constructive geometry ({}), which are not supported; {}",
+                "the file has solids by constructive geometry ({}), which are not supported; {}",
                 ", ".join(constructed),
                 PLAIN,
             )
@@ -138,8 +138,8 @@ class StepContent:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "it refers to other files ({}), which are not read; export the assembly as one "
-                "file",
+                "the file refers to other files ({}), which are not read; export the assembly as "
+                "one file",
                 ", ".join(dict.fromkeys(references)),
             )
 
@@ -156,8 +156,8 @@ class StepContent:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "{} have no surfaces: it holds triangles (AP242 tessellated geometry); {}",
-                Word("some of its faces" if self.has_geometry else "its faces"),
+                "{} have no surfaces, only triangles (AP242 tessellated geometry); {}",
+                Word("some faces" if self.has_geometry else "the faces"),
                 PLAIN,
             )
 
@@ -172,8 +172,8 @@ class StepContent:
             raise InputError(
                 "BAD_FILE",
                 self.where,
-                "{} of its {} solids and {} of its {} faces cannot be read; check them in the "
-                "CAD system, and export the part again",
+                "{} of {} solids and {} of {} faces cannot be read; check the part in the CAD "
+                "system, and export it again",
                 lost_solids,
                 solids,
                 lost_faces,
@@ -185,8 +185,8 @@ class StepContent:
                     WARNING,
                     CONTENT,
                     Text(
-                        "{}: {} of its {} solids are read as faces that enclose no volume; check "
-                        "the part (Part, Check geometry)",
+                        "{}: {} of {} solids are read as faces that enclose no volume; check the "
+                        "part (Part, Check geometry)",
                         self.where,
                         lost_solids,
                         solids,
@@ -199,7 +199,7 @@ class StepContent:
                     WARNING,
                     CONTENT,
                     Text(
-                        "{}: {} of its {} faces belong to no shape; check the part (Part, Check "
+                        "{}: {} of {} faces belong to no shape; check the part (Part, Check "
                         "geometry)",
                         self.where,
                         lost_faces,
@@ -212,7 +212,7 @@ class StepContent:
                 Issue(
                     NOTE,
                     CONTENT,
-                    Text("{}: items marked as invisible are read like the others", self.where),
+                    Text("{}: items marked as invisible are read like visible ones", self.where),
                 )
             )
         if self.kinds["CONSTRUCTIVE_GEOMETRY_REPRESENTATION"]:
@@ -220,7 +220,7 @@ class StepContent:
                 Issue(
                     NOTE,
                     CONTENT,
-                    Text("{}: its construction geometry (axes, planes) is not read", self.where),
+                    Text("{}: construction geometry (axes, planes) is not read", self.where),
                 )
             )
         return issues
@@ -263,7 +263,7 @@ def refuse_iges(file: Path, where: str) -> list[Issue]:
         raise InputError(
             "UNSUPPORTED_FILE",
             where,
-            "it has solids by constructive geometry ({}), which are not supported; {}",
+            "the file has solids by constructive geometry ({}), which are not supported; {}",
             ", ".join(constructed),
             PLAIN,
         )
@@ -271,20 +271,22 @@ def refuse_iges(file: Path, where: str) -> list[Issue]:
         raise InputError(
             "UNSUPPORTED_FILE",
             where,
-            "it refers to other files (entity {}), which are not read; export the assembly as "
-            "one file",
+            "the file refers to other files (entity {}), which are not read; export the assembly "
+            "as one file",
             IGES_EXTERNAL,
         )
     if kinds and not any(kinds[kind] for kind in IGES_SHAPES):
         raise InputError(
-            "EMPTY_FILE", where, "it holds no shape, only annotations; export the part again"
+            "EMPTY_FILE",
+            where,
+            "the file contains no shape, only annotations; export the part again",
         )
     if blanked and not visible:
         raise InputError(
             "EMPTY_FILE",
             where,
-            "everything in it is marked as invisible and therefore not read; show the part and "
-            "export it again",
+            "all shapes in the file are marked as invisible and therefore not read; show the "
+            "part and export it again",
         )
     issues = []
     elements = [name for kind, name in IGES_ELEMENTS.items() if kinds[kind]]

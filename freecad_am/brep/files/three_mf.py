@@ -160,13 +160,11 @@ def content(path: Path) -> Content:
         with zipfile.ZipFile(path) as archive:
             return _Package(archive, where).built()
     except (zipfile.BadZipFile, zlib.error, EOFError, OSError, NotImplementedError) as error:
-        raise _bad(where, Text("it is not a sound zip file ({})", error)) from None
+        raise _bad(where, Text("the file is not a valid zip file ({})", error)) from None
     except expat.ExpatError as error:
-        raise _bad(where, Text("its XML is damaged ({})", error)) from None
+        raise _bad(where, Text("the XML in the file is damaged ({})", error)) from None
     except OverflowError:
-        raise _bad(
-            where, "a triangle in it has a point with a number of more than 64 bits"
-        ) from None
+        raise _bad(where, "a triangle refers to a point by a number of more than 64 bits") from None
 
 
 class _Package:
@@ -214,14 +212,14 @@ class _Package:
             return InputError(
                 "EMPTY_FILE",
                 self.where,
-                "it is a sliced file: it contains G-code ({}) and no triangles; export the project "
-                "with its meshes, or unpack the G-code and plan it as curves",
+                "the file is sliced: it contains G-code ({}) and no triangles; export the "
+                "project with its meshes, or unpack the G-code and plan it as curves",
                 ", ".join(sliced[:MAX_NAMED]),
             )
         return InputError(
             "EMPTY_FILE",
             self.where,
-            "it contains no triangles{}; export the part again",
+            "the file contains no triangles{}; export the part again",
             self._names_left_out(),
         )
 
@@ -259,8 +257,8 @@ class _Package:
                 "UNSUPPORTED_FILE",
                 self.where,
                 "{!r} is a negative volume that cannot be subtracted here: {} triangles are "
-                "involved, and the limit is {}; subtract it in the CAD system, or remove it in "
-                "the slicer, and export again",
+                "involved, and the limit is {}; subtract the volume in the CAD system, or remove "
+                "it in the slicer, and export again",
                 tool.name,
                 count if count > max_triangles else self.cut,
                 max_triangles if count > max_triangles else MAX_CUT,
@@ -271,8 +269,8 @@ class _Package:
                 "UNSUPPORTED_FILE",
                 self.where,
                 "{!r} is a negative volume that cannot be subtracted here: the geometry kernel "
-                "finds no valid result, as when a mesh touches or crosses itself; subtract it in "
-                "the CAD system, or remove it in the slicer, and export again",
+                "finds no valid result, as when a mesh touches or crosses itself; subtract the "
+                "volume in the CAD system, or remove it in the slicer, and export again",
                 tool.name,
             )
         self.subtracted.append((tool.name, NEGATIVE))
@@ -281,13 +279,13 @@ class _Package:
     def _names_left_out(self) -> str:
         if not self.left_out:
             return ""
-        return Text(", as its content is not part of the shape ({})", _listed(self.left_out))
+        return Text(", as all objects are excluded from the shape ({})", _listed(self.left_out))
 
     def _notes(self) -> list[Issue]:
         notes = []
         if self.left_out:
             message = Text(
-                "{}: ignored, as they are not part of the shape: {}",
+                "{}: these objects are ignored, as they are not part of the shape: {}",
                 self.where,
                 _listed(self.left_out),
             )
@@ -297,8 +295,8 @@ class _Package:
             notes.append(Issue(NOTE, CONTENT, message))
         if self.laid:
             message = Text(
-                "{}: slicer settings that change the shape are not applied; the meshes are "
-                "deposited as they are: {}{}",
+                "{}: slicer settings that change the shape are not applied, and the meshes are "
+                "deposited unchanged: {}{}",
                 self.where,
                 Text.joined(", ", list(self.laid)[:MAX_NAMED]),
                 "" if len(self.laid) <= MAX_NAMED else ", ...",
@@ -306,15 +304,15 @@ class _Package:
             notes.append(Issue(NOTE, CONTENT, message))
         if self.plates > 1:
             message = Text(
-                "{}: its objects are on {} plates, and all are deposited, with the distance "
-                "between plates; to deposit one plate, export only that plate",
+                "{}: the objects on all {} plates are deposited, as far apart as the plates; to "
+                "deposit a single plate, export only that plate",
                 self.where,
                 self.plates,
             )
             notes.append(Issue(NOTE, CONTENT, message))
         if self.spaces:
             message = Text(
-                "{}: ignored, as no object uses it for its shape: data of the extensions: {}",
+                "{}: data of these extensions is ignored, as no object uses it for its shape: {}",
                 self.where,
                 ", ".join(list(self.spaces)[:MAX_NAMED]),
             )
@@ -328,7 +326,7 @@ class _Package:
         ]
         if unused:
             message = Text(
-                "{}: ignored files that no built object uses: {}",
+                "{}: these files are ignored, as no built object uses them: {}",
                 self.where,
                 ", ".join(unused[:MAX_NAMED]),
             )
@@ -361,7 +359,7 @@ class _Package:
                 self._parse(name, reader.start, None, reader.end, separator=None)
             except ValueError as error:
                 raise _bad(
-                    self.where, Text("{} in it has a value that is not a number ({})", name, error)
+                    self.where, Text("{} has a value that is not a number ({})", name, error)
                 ) from None
             if reader.unknown:
                 raise InputError(
@@ -381,8 +379,8 @@ class _Package:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "{} contains holes drilled by the slicer, which the mesh lacks; remove them, or "
-                "export the drilled part as a mesh",
+                "{} contains holes drilled by the slicer, which the mesh lacks; remove the "
+                "holes, or export the drilled part as a mesh",
                 name,
             )
 
@@ -421,7 +419,8 @@ class _Package:
         if model is not None and model.triangles and ranges:
             if model.volumes and model.volumes != ranges:
                 raise _bad(
-                    self.where, Text("two files in it assign different roles to object {}", number)
+                    self.where,
+                    Text("two files in the archive assign different roles to object {}", number),
                 )
             model.volumes = ranges
             return
@@ -459,7 +458,7 @@ class _Package:
             if targets and targets[0].lower() in names:
                 return names[targets[0].lower()]
         if MODEL.lower() not in names:
-            raise _bad(self.where, Text("it contains no model ({})", MODEL))
+            raise _bad(self.where, Text("the archive contains no model ({})", MODEL))
         return names[MODEL.lower()]
 
     def _load(self, file: str) -> None:
@@ -478,8 +477,8 @@ class _Package:
                 raise InputError(
                     "UNSUPPORTED_FILE",
                     self.where,
-                    "{} in it has a unit other than {}, which programs interpret differently; "
-                    "use one unit and export again",
+                    "{} has a unit other than {}, which programs interpret differently; use one "
+                    "unit and export again",
                     name,
                     file,
                 )
@@ -509,11 +508,11 @@ class _Package:
         try:
             info = self.archive.getinfo(name)
         except KeyError:
-            raise _bad(self.where, Text("{} is missing in it", name)) from None
+            raise _bad(self.where, Text("the archive has no {}", name)) from None
         if info.flag_bits & 1:
             raise _encrypted(self.where)
         if info.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-            raise _bad(self.where, "it is compressed in a way that 3MF does not allow")
+            raise _bad(self.where, "the archive is compressed in a way that 3MF does not allow")
         parser = expat.ParserCreate(namespace_separator=separator)
         parser.buffer_text = True
         parser.StartElementHandler = start  # type: ignore[assignment]
@@ -546,7 +545,7 @@ class _Package:
             parser.Parse(b"", True)
 
     def _refuse_doctype(self, *_: object) -> None:
-        raise _bad(self.where, "it has a document type, which 3MF does not allow")
+        raise _bad(self.where, "the XML has a document type, which 3MF does not allow")
 
     def _add(
         self,
@@ -561,13 +560,16 @@ class _Package:
         if the file has no such object.
         """
         if model is None or key in within:
-            text = "holds itself" if model else "is not in it"
+            text = "contains itself" if model else "is missing"
             raise _bad(self.where, Text("object {} of {} {}", key[1], key[0], Word(text)))
         self.placed += 1
         if self.placed > MAX_PLACED_OBJECTS or len(within) > MAX_NESTING:
             text = Text("{:,} objects, or objects nested {} times", MAX_PLACED_OBJECTS, MAX_NESTING)
             raise InputError(
-                "UNSUPPORTED_FILE", self.where, "it contains more than {}; simplify it", Word(text)
+                "UNSUPPORTED_FILE",
+                self.where,
+                "the file contains more than {}; simplify the model",
+                Word(text),
             )
         volume = self._volume(key, within)
         name = (volume and volume.name) or model.name or str(key[1])
@@ -627,7 +629,7 @@ class _Package:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "it contains more than {:,} triangles; simplify it",
+                "the file contains more than {:,} triangles; simplify the mesh",
                 MAX_TRIANGLES,
             )
         vertices, faces = (
@@ -645,7 +647,7 @@ class _Package:
             raise InputError(
                 "UNSUPPORTED_FILE",
                 self.where,
-                "it contains more than {:,} points; simplify it",
+                "the file contains more than {:,} points; simplify the mesh",
                 max_points,
             )
         turned = np.linalg.det(moved[:3])
@@ -684,7 +686,8 @@ class _Package:
                 raise _bad(
                     self.where,
                     Text(
-                        "the slicer's roles name triangles {} to {} of object {!r}, which has {}",
+                        "the slicer's roles name triangles {} to {} of object {!r}, which has "
+                        "only {} triangles",
                         volume.start,
                         volume.end,
                         name,
@@ -859,14 +862,14 @@ class _Model:
     def _model(self, values: dict[str, str]) -> None:
         unit = values.get("unit", "millimeter")
         if unit not in UNITS:
-            raise _bad(self.where, Text("its unit {!r} is none of {}", unit, ", ".join(UNITS)))
+            raise _bad(self.where, Text("the unit {!r} is not one of {}", unit, ", ".join(UNITS)))
         self.unit, self.unit_is_given = UNITS[unit], "unit" in values
         for prefix in values.get("requiredextensions", "").split():
             space = self.prefixes.get(prefix, prefix)
             if space not in KNOWN:
                 if "securecontent" in space:
                     raise _encrypted(self.where)
-                text = Text("it needs an unsupported extension ({})", space)
+                text = Text("the file needs an unsupported extension ({})", space)
                 raise InputError(
                     "UNSUPPORTED_FILE", self.where, "{}; export plain triangles", Word(text)
                 )
@@ -901,7 +904,9 @@ def _matrix(values: dict[str, str]) -> Array:
 
 
 def _encrypted(where: str) -> InputError:
-    return InputError("UNSUPPORTED_FILE", where, "it is encrypted; export it without protection")
+    return InputError(
+        "UNSUPPORTED_FILE", where, "the file is encrypted; export it without protection"
+    )
 
 
 def _bad(where: str, what: str) -> InputError:

@@ -38,7 +38,7 @@ def reported(label: str, shape: Any = None) -> Iterator[None]:
         raise InputError(
             FAULTY,
             label,
-            "the geometry kernel cannot process this shape ({}{}); repair it (Part, Check "
+            "the geometry kernel cannot process the shape ({}{}); repair the shape (Part, Check "
             "geometry), or redraw its faces",
             what,
             _damaged(shape),
@@ -62,7 +62,7 @@ def _damaged(shape: Any) -> str:
     if named:
         return Text("; {}", Text.joined(", ", named[:MAX_NAMED]))
     if faces:
-        return Text("; each of its {} face(s), about {}, is valid", len(faces), _middle(shape))
+        return Text("; all {} face(s), about {}, are valid", len(faces), _middle(shape))
     return ""
 
 
@@ -93,15 +93,15 @@ def refuse_bare(
                 raise InputError(
                     "SELF_INTERSECTION",
                     f"{label} {name}",
-                    "an edge of the face crosses itself at {}; redraw it without crossings, or "
-                    "divide the face there and deposit its parts in turn",
+                    "an edge of the face crosses itself at {}; redraw the edge without "
+                    "crossings, or divide the face there and deposit its parts in turn",
                     place(crossing),
                 )
         raise InputError(
             FAULTY,
             f"{label} {name}",
-            "the geometry kernel cannot triangulate this face, about {}; repair it (Part, Check "
-            "geometry), or redraw it",
+            "the geometry kernel cannot triangulate the face, about {}; repair the face (Part, "
+            "Check geometry), or redraw it",
             _middle(face),
         )
 

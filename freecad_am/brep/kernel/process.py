@@ -80,7 +80,7 @@ def in_kernel_process(function: Callable[..., T], shape: Any, *arguments: Any) -
         if outcome.status == ENDED_BY_SYSTEM:
             raise MemoryError
         if outcome.status:
-            raise RuntimeError("it crashed")
+            raise RuntimeError("the kernel crashed")
         if not outcome.sound:
             raise outcome.value
         result: T = transfer.load_value(outcome.value, folder)

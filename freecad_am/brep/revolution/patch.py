@@ -91,7 +91,7 @@ def _union(turns: Sequence[Turn | None], group: Sequence[Piece], label: str) -> 
     distinct = {round((start % (2.0 * np.pi)) / SAME_AZIMUTH) for start, _ in joined[1:]}
     if len(distinct) > 1:
         names = ", ".join(segment.name for segment in group)
-        text = Text("{} leave more than one opening around the axis; choose one face", names)
+        text = Text("{} leave more than one opening around the axis; choose a single face", names)
         raise InputError("NOT_REVOLUTION", label, text)
     start, end = max(joined, key=lambda turn: turn[1] - turn[0])
     start_in_turn = start % (2.0 * np.pi)
@@ -182,14 +182,18 @@ def patch_of(face: Any, name: str, frame: AxisFrame) -> Patch:
     except (ValueError, RuntimeError, Part.OCCError):
         curves = None  # a zero-length line is not a meridian, and the kernel fails on some surfaces
     if curves is None:
-        return Patch(name, (), _radial_spread(face, frame), "it does not turn about the axis")
+        return Patch(name, (), _radial_spread(face, frame), "the face does not turn about the axis")
     deviation = _deviation(face, frame, curves)
     if deviation > TOLERANCE:
-        return Patch(name, (), deviation, "it is not of revolution")
+        return Patch(name, (), deviation, "the face is not a surface of revolution")
     edge = _edge_deviation(face.Edges, frame)
     if edge > EDGE_TOLERANCE:
         return Patch(
-            name, (), edge, "it is cut out or slanted: an edge runs neither around nor along it"
+            name,
+            (),
+            edge,
+            "the face is cut out or slanted, with an edge that runs neither around nor along the "
+            "axis",
         )
     turn = _turn(face, frame)
     return Patch(
@@ -202,9 +206,7 @@ def _closed_on_axis(face: Any, name: str, frame: AxisFrame) -> Patch:
     curves, edges = restore_meridian(face, frame), edges_of(face)
     edge = _edge_deviation(edges, frame)
     if curves is None or edge > EDGE_TOLERANCE:
-        what = (
-            "it has an edge but no area, so the file is damaged or it does not turn about the axis"
-        )
+        what = "the face has an edge but no area, so the file is damaged or the face does not turn about the axis"
         return Patch(name, (), max(edge, 2.0 * TOLERANCE), what)
     points = np.vstack([edge_points(rim, 181) for rim in edges])
     turn, off = _reach(frame, points), _distance(frame, points, curves)
@@ -212,7 +214,7 @@ def _closed_on_axis(face: Any, name: str, frame: AxisFrame) -> Patch:
         name,
         tuple(Piece(name, samples, tangents, turn) for samples, tangents in curves),
         off,
-        "it is not of revolution",
+        "the face is not a surface of revolution",
     )
 
 

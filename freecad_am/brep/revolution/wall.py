@@ -112,7 +112,7 @@ def pieces_of_edges(shape: Any, frame: AxisFrame, label: str) -> list[Piece]:
         (name, edge) for name, edge in edges if np.hypot(*points[name][:, :2].T).max() > ACROSS
     ]
     if not off_axis:
-        raise InputError("NO_WALL", label, "its edges coincide with the axis; choose another axis")
+        raise InputError("NO_WALL", label, "all edges are on the axis; choose another axis")
     everything = np.vstack([points[name] for name, _ in off_axis])
     outward = everything[np.argmax(np.hypot(everything[:, 0], everything[:, 1])), :2]
     outward = outward / np.linalg.norm(outward)
@@ -122,8 +122,8 @@ def pieces_of_edges(shape: Any, frame: AxisFrame, label: str) -> list[Piece]:
             raise InputError(
                 "NOT_REVOLUTION",
                 f"{label} {name}",
-                "it is {:.4g} mm off the plane of the wire and the axis; draw the wire in a "
-                "plane through the axis",
+                "the edge is {:.4g} mm off the plane of the wire and the axis; draw the wire in "
+                "a plane through the axis",
                 across,
             )
         behind = float((points[name][:, :2] @ outward).min())
@@ -131,7 +131,7 @@ def pieces_of_edges(shape: Any, frame: AxisFrame, label: str) -> list[Piece]:
             raise InputError(
                 "NOT_REVOLUTION",
                 f"{label} {name}",
-                "it crosses the axis by {:.4g} mm; keep it on one side",
+                "the edge crosses the axis by {:.4g} mm; keep the wire on one side of the axis",
                 -behind,
             )
     return [
@@ -182,7 +182,11 @@ def _chosen(named: list[Named], faces: Sequence[str], label: str) -> list[Named]
     for name in faces:
         if name not in faces_by_name:
             raise InputError(
-                "UNKNOWN_FACE", label, "it has no {}; choose from Face1 to Face{}", name, len(named)
+                "UNKNOWN_FACE",
+                label,
+                "the shape has no {}; choose a face from Face1 to Face{}",
+                name,
+                len(named),
             )
     return [(name, faces_by_name[name]) for name in dict.fromkeys(faces)]
 
@@ -216,9 +220,9 @@ def _only_solid(
             raise InputError(
                 "NOT_OF_REVOLUTION",
                 label,
-                "of its {} solids only {} is a solid of revolution, with {:.0%} of the surface; "
-                "select its faces to deposit it, and deposit the others as walls on a part or "
-                "solids on a hub",
+                "of {} solids only {} is a solid of revolution, with {:.0%} of the surface; "
+                "select the faces of this solid to deposit it, and deposit the other solids as "
+                "walls on a part or solids on a hub",
                 len(shape.Solids),
                 name,
                 share,
@@ -228,11 +232,13 @@ def _only_solid(
         raise InputError(
             "NO_WALL",
             label,
-            "none of its {} solids is of revolution; select the faces of the wall",
+            "none of the {} solids is a solid of revolution; select the faces of the wall",
             len(shape.Solids),
         )
     names = Text.joined(", ", (name for name, *_ in walls))
-    raise InputError("SEVERAL_SOLIDS", label, "{} all have a wall; select the faces of one", names)
+    raise InputError(
+        "SEVERAL_SOLIDS", label, "{} all have a wall; select the faces of one wall", names
+    )
 
 
 def _from_faces(
@@ -251,26 +257,26 @@ def _from_faces(
     ]
     if not wide:
         raise InputError(
-            "NO_WALL", label, "it has no face of measurable width; choose another object"
+            "NO_WALL", label, "the shape has no face of measurable width; choose another object"
         )
     lines = [axis] if axis is not None else list(candidates([face for _, face in wide]))
     if not lines:
         raise InputError(
             "NO_WALL",
             label,
-            "its faces share no axis of revolution; choose an axis, or select the faces",
+            "the faces share no axis of revolution; choose an axis, or select the faces",
         )
     frame, patches = _about_best(wide, lines)
     if not all(patch.sound for patch in patches) and all(planar(face) for _, face in wide):
         raise InputError(
-            "NO_WALL", label, "all its faces are flat; choose a part or faces of revolution"
+            "NO_WALL", label, "all faces are flat; choose a part or faces of revolution"
         )
     worst = max(patches, key=lambda patch: patch.deviation)
     if not worst.sound:
         hint = (
             "choose other faces"
             if selected
-            else "select the wall faces if this face does not belong to the wall"
+            else "select the wall faces if the face does not belong to the wall"
         )
         raise InputError(
             "NOT_REVOLUTION",
@@ -326,10 +332,12 @@ def _about_best(
 
 def _from_edges(shape: Any, wall: str, axis: tuple[Any, Any] | None, label: str) -> RevolvedWall:
     if not shape.Edges:
-        raise InputError("NO_WALL", label, "it has neither faces nor edges; choose another object")
+        raise InputError(
+            "NO_WALL", label, "the object has neither faces nor edges; choose another object"
+        )
     if axis is None:
         raise InputError(
-            "NO_AXIS", label, "a wire or sketch needs an axis of revolution; choose one"
+            "NO_AXIS", label, "a wire or sketch needs an axis of revolution; choose an axis"
         )
     frame = axis_frame(*axis)
     return _assembled(pieces_of_edges(shape, frame, label), frame, wall, label, selected=False)
@@ -352,7 +360,7 @@ def _assembled(
         raise InputError(
             "NO_WALL",
             label,
-            "{} do not form one wall; select the faces of the wall, or deposit them in turn",
+            "{} do not form one wall; select the faces of the wall, or deposit the faces in turn",
             names,
         )
     chain, issues = chains[0], []
@@ -368,7 +376,7 @@ def _assembled(
         chain, meridian = _wall_of_contour(chain, wall, label)
     else:
         if wall != "outer":
-            text = Text("{} is a surface without an {} wall; it is used as it is", label, wall)
+            text = Text("{} is a surface without an {} wall; the surface is deposited", label, wall)
             issues.append(Issue(WARNING, "OPEN_WALL", text))
         chain = contour.upright(chain)
         meridian = contour.meridian_of(chain)
@@ -400,14 +408,12 @@ def _wall_of_contour(chain: Chain, wall: str, label: str) -> tuple[Chain, Meridi
         raise InputError(
             "NO_WALL",
             label,
-            "all its faces are flat and across the axis; select the faces of the wall",
+            "all faces are flat and across the axis; select the faces of the wall",
         )
     if wall == "outer":
         return walls[0], contour.meridian_of(walls[0])
     if len(walls) == 1:
-        raise InputError(
-            "NO_WALL", label, "it is a solid without an {} wall; use wall: outer", wall
-        )
+        raise InputError("NO_WALL", label, "the solid has no {} wall; use wall: outer", wall)
     if wall == "inner":
         return walls[-1], contour.meridian_of(walls[-1])
     return walls[0] + walls[-1], Meridian.chained(contour.halfway(walls[0], walls[-1]))
@@ -420,7 +426,10 @@ def _step_notes(chain: Chain, label: str) -> list[Issue]:
             NOTE,
             "STEP",
             Text(
-                "{} of {} is a step of {:.3g} mm in the wall; it is kept", segment.name, label, span
+                "{} of {} is a step of {:.3g} mm in the wall; the step is kept",
+                segment.name,
+                label,
+                span,
             ),
         )
         for segment in chain

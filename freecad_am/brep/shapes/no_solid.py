@@ -11,8 +11,8 @@ from ...core.geometry.formatting import place
 from ...core.issues import InputError, Text
 
 SEW = Text(
-    "sew them (Part, Shape builder: Shell from faces, then Solid from shell), or export the part as a solid from CAD, "
-    "as STEP rather than as IGES"
+    "sew the faces (Part, Shape builder: Shell from faces, then Solid from shell), or export the "
+    "part as a solid from CAD, as STEP rather than as IGES"
 )
 
 
@@ -20,13 +20,13 @@ def no_solid(source: Any, label: str, remedy: str) -> InputError:
     """Return the error NO_SOLID for a Part.Shape or None. remedy: end of the message."""
     faces = [] if source is None or source.isNull() else list(source.Faces)
     if not faces:
-        return InputError("NO_SOLID", label, "it is not a solid; {}", remedy)
+        return InputError("NO_SOLID", label, "the object is not a solid; {}", remedy)
     if source.Shells and all(shell.isClosed() for shell in source.Shells):
         return InputError(
             "NO_SOLID",
             label,
-            "it is not a solid, but {} closed shell(s) of {} face(s); convert them to solids "
-            "(Part, Convert to solid), or {}",
+            "the object has no solid, but {} closed shell(s) of {} face(s); convert the shells "
+            "to solids (Part, Convert to solid), or {}",
             len(source.Shells),
             len(faces),
             remedy,
@@ -35,8 +35,8 @@ def no_solid(source: Any, label: str, remedy: str) -> InputError:
     return InputError(
         "NO_SOLID",
         label,
-        "it is not a solid, but {} open face(s): nothing connects to the edge at {} of {}; {}, "
-        "or {}",
+        "the object has no solid, but {} open face(s): no face connects to the edge at {} of {}; "
+        "{}, or {}",
         len(faces),
         edge,
         face,

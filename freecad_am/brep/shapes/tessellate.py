@@ -36,7 +36,7 @@ def body(source: Any, name: str) -> Body:
         raise InputError(
             "NO_FACES",
             name,
-            "it has no faces for the clearance check; choose a solid or a mesh",
+            "the object has no faces for the clearance check; choose a solid or a mesh",
         )
     return Body(name, vertices, triangles)
 
@@ -215,7 +215,9 @@ def skin(shape: Any, label: str) -> Skin:
     """Return the faces of a Part.Shape for distance measurement. Raises InputError NO_FACES."""
     if not shape.Faces:
         raise InputError(
-            "NO_FACES", label, "it has no faces to compare points with; choose a solid or a surface"
+            "NO_FACES",
+            label,
+            "the object has no faces to compare points with; choose a solid or a surface",
         )
     deflection = max(MIN_DEFLECTION_MM, DEFLECTION_SHARE * shape.BoundBox.DiagonalLength)
     vertices, triangles, face = in_kernel_process(_by_face, shape, deflection)

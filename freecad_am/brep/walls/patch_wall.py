@@ -108,7 +108,9 @@ def refuse_folded(wall: PatchWall, label: str) -> None:
 
 
 FOLDS_TUBE = Text("use a bend radius larger than the tube radius")
-FOLDS = Text("redraw it with a larger radius there, or divide it and deposit its parts in turn")
+FOLDS = Text(
+    "redraw the face with a larger radius there, or divide it and deposit its parts in turn"
+)
 MIN_BEND_SHARE = (
     0.02  # minimum distance along the tube of crossing triangles in a bend, fraction of tube length
 )
@@ -416,8 +418,8 @@ def from_substrate(
         raise InputError(
             "NO_CONTACT",
             label,
-            "the wall does not touch {}: its nearest point is {}, {:.4g} mm away; extend it to "
-            "within {:g} mm of the substrate",
+            "the wall does not touch {}: the nearest point of the wall is {}, {:.4g} mm away; "
+            "extend the wall to within {:g} mm of the substrate",
             substrate.label,
             place(wall.vertices[vertex]),
             gap,
@@ -428,8 +430,8 @@ def from_substrate(
         raise InputError(
             "INSIDE",
             label,
-            "the wall is entirely inside {} (at {} it is {:.4g} mm deep, the least depth); "
-            "extend one end outside the substrate",
+            "the wall is entirely inside {} (smallest depth at {}: {:.4g} mm); extend one end "
+            "outside the substrate",
             substrate.label,
             place(wall.vertices[vertex]),
             depth,
@@ -442,7 +444,7 @@ def from_substrate(
             "NO_CONTACT",
             label,
             "the wall meets {} in no curve long enough to start a layer (all shorter than a few "
-            "{:.2g} mm); extend it into the substrate all around, or choose start edges",
+            "{:.2g} mm); extend the wall into the substrate all around, or choose start edges",
             substrate.label,
             wall.mesh.typical_edge,
         )
@@ -450,8 +452,8 @@ def from_substrate(
     if ground.facets:
         message += (
             Text(
-                "; between the mesh edges it is smoothed, by up to {} mm, about the error of the "
-                "mesh itself",
+                "; between the mesh edges the curve is smoothed by up to {} mm, about the error "
+                "of the mesh",
                 format_deviation(off),
             )
             if off > 0.0
@@ -499,7 +501,7 @@ def curves_of(shape: Any, names: Sequence[str], wall: PatchWall, label: str) -> 
             raise InputError(
                 "UNKNOWN_EDGE",
                 label,
-                "it has no {}; choose from Edge1 to Edge{}",
+                "the shape has no {}; choose an edge from Edge1 to Edge{}",
                 name,
                 len(shape.Edges),
             )

@@ -207,8 +207,8 @@ def _spline(face: Any, where: str) -> Patch:
             raise InputError(
                 "ROUGH_WALL",
                 where,
-                "its surface ({}) cannot be converted to a spline; rebuild the face, for instance "
-                "as a loft",
+                "the surface of the face ({}) cannot be converted to a spline; rebuild the face, "
+                "for instance as a loft",
                 surface.TypeId.removeprefix("Part::Geom"),
             ) from None
     else:
@@ -257,8 +257,8 @@ def _refuse_kinks(patch: Patch, face: Any, where: str) -> None:
                 raise InputError(
                     "ROUGH_WALL",
                     where,
-                    "at ({}) the face has an inner crease of {:.3g} deg; round it, or divide the "
-                    "face there and deposit its parts in turn",
+                    "at ({}) the face has an inner crease of {:.3g} deg; round the crease, or "
+                    "divide the face there and deposit its parts in turn",
                     position,
                     np.degrees(turn.max()),
                 )
@@ -280,7 +280,7 @@ def _checked(patch: Patch, face: Any, where: str) -> Patch:
         raise InputError(
             "ROUGH_WALL",
             where,
-            "at ({}) the spline that approximates it is {:.3g} mm off, more than {:g} mm; "
+            "at ({}) the spline that approximates the face is {:.3g} mm off, more than {:g} mm; "
             "rebuild the face, for instance as a loft or a sweep",
             position,
             off.max(),

@@ -61,8 +61,8 @@ def tubes(
         raise InputError(
             "NOT_ONE_SURFACE",
             label,
-            "{} is not a torus, cylinder or cone, as a wall of several faces requires; choose "
-            "one face",
+            "{} is not a torus, cylinder or cone, as a wall of several faces requires; choose a "
+            "single face",
             first_name,
         )
     for name, face in named[1:]:
@@ -84,12 +84,16 @@ def faces_by_name(shape: Any, names: Sequence[str], label: str) -> dict[str, Any
     Raises InputError NO_WALL for a shape without faces, UNKNOWN_FACE for an unknown name.
     """
     if shape is None or shape.isNull() or not shape.Faces:
-        raise InputError("NO_WALL", label, "it has no faces; choose a part with wall faces")
+        raise InputError("NO_WALL", label, "the object has no faces; choose a part with wall faces")
     faces = {f"Face{index}": face for index, face in enumerate(shape.Faces, start=1)}
     for name in names:
         if name not in faces:
             raise InputError(
-                "UNKNOWN_FACE", label, "it has no {}; choose from Face1 to Face{}", name, len(faces)
+                "UNKNOWN_FACE",
+                label,
+                "the shape has no {}; choose a face from Face1 to Face{}",
+                name,
+                len(faces),
             )
     return faces
 
@@ -105,7 +109,7 @@ def _chosen(shape: Any, names: Sequence[str], label: str) -> list[tuple[str, Any
         raise InputError(
             "NO_WALL",
             label,
-            "it has {} faces that are not flat; name the wall faces in part.faces",
+            "the object has {} curved faces; name the wall faces in part.faces",
             len(curved),
         )
     return curved
@@ -125,7 +129,7 @@ def _refuse_other(first_face: Any, face: Any, where: str, first_name: str) -> No
         raise InputError(
             "NOT_ONE_SURFACE",
             where,
-            "it is off the surface of {} by {:.3g} mm; walls of several surfaces cannot be "
+            "the face is {1:.3g} mm off the surface of {0}; walls of several surfaces cannot be "
             "deposited yet: choose faces of one torus, cylinder or cone",
             first_name,
             off,
@@ -159,14 +163,15 @@ def _ranges(faces: list[Any], kind: str, label: str) -> tuple[float, float]:
         raise InputError(
             "NOT_CLOSED",
             label,
-            "the wall faces do not form a closed tube; open walls (half shells) cannot be deposited yet: choose a full tube",
+            "the wall faces do not form a closed tube; open walls (half shells) cannot be "
+            "deposited yet: choose a full tube",
         )
     low, high = min(low for low, _ in rising), max(high for _, high in rising)
     if kind == TORUS and high - low > TURN - 1e-6:
         raise InputError(
             "NO_WALL",
             label,
-            "a full ring has no end to start from; cut it at the substrate",
+            "a full ring has no end to start from; cut the ring at the substrate",
         )
     return low, high
 
@@ -240,7 +245,7 @@ def _tables(face: Any, faces: tuple[str, ...], label: str) -> tuple[Tube, Tube]:
         raise InputError(
             "NOT_CLOSED",
             f"{label} {faces[0]}",
-            "it {}; choose a tube that is closed around",
+            "the face {}; choose a tube that is closed around",
             Word(what),
         )
     along, around = (
@@ -275,7 +280,7 @@ def _tables(face: Any, faces: tuple[str, ...], label: str) -> tuple[Tube, Tube]:
                 "ROUGH_WALL",
                 f"{label} {faces[0]}",
                 "the wall bends too sharply: the error is {:.3g} mm between {} x {} samples; "
-                "smooth it, or cut it at the crease",
+                "smooth the wall, or cut it at the crease",
                 error,
                 n,
                 m,
@@ -307,7 +312,8 @@ def _refuse_seam(
             raise InputError(
                 "ROUGH_WALL",
                 where,
-                "it has a crease along its seam, which cannot be deposited yet; smooth it there",
+                "the face has a crease along its seam, which cannot be deposited yet; smooth the "
+                "crease",
             )
 
 

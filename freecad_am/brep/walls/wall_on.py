@@ -76,8 +76,8 @@ def find_wall(
         raise InputError(
             "NO_CONTACT",
             label,
-            "the wall does not meet {} in a closed curve (nearest {:.4g} mm); extend it into the "
-            "substrate all around",
+            "the wall does not meet {} in a closed curve (nearest {:.4g} mm); extend the wall "
+            "into the substrate all around",
             substrate_label,
             gap,
         )
@@ -97,7 +97,7 @@ def find_wall(
                 NOTE,
                 "SEVERAL_LOOPS",
                 Text(
-                    "{} meets {} in {} loops; layers start at the uppermost",
+                    "{} meets {} in {} loops; layers start at the uppermost loop",
                     label,
                     substrate_label,
                     len(chains),
@@ -298,8 +298,8 @@ def _refuse_edges(tube: Tube, points: Array, named: list[tuple[str, Any]], label
                 raise InputError(
                     "WALL_EDGE",
                     f"{label} {name}",
-                    "it has an edge that is neither a straight end of the tube nor below the "
-                    "first layer, which cannot be deposited yet; fill openings, and cut ends "
+                    "the face has an edge that is neither a straight end of the tube nor below "
+                    "the first layer, which cannot be deposited yet; fill openings, and cut ends "
                     "straight",
                 )
 
@@ -409,7 +409,7 @@ def _from_edges(wall: MeshWall, names: Sequence[str], label: str) -> _Start:
             raise InputError(
                 "UNKNOWN_EDGE",
                 label,
-                "it has no {}; choose from the open ends of the mesh, sorted by height: {}",
+                "the mesh has no {}; choose from the open ends of the mesh, sorted by height: {}",
                 name,
                 available,
             )
@@ -488,9 +488,9 @@ def _refuse_loose(wall: MeshWall, start: _Start, label: str) -> None:
             raise InputError(
                 "GAP",
                 label,
-                "it has {} separate pieces, and no layer starts on the piece at {}, {:.4g} mm "
-                "from the start of the layers; choose its start edge too, or deposit it as a "
-                "separate feature",
+                "the wall has {} separate pieces, and no layer starts on the piece at {}, {:.4g} "
+                "mm from the start of the layers; choose a start edge of this piece too, or "
+                "deposit the piece as a separate feature",
                 number,
                 place(piece_points[np.argmin(distance)]),
                 distance.min(),
@@ -610,8 +610,8 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
         raise InputError(
             "NO_WALL",
             label,
-            "it is a solid whose curved faces ({}) do not form one wall; select the wall faces, "
-            "or name them in part.faces of a job",
+            "the object is a solid whose curved faces ({}) do not form one wall; select the wall "
+            "faces, or name them in part.faces of a job",
             listed,
         )
     flat = next(
@@ -627,8 +627,8 @@ def named_faces(shape: Any, names: Sequence[str], label: str) -> list[tuple[str,
         raise InputError(
             "NO_WALL",
             label,
-            "its curved faces are tangent to {}, which is flat; select the wall faces, or name "
-            "them in part.faces of a job",
+            "the curved faces of the object are tangent to {}, which is flat; select the wall "
+            "faces, or name them in part.faces of a job",
             flat,
         )
     return curved

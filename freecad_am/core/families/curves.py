@@ -14,9 +14,7 @@ class Curves(Family):
     parameters = CurvesParameters
     takes_curves = True
     modes = ("local", "fixed")
-    mode_refusal = (
-        "{} is for walls; curves are laid along their own directions or one: use local or fixed"
-    )
+    mode_refusal = "{} is for walls; curves use their own directions or one fixed direction: use local or fixed"
 
     starts_on_base = True
     starts_anywhere = True

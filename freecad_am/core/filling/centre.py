@@ -593,8 +593,8 @@ def single_beads(thin: Sequence[Region], beads: Beads) -> list[PlaneCurve]:
             raise InfeasibleError(
                 "THIN_REGION",
                 "filling",
-                "the region at {} is {:.3g} mm wide, narrower than a bead ({:.3g} mm); use thin "
-                "= single, a narrower bead or a margin",
+                "the region at {} is {:.3g} mm wide, narrower than a bead ({:.3g} mm); use "
+                "strategy.thin: single, a narrower bead or a margin",
                 beads.where(region.inside()),
                 region.width,
                 2.0 * beads.inset,

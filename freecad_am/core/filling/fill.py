@@ -196,8 +196,8 @@ def strip_contours(
         raise InfeasibleError(
             "THIN_REGION",
             "filling",
-            "a region around the hub is narrower than a bead ({:.3g} mm) everywhere; use thin = "
-            "single, a narrower bead or a margin",
+            "a region around the hub is narrower than a bead ({:.3g} mm) everywhere; use "
+            "strategy.thin: single, a narrower bead or a margin",
             2.0 * beads.inset,
         )
     if not inner:

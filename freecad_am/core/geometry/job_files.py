@@ -166,7 +166,7 @@ def _read_blocks(path: str | Path, largest: int, code: str, where: str) -> Itera
         status = os.fstat(descriptor)
         if not stat.S_ISREG(status.st_mode):
             raise InputError(
-                code, where, "this is not a file but a device, a pipe or a folder; name a file"
+                code, where, "the path is not a file but a device, a pipe or a folder; name a file"
             )
         size = status.st_size  # 0 for kernel files, regardless of their content
         while size <= largest * MB and (block := stream.read(MB)):
@@ -176,6 +176,6 @@ def _read_blocks(path: str | Path, largest: int, code: str, where: str) -> Itera
         raise InputError(
             code,
             where,
-            "the file is larger than {} MB, the maximum; check that it is the right one",
+            "the file is larger than {} MB, the maximum; check that you chose the right file",
             largest,
         )

@@ -213,8 +213,8 @@ def refuse_family(toolpath: Toolpath, where: str) -> None:
         raise InputError(
             "NOT_YET",
             where,
-            "layers of the family {} cannot be fitted to a scan yet; only solids in planar "
-            "layers and walls on a substrate can: remove the scan",
+            "layers of the family {} cannot be fitted to a scan yet, only solids in planar "
+            "layers and walls on a substrate; remove the scan",
             toolpath.family,
         )
 
@@ -255,7 +255,7 @@ def fit_layers(
         raise InputError(
             "NO_LAYER",
             "substrate.after_layer",
-            "there is no layer above {}: the last one of {} is {}; give a lower one",
+            "there is no layer above {}: the last layer of {} is {}; give a lower layer",
             first_layer - 1,
             len(toolpath.layers),
             len(toolpath.layers) - 1,
@@ -382,7 +382,8 @@ def _refusing(scan: Scan, layer: int, height: float) -> Off:
                 "SCAN_OFF",
                 scan.label,
                 "the scan is {:.4g} mm away from layer {} at {}, more than substrate.scan_within "
-                "= {:g} mm; check that it shows the right part, in the right unit and position",
+                "= {:g} mm; check that the scan shows the right part, in the right unit and "
+                "position",
                 heights.off[farthest],
                 layer,
                 place(points[farthest]),
@@ -456,12 +457,12 @@ def _record(
 def _motion_words(motion: Array) -> str:
     """Describe the motion that aligned a scan with the plan."""
     if np.array_equal(motion, np.eye(4)):
-        return Text("; it was used as measured, in part coordinates")
+        return Text("; the scan was used as measured, in part coordinates")
     angle = math.degrees(
         math.acos(min(1.0, max(-1.0, 0.5 * (float(np.trace(motion[:3, :3])) - 1.0))))
     )
     return Text(
-        "; it was rotated by {:.3f} deg and its origin moved by {:.3f} mm to match the plan",
+        "; the scan was rotated by {:.3f} deg and its origin moved by {:.3f} mm to match the plan",
         angle,
         float(np.linalg.norm(motion[:3, 3])),
     )
@@ -506,8 +507,8 @@ def _issues(record: Fitted, height: float) -> list[Issue]:
                 WARNING,
                 REMAINS_CODE,
                 Text(
-                    "the part has too few layers to blend back to the plan: the last one is up "
-                    "to {:.3f} mm off; raise substrate.scan_band to use fewer layers",
+                    "the part has too few layers to blend back to the plan: the last layer is up "
+                    "to {:.3f} mm off; raise substrate.scan_band to blend within fewer layers",
                     record.remains,
                 ),
             )

@@ -171,8 +171,8 @@ def _aligned(
             raise InputError(
                 "NOT_ON_PART",
                 where,
-                "only {} of its points match {}; choose the measured object, its unit, or "
-                "initial pairs of points",
+                "only {} of the points match {}; choose the measured object, correct the unit, "
+                "or give initial pairs of points",
                 len(on_part),
                 planned.name,
             )
@@ -299,7 +299,7 @@ def _issues(
     registration: Registration, planned: Planned, within: Mask, fitted: Mask, is_ball: bool
 ) -> list[Issue]:
     free = (
-        ("turning it about the centre of the sphere",)
+        ("a rotation about the centre of the sphere",)
         if is_ball and len(registration.free) == 3
         else registration.free
     )
@@ -307,7 +307,7 @@ def _issues(
         Issue(
             NOTE,
             "FREE_MOTION",
-            Text("{} changes no deviation: the points do not determine it", text),
+            Text("{} changes no deviation, so the points do not determine it", text),
         )
         for text in free
     ]
@@ -322,14 +322,16 @@ def _issues(
         )
     out = int((within & ~fitted).sum())
     if out:
-        text = Text("the fit excludes the {} farthest points; the results include them", out)
+        text = Text(
+            "the fit excludes the {} farthest points, but the results include all points", out
+        )
         issues.append(Issue(NOTE, "LEFT_OUT", text))
     if planned.chord > 0.0 and planned.exact is planned.nearest:
         issues.append(
             Issue(
                 NOTE,
                 "CHORD",
-                Text("{} is accurate to {:g} mm, as a mesh", planned.name, planned.chord),
+                Text("{} is a mesh with an accuracy of {:g} mm", planned.name, planned.chord),
             )
         )
     return issues

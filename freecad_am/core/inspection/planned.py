@@ -424,7 +424,7 @@ def align_scan(points: Array, body: Body, label: str) -> Array:
             sample = sample[off <= max(OUTLYING * 1.4826 * float(np.median(off)), 1e-6)]
     except AmError as error:
         raise InputError(
-            "SCAN_OTHER", label, "it cannot be aligned with {}: {}", body.name, error.message
+            "SCAN_OTHER", label, "the scan cannot be aligned with {}: {}", body.name, error.message
         ) from None
     return start
 
@@ -455,7 +455,7 @@ def _attitude(points: Array, surface: Surface, starts: Array, label: str) -> Arr
         raise InputError(
             "SCAN_AMBIGUOUS",
             label,
-            "it fits equally well on the part rotated by {:.0f} deg, so its orientation is "
+            "the scan fits equally well on the part rotated by {:.0f} deg, so its orientation is "
             "ambiguous; give three pairs of points as substrate.scan_pairs, or measure in part "
             "coordinates",
             angle,
@@ -586,7 +586,7 @@ def toolpath_surface(toolpath: Toolpath, name: str) -> Planned:
         raise InputError(
             "NOT_FOR_FAMILY",
             name,
-            "its beads fill solids, so most are inside; compare the points with the feature",
+            "most beads are inside the solids that they fill; compare the points with the feature",
         )
     samples: list[Array] = []
     normals: list[Array] = []

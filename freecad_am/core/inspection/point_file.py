@@ -126,13 +126,17 @@ def ply(data: bytes, where: str) -> Array:
         or not first_element[2].isdecimal()
     ):
         raise InputError(
-            "BAD_FILE", where, "it is not a PLY file with vertices first; export it again"
+            "BAD_FILE", where, "the file is not a PLY file with vertices first; export it again"
         )
     end = element_lines[1] if len(element_lines) > 1 else len(lines)
     fields = [line for line in lines[element_lines[0] + 1 : end] if line[:1] == ["property"]]
     names = [line[-1] for line in fields]
     if not {"x", "y", "z"} <= set(names) or any(line[1] not in _PLY_TYPES for line in fields):
-        raise InputError("BAD_FILE", where, "its vertices lack plain x, y and z; export it again")
+        raise InputError(
+            "BAD_FILE",
+            where,
+            "the vertices in the file lack plain x, y and z; export the file again",
+        )
     count = int(first_element[2])
     if kind == "ascii":
         rows = [line.split() for line in body.splitlines()[:count]]
@@ -152,7 +156,7 @@ def ply(data: bytes, where: str) -> Array:
         raise InputError(
             "BAD_FILE",
             where,
-            "it is truncated after {} of {} vertices; export it again",
+            "the file is truncated after {} of {} vertices; export it again",
             len(vertices),
             count,
         )
@@ -164,7 +168,7 @@ def _numbers(texts: list[list[bytes]], where: str) -> Array:
         return np.array(texts, dtype=np.float64).reshape(-1, 3)
     except ValueError:
         raise InputError(
-            "BAD_FILE", where, "a vertex coordinate is not a number; export it again"
+            "BAD_FILE", where, "a vertex coordinate is not a number; export the file again"
         ) from None
 
 
@@ -278,7 +282,9 @@ def parse(data: bytes, label: str, unit: str = AUTO) -> Measured:
         )
     )
     if len(points) > MAX_POINTS:
-        messages.append(Text("from {} points {} are kept, evenly", len(points), MAX_POINTS))
+        messages.append(
+            Text("of {} points, {} evenly distributed ones are used", len(points), MAX_POINTS)
+        )
         points = points[np.linspace(0, len(points) - 1, MAX_POINTS).astype(np.intp)]
     return Measured(
         points * UNITS[unit_name],
@@ -328,11 +334,11 @@ def _table(text: str, label: str) -> tuple[Array, list[str], str]:
         raise InputError(
             "BAD_FILE",
             f"{label} line {bad[0]}",
-            "most lines, such as this one, are not points; give rows of x y z",
+            "like most lines, this line is not a point; give rows of x y z",
         )
     if bad:
         messages.append(
-            f"{len(bad)} lines that are not points are left out, the first is line {bad[0]}"
+            f"{len(bad)} lines that are not points are ignored, the first in line {bad[0]}"
         )
     _check_widths(cells[first_row:], width, delimiter, label)
     texts = [
@@ -385,8 +391,8 @@ def _check_widths(
             raise InputError(
                 "BAD_FILE",
                 f"{label} line {number}",
-                "the row has {} values, the first {}: commas may be decimal separators too; "
-                "export it with decimal points",
+                "the row has {} values, the first {}, so commas may be decimal separators too; "
+                "export the file with decimal points",
                 len(row),
                 width,
             )
@@ -414,8 +420,8 @@ def _signs(lines: list[str], label: str) -> tuple[str | None, str]:
             raise InputError(
                 "AMBIGUOUS",
                 label,
-                "commas separate both columns and decimals; export it with decimal points, or "
-                "with semicolons between columns",
+                "commas separate both columns and decimals; export the file with decimal points, "
+                "or with semicolons between columns",
             )
     return delimiter, comma
 
@@ -452,7 +458,7 @@ def _columns(
                 raise InputError(
                     "AMBIGUOUS",
                     label,
-                    "several columns are called {}: {}; keep the measured one",
+                    "several columns are called {}: {}; keep only the measured column",
                     twice,
                     ", ".join(cell for cell, name in zip(head, plain) if name == twice),
                 )
@@ -469,7 +475,7 @@ def _columns(
             raise InputError(
                 "AMBIGUOUS",
                 label,
-                "its columns are called {}; name the coordinates x, y and z",
+                "the columns are called {}; name the coordinates x, y and z",
                 ", ".join(head),
             )
     full_rows = [row for _, row in rows if len(row) == width]
@@ -512,7 +518,7 @@ def _check_units(names: list[str], label: str) -> None:
         raise InputError(
             "BAD_UNIT",
             label,
-            "its columns have different units: {}; export them in one unit",
+            "the columns have different units: {}; export all columns in one unit",
             ", ".join(names),
         )
 

@@ -106,7 +106,7 @@ def refuse_too_few(points: Array, where: str) -> None:
         raise InputError(
             "TOO_FEW_POINTS",
             where,
-            "{} points cannot locate a part; measure at least {}, spread over it",
+            "{} points cannot locate a part; measure at least {} points, spread over the part",
             len(points),
             LEAST_POINTS,
         )
@@ -336,7 +336,7 @@ def by_pairs(measured: Array, planned: Array, where: str) -> Array:
         raise InputError(
             "TOO_FEW_PAIRS",
             where,
-            "{} pairs of points are too few; give at least three",
+            "{} pairs of points are too few; give at least three pairs",
             min(len(measured), len(planned)),
         )
     measured_centre, planned_centre = measured.mean(axis=0), planned.mean(axis=0)
@@ -348,7 +348,7 @@ def by_pairs(measured: Array, planned: Array, where: str) -> Array:
             "PAIRS_IN_LINE",
             where,
             "the pairs of points are collinear, so the part could rotate about their line; "
-            "choose others",
+            "choose pairs off this line",
         )
     turn = u_matrix @ np.diag([1.0, 1.0, np.linalg.det(u_matrix @ right)]) @ right
     return np.asarray(pose(turn, planned_centre - turn @ measured_centre))[None]

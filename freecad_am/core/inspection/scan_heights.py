@@ -76,9 +76,9 @@ def refuse_size(points: Array, label: str, body: Body) -> None:
     )
     unit = next(units, "")
     remedy = (
-        Text("in {} the size would match; set it as substrate.scan_unit", unit)
+        Text("the size would match in {}; set this unit as substrate.scan_unit", unit)
         if unit
-        else ("check its unit, substrate.scan_unit, and the scanned object")
+        else ("check substrate.scan_unit and the scanned object")
     )
     raise InputError(
         "SCAN_UNIT",
@@ -117,9 +117,10 @@ def refuse_other(points: Array, label: str, body: Body, within: float) -> None:
     raise InputError(
         "SCAN_OTHER",
         label,
-        "only {:.0%} of its {} points are within {:g} mm of {}, at least {:.0%} are needed; the "
-        "median distance is {:.3g} mm. The scan extends over {:.4g} mm, {} over {:.4g} mm: scan "
-        "the right part, crop the scan, check its unit, or raise substrate.scan_within",
+        "only {:.0%} of the {} scanned points are within {:g} mm of {}, but at least {:.0%} are "
+        "needed; the median distance is {:.3g} mm. The scan extends over {:.4g} mm, {} over "
+        "{:.4g} mm: scan the right part, crop the scan, check its unit, or raise "
+        "substrate.scan_within",
         share,
         len(points),
         within,

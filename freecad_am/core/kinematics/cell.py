@@ -84,8 +84,8 @@ def offset_of_cell(parameters: CellParameters, arrangement: Arrangement) -> Work
             CODE,
             TOUCHED_KEY,
             "touched points calibrate a part that the robot moves, but here the part is fixed "
-            "and the robot holds the tool; remove them, and measure cell.platform or the pose of "
-            "the positioner",
+            "and the robot holds the tool; remove the touched points, and measure cell.platform "
+            "or the pose of the positioner",
         )
     return work_offset(points, parameters.touched_tolerance)
 
@@ -100,7 +100,8 @@ def work_offset(points: Sequence[TouchedPoint], tolerance: float) -> WorkOffset:
         raise InputError(
             CODE,
             TOUCHED_KEY,
-            "{} point(s) cannot locate a part; touch at least {}, spread out and not collinear",
+            "{} point(s) cannot locate a part; touch at least {} points, spread out and not "
+            "collinear",
             len(points),
             MIN_POINTS,
         )
@@ -132,7 +133,7 @@ def work_offset(points: Sequence[TouchedPoint], tolerance: float) -> WorkOffset:
             CODE,
             TOUCHED_KEY,
             "point {} is {:.3g} mm from its touched position (all points: {} mm), more than "
-            "cell.touched_tolerance = {:g} mm; touch it again, and check the order of the "
+            "cell.touched_tolerance = {:g} mm; touch the point again, and check the order of the "
             "points, the part, and the tip calibration",
             worst + 1,
             residual[worst],
@@ -153,7 +154,7 @@ def _refuse_other_size(ratio: float) -> None:
         "the touched points are {:.4g} times as far apart as planned; {}",
         ratio,
         Word(
-            Text("one set is in {}; give both in mm", unit)
+            Text("one set is in {}; give both sets in mm", unit)
             if unit
             else "the points belong to another part, or are in another order"
         ),

@@ -243,7 +243,10 @@ def _check(loaded: Sequence[tuple[ExternalMechanism, Machine]]) -> None:
             )
     if len(tracks) > 1:
         raise InputError(
-            "NOT_YET", EXTERNAL_KEY, "{} mechanisms carry the robot; choose one track", len(tracks)
+            "NOT_YET",
+            EXTERNAL_KEY,
+            "{} mechanisms carry the robot; keep only one track",
+            len(tracks),
         )
     carriers = [machine for named_axis, machine in loaded if named_axis.carries == PART]
     for machine in carriers:
@@ -288,7 +291,7 @@ def _check_names(robot: Machine, loaded: Sequence[tuple[ExternalMechanism, Machi
                 raise InputError(
                     "BAD_VALUE",
                     EXTERNAL_KEY,
-                    "{!r} is listed twice; remove one, or give the second one its own pose",
+                    "{!r} is listed twice; remove one entry, or give the second entry its own pose",
                     machine.id,
                 )
 

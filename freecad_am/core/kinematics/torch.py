@@ -64,9 +64,9 @@ def torch(body: Body, nozzle: NozzleParameters) -> Torch:
         raise InputError(
             CODE,
             WHERE,
-            "it is {:.4g} mm away from its origin, the point where the material exits; put the "
-            "tip of the wire or nozzle at the origin of the file, with Z pointing out of the "
-            "nozzle, in mm",
+            "the torch is {:.4g} mm away from its origin, the point where the material exits; "
+            "put the tip of the wire or nozzle at the origin of the file, with Z pointing out of "
+            "the nozzle, in mm",
             distance,
         )
     low = float(turned_body.vertices[:, 2].min())
@@ -74,8 +74,8 @@ def torch(body: Body, nozzle: NozzleParameters) -> Torch:
         raise InputError(
             CODE,
             WHERE,
-            "it extends {:.4g} mm beyond its origin along Z, into the deposit; point Z of the "
-            "file out of the nozzle, away from the torch, with the origin at the tip",
+            "the torch extends {:.4g} mm beyond its origin along Z, into the deposit; point Z of "
+            "the file out of the nozzle, away from the torch, with the origin at the tip",
             -low,
         )
     _refuse_wider(turned_body, nozzle)

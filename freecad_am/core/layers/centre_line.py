@@ -57,7 +57,7 @@ def chain_edges(edges: Sequence[Nodes]) -> Nodes:
         raise InputError(
             "GUIDE_OPEN",
             WHERE,
-            "the guide has no edge with any length; choose edges, a wire or a sketch",
+            "all edges of the guide have zero length; choose edges, a wire or a sketch",
         )
     chain = [remaining.pop(0)]
     while remaining:
@@ -82,8 +82,8 @@ def chain_edges(edges: Sequence[Nodes]) -> Nodes:
             raise InputError(
                 "GUIDE_OPEN",
                 WHERE,
-                "its edges do not form one curve: {} of {} are disconnected, at {} and {}, and "
-                "the smallest gap is {:.3g} mm; choose edges that meet end to end",
+                "the edges of the guide do not form one curve: {} of {} are disconnected, at {} "
+                "and {}, and the smallest gap is {:.3g} mm; choose edges that meet end to end",
                 len(remaining),
                 len(edges),
                 place(ends[0]),
@@ -98,8 +98,8 @@ def chain_edges(edges: Sequence[Nodes]) -> Nodes:
         raise InputError(
             "GUIDE_CLOSED",
             WHERE,
-            "it returns to its start, at {}, so the last layer would overlap the first; remove "
-            "one edge",
+            "the guide returns to its start, at {}, so the last layer would overlap the first; "
+            "remove one edge",
             place(chain[0].points[0]),
         )
     return Nodes(
@@ -116,8 +116,8 @@ def _refuse_corners(chain: Sequence[Nodes]) -> None:
             raise InputError(
                 "GUIDE_DOUBLES_BACK",
                 WHERE,
-                "it turns back by {:.4g} deg at {}: layers would cut through the deposit; choose "
-                "edges that lead forward",
+                "the guide turns back by {:.4g} deg at {}, so layers would cut through the "
+                "deposit; choose edges that lead forward",
                 np.degrees(turn),
                 position,
             )
@@ -125,8 +125,8 @@ def _refuse_corners(chain: Sequence[Nodes]) -> None:
             raise InputError(
                 "GUIDE_CORNER",
                 WHERE,
-                "it has a corner of {:.3g} deg at {}, where layers would have zero height on the "
-                "inside; round it with a radius, or choose guide: auto",
+                "the guide has a corner of {:.3g} deg at {}, where layers would have zero height "
+                "on the inside; round the corner with a radius, or choose guide: auto",
                 np.degrees(turn),
                 position,
             )
@@ -294,7 +294,9 @@ def centre_line(bodies: Sequence[Body], start: Array, direction: Array, depth: f
     if first_section is None or len(bodies) > 1:
         raise _not_found(
             name,
-            "it is several solids" if len(bodies) > 1 else "it has no cross-section at its base",
+            "the part is several solids"
+            if len(bodies) > 1
+            else "the solid has no cross-section at its base",
         )
     sections = _trace_sections(solid, first_section, direction)
     if len(sections) < 3:

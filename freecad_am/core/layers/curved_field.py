@@ -163,7 +163,7 @@ def _refuse(strategy: SolidParameters) -> None:
             raise InputError(
                 "NOT_FOR_FAMILY",
                 f"strategy.{key}",
-                "it needs planar layers; use {}, or layers: planes",
+                "the setting needs planar layers; use {}, or layers: planes",
                 instead,
             )
 
@@ -202,8 +202,8 @@ def _field(
             raise InputError(
                 "NOT_STANDING",
                 "strategy.start_faces",
-                "no face of {} touches the start faces, which are {:.4g} mm away; choose faces "
-                "in contact, or none",
+                "no face of {} touches the start faces, which are {:.4g} mm away; choose start "
+                "faces in contact, or clear them",
                 name,
                 gap,
             )

@@ -261,8 +261,8 @@ def _refuse_uneven(layers: Sequence[Slice], strategy: SolidParameters) -> None:
     need = float(np.abs(off).max()) / height
     message = Text(
         "{} of {} layers deviate from the layer height: layer {} is {:.3g} to {:.3g} mm high, "
-        "farthest off the {:g} mm at {}; strategy.band allows {:.3g} %, but {:.3g} % is needed: "
-        "raise it, or choose a guide in the middle of the part or with a gentler bend",
+        "farthest off the {:g} mm at {}; strategy.band allows {:.3g} %, but {:.3g} % is needed; "
+        "raise strategy.band, or choose a guide in the middle of the part or with a gentler bend",
         len(uneven),
         len(layers),
         worst.number,
@@ -295,7 +295,7 @@ def _refuse_outside(layer: Slice) -> None:
         raise InputError(
             "GUIDE_OUTSIDE",
             "strategy.guide",
-            "the guide leaves the part: at layer {} it is {:.3g} mm off it, at {}; "
+            "the guide leaves the part: at layer {} the guide is {:.3g} mm outside, at {}; "
             "choose a guide in the part or along one of its edges, or guide: auto",
             layer.number,
             distance,

@@ -323,7 +323,7 @@ def _note(ranking: Sequence[Stacked], label: str, lean: float) -> Issue:
         if best_direction is upright_one
         else (
             Text(
-                "; along (0, 0, 1) they would be {:.4g} mm^2 and {:.4g} mm",
+                "; along (0, 0, 1) the overhang would be {:.4g} mm^2 and the height {:.4g} mm",
                 upright_one.area,
                 upright_one.height,
             )

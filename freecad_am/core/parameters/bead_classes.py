@@ -24,7 +24,7 @@ FIRST_LAYER, CONTOUR, FILL, CLOSING, LINK, WALL = CLASSES = (
 )
 LARGEST_SCHEDULE = 65535  # 16 bits
 LARGEST_WEAVE = 255  # files of weaving conditions of a Yaskawa
-_FORM = "write it as in: contour: travel_speed 8, schedule 3; fill: lead 5"
+_FORM = "write, for example: contour: travel_speed 8, schedule 3; fill: lead 5"
 _INNER = {f.ANGLE: math.radians}
 _TO_OUTER_UNITS = {f.ANGLE: math.degrees}
 START, END = "start", "end"
@@ -228,7 +228,12 @@ def _values(name: str, text: str) -> dict[str, float | int | None]:
         key, _, number = setting.strip().partition(" ")
         if key not in SPECS:
             raise InputError(
-                "BAD_VALUE", WHERE, "{} has no {!r}; use one of {}", name, key, ", ".join(SPECS)
+                "BAD_VALUE",
+                WHERE,
+                "{} has no setting {!r}; use one of {}",
+                name,
+                key,
+                ", ".join(SPECS),
             )
         try:
             value = float(number)

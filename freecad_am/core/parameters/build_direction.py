@@ -23,7 +23,8 @@ class BuildDirectionParameters:
     mode: str = f.parameter(
         "local",
         f.CHOICE,
-        "local: tangent to the wall at each point; layer: one direction per layer; fixed: the axis of the part.",
+        "local: tangent to the wall at each point; layer: one direction per layer; fixed: the "
+        "axis of the part.",
         choices=("local", "layer", "symmetry-plane", "fixed"),
     )
     lead: float = f.parameter(
@@ -75,8 +76,8 @@ class BuildDirectionParameters:
         math.pi,
         f.ANGLE,
         "Robots with a positioner: largest angle between the tool axis and the vertical of the "
-        "cell while depositing; the positioner turns the part to keep it. 180 deg: it does not "
-        "move.",
+        "cell while depositing; the positioner turns the part to keep this limit. 180 deg: the "
+        "positioner does not move.",
         low=0.0,
         high=math.pi,
         advanced=True,

@@ -40,12 +40,18 @@ class NozzleParameters:
         1.0, f.LENGTH, "Diameter of the nozzle's flat tip.", low=0.0, high=1000.0
     )
     length: float = f.parameter(
-        60.0, f.LENGTH, "Length of the nozzle from its tip.", low=0.0, high=10_000.0, open_low=True
+        60.0,
+        f.LENGTH,
+        "Length of the nozzle, measured from the tip.",
+        low=0.0,
+        high=10_000.0,
+        open_low=True,
     )
     tool: Pose = f.parameter(
         (0.0, 0.0, 200.0, 0.0, 0.0, 0.0),
         f.POSE,
-        "Tool on robot only: pose of the tip on the flange, its Z pointing out of the nozzle. mm, RX RY RZ.",
+        "Tool on robot only: pose of the tip on the flange, its Z pointing out of the nozzle. "
+        "mm, RX RY RZ.",
     )
     shape: NozzleShape | None = f.parameter(
         None,
@@ -72,7 +78,7 @@ class CellParameters:
     setup: str = f.parameter(
         "part-on-robot",
         f.CHOICE,
-        "What the robot carries, tool or part; or a machine with rotary axes.",
+        "The robot carries the tool or the part, or the machine has rotary axes.",
         choices=("part-on-robot", "tool-on-robot", "rotary-table", "tool-on-robot+positioner"),
     )
     deposition_point: Pose = f.parameter(
@@ -84,7 +90,8 @@ class CellParameters:
     platform: float | Pose = f.parameter(
         5.0,
         f.LENGTH,
-        "Distance along Z from the flange, or from the face of a rotary table, to the mounting plane; or a pose relative to it.",
+        "Distance along Z from the flange, or from the face of a rotary table, to the mounting "
+        "plane; or the pose of the mounting plane.",
     )
     platform_diameter: float = f.parameter(
         113.0, f.LENGTH, "Diameter of the platform, used for clearance.", low=0.0, high=10_000.0
@@ -92,7 +99,7 @@ class CellParameters:
     mount: str = f.parameter(
         "auto",
         f.CHOICE,
-        "Frame to place on the platform: that of the feature, or that of the part file.",
+        "Frame to place on the platform: the frame of the feature, or of the part file.",
         choices=("auto", "feature", "part"),
     )
     branch: str | tuple[str, str, str] = f.parameter(
@@ -106,7 +113,7 @@ class CellParameters:
         f.RECORDS,
         "Robots: external axes that carry the part or the robot, such as: motoman-motopos-d500 "
         "at 1500 0 0 0 0 0 carries part. x y z mm, RX RY RZ deg of the base in the world, the "
-        "base frame of the robot; separate several with ;.",
+        "base frame of the robot; separate several mechanisms with semicolons.",
         advanced=True,
         poses=True,
         records=EXTERNAL,
@@ -122,7 +129,7 @@ class CellParameters:
         None,
         f.LENGTH,
         "Robots: smallest distance between the links and part, deposit, platform, fixtures and "
-        "nozzle, rapids included; without it, planning ignores the links.",
+        "nozzle, rapids included; if not set, planning ignores the links.",
         low=0.0,
         high=1000.0,
         optional=True,
@@ -151,7 +158,7 @@ class CellParameters:
     touched_tolerance: float = f.parameter(
         1.0,
         f.LENGTH,
-        "Maximum residual of a touched point against the best fit.",
+        "Maximum distance of a touched point from the best fit.",
         low=0.0,
         high=100.0,
         open_low=True,

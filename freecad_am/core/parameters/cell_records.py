@@ -27,14 +27,12 @@ EXTERNAL_KEY, OBSTACLES_KEY = "cell.external", "cell.obstacles"
 TOUCHED_KEY, SHAPE_KEY = "cell.touched", "cell.nozzle.shape"
 MAX_BOX_SIZE = 1e5  # mm, of a box
 _EXTERNAL_TEXT = re.compile(r"(?P<machine>.+?)\s+at\s+(?P<pose>.+?)\s+carries\s+(?P<carries>\S+)")
-_EXTERNAL_FORM = "write it as in: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part"
+_EXTERNAL_FORM = "write, for example: motoman-motopos-d500 at 1500 0 0 0 0 0 carries part"
 _BOX = re.compile(r"box\s+(?P<box>[-+\d.,eE\s]+)")
 _OBSTACLE_TEXT = re.compile(r"(?:(?P<name>[^=;]+?)\s+=\s+)?(?P<what>.+?)\s+at\s+(?P<pose>[^;]+)")
-_OBSTACLE_FORM = (
-    "write it as in: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0"
-)
+_OBSTACLE_FORM = "write, for example: table = table.step at 0 0 -200 0 0 0; post = box 60 60 400 at 900 200 0 0 0 0"
 _TOUCHED_FORM = (
-    "write it as in: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5"
+    "write, for example: 0 0 0 = 900.4 2.1 -99.7; 100 0 0 = 1000.3 1.2 -99.9; 0 80 0 = 901 82 -99.5"
 )
 
 
@@ -132,7 +130,7 @@ class Obstacle:
             raise InputError(
                 "BAD_VALUE",
                 OBSTACLES_KEY,
-                "{} must be either a file or a box; give exactly one",
+                "{} needs either a file or a box; give exactly one of the two",
                 self.name,
             )
         if self.box is not None and not all(0.0 < edge <= MAX_BOX_SIZE for edge in self.box):

@@ -214,7 +214,7 @@ def _check_flag(spec: Spec, value: Any, key: str) -> None:
 
 def _check_text(spec: Spec, value: Any, key: str) -> None:
     if not isinstance(value, str):
-        raise InputError("BAD_VALUE", key, "{!r} is not a text; put it in quotes", value)
+        raise InputError("BAD_VALUE", key, "{!r} is not a text; write the text in quotes", value)
 
 
 def _check_pose(spec: Spec, value: Any, key: str) -> None:
@@ -255,10 +255,12 @@ def _check_number(spec: Spec, value: Any, key: str) -> None:
     if isinstance(value, bool) or not isinstance(value, (int, float)) or math.isnan(value):
         also = Text(" or {}", ", ".join(spec.words)) if spec.words else ""
         raise InputError(
-            "BAD_VALUE", key, "{!r} is not a number; give one such as 2{}", value, Word(also)
+            "BAD_VALUE", key, "{!r} is not a number; give a number such as 2{}", value, Word(also)
         )
     if spec.kind == COUNT and (math.isinf(value) or value != int(value)):
-        raise InputError("BAD_VALUE", key, "{!r} is not a whole number; give one such as 3", value)
+        raise InputError(
+            "BAD_VALUE", key, "{!r} is not a whole number; give a number such as 3", value
+        )
     if spec.high is None and abs(value) > UPPER_BOUNDS.get(spec.kind, math.inf):
         most = UPPER_BOUNDS[spec.kind]  # no user needs this limit in a message
         spec = dataclasses.replace(spec, high=most, low=-most if spec.low is None else spec.low)

@@ -63,7 +63,7 @@ class BaseParameters:
     height: float | str = f.parameter(
         "inf",
         f.LENGTH,
-        "From the base circle to the apex of the cone, along the axis; inf: a cylinder.",
+        "Distance along the axis from the base circle to the apex of the cone; inf: a cylinder.",
         low=0.0,
         open_low=True,
         words=("inf",),
@@ -71,8 +71,8 @@ class BaseParameters:
     axis: Axis = f.parameter(
         Axis((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
         f.VECTOR,
-        "Middle x y z of the base circle and direction i j k of the axis, towards the apex, in the "
-        "part's coordinates.",
+        "Centre x y z of the base circle and direction i j k of the axis, towards the apex, in "
+        "part coordinates.",
         records=axis_text("strategy.base.axis"),
     )
 
@@ -108,7 +108,7 @@ class FilledParameters(LayerParameters):
     fill: str = f.parameter(
         "contours",
         f.CHOICE,
-        "Parallel contours, parallel lines, or the two linked: connected, spiral, zigzag; below "
+        "Parallel contours, parallel lines, or linked patterns: connected, spiral, zigzag; below "
         "100 % also grid, triangles, honeycomb, gyroid.",
         choices=tuple(FILLS),
     )
@@ -147,7 +147,7 @@ class FilledParameters(LayerParameters):
     fill_angle_step: float = f.parameter(
         math.pi / 2.0,
         f.ANGLE,
-        "How far the direction of lines and zigzags turns from layer to layer.",
+        "Rotation of lines and zigzags from layer to layer.",
     )
     contour: bool = f.parameter(True, f.FLAG, "Contours around lines and similar patterns.")
     walls: int | str = f.parameter(
@@ -160,15 +160,15 @@ class FilledParameters(LayerParameters):
     margin: float = f.parameter(
         0.0,
         f.LENGTH,
-        "Machining allowance on the sides of the part; on top, every layer that begins within "
-        "this height above the last one.",
+        "Machining allowance on the sides of the part; on top, further layers are added if they "
+        "begin within this height above the last layer.",
         low=0.0,
     )
     order: str = f.parameter(
         "around-axis",
         f.CHOICE,
-        "Order of several solids on a base: the same layer of each in turn, around the axis, the "
-        "same ring of each, inner rings first; or solid by solid (feature).",
+        "Order of several solids on a base: layer by layer around the axis, where each layer "
+        "goes from the inner rings of all solids to the outer rings; or solid by solid (feature).",
         choices=("around-axis", "feature"),
     )
     wait: float = f.parameter(
@@ -226,8 +226,8 @@ class FilledParameters(LayerParameters):
     infill_overlap: float | str = f.parameter(
         "auto",
         f.RATIO,
-        "How far lines and other patterns reach into the beads of the walls around them, as a share "
-        "of the bead width; auto: as far as neighbouring beads overlap.",
+        "Overlap of lines and other patterns with the surrounding contours, as a share of the "
+        "bead width; auto: the overlap of neighbouring beads.",
         low=0.0,
         high=0.5,
         words=("auto",),
@@ -246,8 +246,8 @@ class FilledParameters(LayerParameters):
     widths: str = f.parameter(
         "adaptive",
         f.CHOICE,
-        "Width of contours in planes: it follows the thickness of the region where that covers "
-        "the region better (adaptive), or is the usual width (fixed).",
+        "Width of contours in planes: adaptive contours follow the thickness of a region if this "
+        "covers the region better; fixed contours have the usual width.",
         choices=("adaptive", "fixed"),
         advanced=True,
     )
@@ -270,15 +270,15 @@ class FilledParameters(LayerParameters):
             raise InputError(
                 "BAD_VALUE",
                 "strategy.spacing_range",
-                "{} excludes 100 %, the usual width; include it",
+                "{} excludes 100 %, the usual width; extend the range to include 100 %",
                 ends,
             )
         if self.fill_density < 1.0 and not FILLS[self.fill].can_be_sparse:
             raise InputError(
                 "BAD_VALUE",
                 "strategy.fill_density",
-                "{} always fills everything, not {:g} %; use 100 %, or fill: contours, lines, "
-                "zigzag, grid, triangles, honeycomb or gyroid",
+                "{} always fills the whole region, not {:g} %; use 100 %, or fill: contours, "
+                "lines, zigzag, grid, triangles, honeycomb or gyroid",
                 self.fill,
                 100.0 * self.fill_density,
             )
@@ -366,8 +366,8 @@ class SolidParameters(FilledParameters):
         f.CHOICE,
         "Shape of the layers: parallel planes; surfaces at equal distances from the support, "
         "measured through the part, so that no support material is needed (geodesic); surfaces "
-        "at equal straight distances from it (offset); or planes normal to a guide curve "
-        "(along).",
+        "at equal straight distances from the support (offset); or planes normal to a guide "
+        "curve (along).",
         choices=(PLANES, GEODESIC, OFFSET, ALONG),
     )
     direction: Point | None = f.parameter(
@@ -401,8 +401,8 @@ class SolidParameters(FilledParameters):
     max_void: float = f.parameter(
         0.03,
         f.RATIO,
-        "Largest share of a plane layer's section without a bead before there is a warning; "
-        "100 %: no warning.",
+        "Largest void in the section of a planar layer without a warning, as a share of the "
+        "section; 100 %: no warning.",
         low=0.0,
         high=1.0,
         advanced=True,
@@ -488,6 +488,6 @@ class CladdingParameters(FilledParameters):
                 raise InputError(
                     "NOT_FOR_FAMILY",
                     f"strategy.{key}",
-                    "it is for solids, not cladding; use {}",
+                    "the key is for solids, not for cladding; use {}",
                     instead,
                 )

@@ -44,7 +44,7 @@ class InspectionParameters:
         BEST,
         f.CHOICE,
         "Motion allowed to fit the points to the part: best fit, shifts only, a turn about and a "
-        "shift along the axis of the part, or only what pairs of points define.",
+        "shift along the axis of the part, or only the motion that pairs of points define.",
         choices=(BEST, SHIFT, AXIS, NONE),
     )
     trim: float = f.parameter(
@@ -85,7 +85,8 @@ class InspectionParameters:
     band: float = f.parameter(
         0.5,
         f.LENGTH,
-        "Points within this height of an evaluated height are used, moved to it along the planned surface.",
+        "Points within this distance of an evaluated height are used, shifted to that height "
+        "along the planned surface.",
         low=0.0,
         open_low=True,
         high=100.0,
@@ -98,7 +99,7 @@ class InspectionParameters:
             raise InputError(
                 "BAD_VALUE",
                 f"{PREFIX}.thickness",
-                "both sides of a wall need its thickness; add it",
+                "both sides of a wall need its thickness; add the thickness",
             )
         self.levels()
         self.start_pairs()

@@ -89,7 +89,7 @@ def check_given(polynomials: Sequence[GivenPolynomial]) -> None:
             raise InputError(
                 "BAD_VALUE",
                 "joints.given",
-                "{} is listed twice; keep one entry per bead",
+                "the bead {} is listed twice; keep one entry per bead",
                 ALL_BEADS if bead is None else f"{bead[0]}/{bead[1]}",
             )
 
@@ -127,14 +127,16 @@ class JointParameters:
     parameter: str = f.parameter(
         "rotation",
         f.CHOICE,
-        "Quantity that the polynomial describes: the true rotation about the tool axis, or RZ of Chalvin 2020.",
+        "Quantity that the polynomial describes: the true rotation about the tool axis, or RZ of "
+        "Chalvin 2020.",
         choices=("rotation", "rz"),
         advanced=True,
     )
     rotation_range: tuple[float, float] = f.parameter(
         (-math.pi, math.pi),
         f.ANGLE_RANGE,
-        "Allowed rotation about the tool axis; a full turn means free, narrower for a torch that is not coaxial.",
+        "Allowed rotation about the tool axis: a full turn for a coaxial torch, a narrower range "
+        "otherwise.",
     )
     objective: str = f.parameter(
         "displacement", f.CHOICE, "Objective for the joint path.", choices=OBJECTIVES
@@ -205,7 +207,8 @@ class JointParameters:
     certificate: bool = f.parameter(
         False,
         f.FLAG,
-        "Compare the joint path with a lower bound over all rotations about the tool axis. Takes up to seconds per bead.",
+        "Compare the joint path with a lower bound over all rotations about the tool axis. Takes "
+        "up to seconds per bead.",
         advanced=True,
     )
     close_gap: bool = f.parameter(
@@ -219,9 +222,9 @@ class JointParameters:
     external_axes: str = f.parameter(
         LEVEL_METHOD,
         f.CHOICE,
-        "External axes. level: they turn only as far as the angle from the vertical requires; "
-        "optimised: each follows one polynomial per bead, optimised together with the tool "
-        "rotation for less motion and larger margins.",
+        "External axes. level: the axes turn only as far as the angle from the vertical "
+        "requires; optimised: each axis follows one polynomial per bead, optimised together with "
+        "the tool rotation for less motion and larger margins.",
         choices=(LEVEL_METHOD, OPTIMISED),
     )
 

@@ -27,8 +27,8 @@ class PlaceParameters:
         AUTO,
         f.CHOICE,
         "Object to move: the deposition point (with the tool on the robot the fixed platform), "
-        "the platform on the flange or the table, or the base of the positioner; auto: whichever "
-        "places the part.",
+        "the platform on the flange or the table, or the base of the positioner; auto: the "
+        "object that places the part.",
         choices=(AUTO, POINT, PLATFORM, POSITIONER),
     )
     x: float = f.parameter(
@@ -92,7 +92,8 @@ class PlaceParameters:
     proven: int = f.parameter(
         5,
         f.COUNT,
-        "Number of the best poses to plan with all points, until one is feasible.",
+        "Largest number of poses that are planned with all points to find a feasible pose, best "
+        "poses first.",
         low=1,
         high=100,
         advanced=True,

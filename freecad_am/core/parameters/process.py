@@ -100,7 +100,7 @@ class WireParameters:
         "auto",
         f.SPEED,
         "Wire feed; auto: the feed for the bead width and layer height at the travel speed, or "
-        "that of the bead model. 0: no wire.",
+        "the feed of the bead model. 0: no wire.",
         low=0.0,
         words=("auto",),
     )
@@ -242,15 +242,16 @@ class ProcessParameters:
     bead_width: float = f.parameter(
         8.0,
         f.LENGTH,
-        "Width of the bead; the bead model keeps it. Solids on hubs are filled with beads of "
-        "this width.",
+        "Width of the bead; a bead model keeps this width. Solids on hubs are filled with beads "
+        "of this width.",
         low=0.0,
         open_low=True,
     )
     fill_width: str = f.parameter(
         "auto",
         f.CHOICE,
-        "Effective bead width when solids on hubs are filled: the bead spacing, or the bead width; auto: the bead width if it is set, kept by a bead model, or used by an overlap.",
+        "Effective bead width when solids on hubs are filled: the bead spacing, or the bead "
+        "width; auto: the bead width if it is set, kept by a bead model, or used by an overlap.",
         choices=("auto", "spacing", "bead_width"),
         advanced=True,
     )
@@ -293,10 +294,10 @@ class ProcessParameters:
         low=0.0,
     )
     between_layers: BetweenLayersParameters = f.group(
-        BetweenLayersParameters, "What happens between two layers."
+        BetweenLayersParameters, "Settings between two layers."
     )
     cooling: CoolingParameters = f.group(
-        CoolingParameters, "A temperature to wait for before returning to a place."
+        CoolingParameters, "Temperature to wait for before the next layer."
     )
     bead_model: str = f.parameter(
         "none",
@@ -307,7 +308,8 @@ class ProcessParameters:
     acceleration: float = f.parameter(
         20.0,
         f.NUMBER,
-        "Largest change of the travel speed along a bead, in mm/s per second, where a bead model sets it.",
+        "Largest change of the travel speed along a bead, in mm/s per second, if a bead model "
+        "sets the speed.",
         low=0.0,
         open_low=True,
         advanced=True,
@@ -318,7 +320,7 @@ class ProcessParameters:
         None,
         f.COUNT,
         "Schedule number with which the welder or extruder deposits beads; program.schedule "
-        "defines how it is sent.",
+        "defines the transmission.",
         low=1,
         high=bead_classes.LARGEST_SCHEDULE,
         optional=True,
@@ -340,9 +342,9 @@ class ProcessParameters:
         optional=True,
         advanced=True,
     )
-    start: BeadStart = f.group(BeadStart, "What differs where beads begin.")
-    end: BeadEnd = f.group(BeadEnd, "What differs where beads end.")
-    material: MaterialParameters = f.group(MaterialParameters, "What is deposited.")
+    start: BeadStart = f.group(BeadStart, "Settings at the start of beads.")
+    end: BeadEnd = f.group(BeadEnd, "Settings at the end of beads.")
+    material: MaterialParameters = f.group(MaterialParameters, "The deposited material.")
     machining_allowance: float | None = f.parameter(
         None,
         f.LENGTH,

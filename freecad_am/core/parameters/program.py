@@ -29,8 +29,8 @@ class NcParameters:
     feed: str = f.parameter(
         "time",
         f.CHOICE,
-        "Feed of joint moves: the time of each (G93), or the speed of the linear axes wherever they move "
-        "(G94).",
+        "Feed of joint moves: the time of each move (G93), or the speed of the linear axes "
+        "wherever they move (G94).",
         choices=("time", "path"),
     )
     compress: bool = f.parameter(
@@ -50,7 +50,8 @@ class NcParameters:
     deposit_on: str | None = f.parameter(
         None,
         f.TEXT,
-        "M or H word that switches the deposit on, such as M7 or H2=1; without one the digital output does.",
+        "M or H word that switches the deposit on, such as M7 or H2=1; if empty, the digital "
+        "output switches the deposit.",
         optional=True,
     )
     deposit_off: str | None = f.parameter(
@@ -59,7 +60,7 @@ class NcParameters:
     wire_output: int = f.parameter(
         1,
         f.COUNT,
-        "Analogue output for the speed of the wire where it follows the travel speed.",
+        "Analogue output for the wire speed, if the wire feed follows the travel speed.",
         low=1,
         high=64,
     )
@@ -75,7 +76,8 @@ class NcParameters:
     switch_kinematics: bool = f.parameter(
         True,
         f.FLAG,
-        "LinuxCNC: M428 and M429 choose between tip and axes; false for a machine with axes only.",
+        "LinuxCNC: whether M428 and M429 switch between tip and axis coordinates; false for "
+        "machines that only move axes.",
     )
 
     def __post_init__(self) -> None:
@@ -89,8 +91,8 @@ class AxesParameters:
     unit: str | None = f.parameter(
         None,
         f.TEXT,
-        "Name or number of the positioner on the controller: mechanical unit of ABB (without one STN1), "
-        "MACHINE_DEF of KUKA (2), motion group of FANUC (2).",
+        "Name or number of the positioner on the controller: mechanical unit of ABB (default "
+        "STN1), MACHINE_DEF of KUKA (default 2), motion group of FANUC (default 2).",
         optional=True,
         advanced=True,
     )
@@ -114,14 +116,15 @@ class ScheduleParameters:
     by: str = f.parameter(
         "output",
         f.CHOICE,
-        "The schedule number is set on a group output; or arc instructions name it and switch "
-        "the deposit; or it selects the program to call.",
+        "Transmission of the schedule number: on a group output, in arc instructions that also "
+        "switch the deposit, or as the number of the program to call.",
         choices=("output", "arc", "call"),
     )
     output: int = f.parameter(
         2,
         f.COUNT,
-        "Group output, H word, register or analogue output that carries the schedule number; for KUKA the first of eight outputs.",
+        "Group output, H word, register or analogue output that carries the schedule number; for "
+        "KUKA the first of eight outputs.",
         low=1,
         high=4096,
     )
@@ -137,13 +140,13 @@ class ScheduleParameters:
 
 @dataclass(frozen=True)
 class TriggerParameters:
-    """Switching on the move itself, ahead of a place."""
+    "Switching of the deposit during the motion, ahead of a point."
 
     lead: float | None = f.parameter(
         None,
         f.TIME,
-        "Time by which the deposit is switched ahead, during the motion, to compensate the delay "
-        "of the equipment. None: the robot stops to switch.",
+        "Time by which the deposit is switched early, during the motion, to compensate for the "
+        "delay of the equipment. None: the robot stops to switch.",
         low=0.0,
         high=0.5,
         optional=True,
@@ -173,7 +176,7 @@ class ProgramParameters:
         words=("auto",),
     )
     dry_run: bool = f.parameter(False, f.FLAG, "Dry run: the same motion without deposit.")
-    start_at: StartParameters = f.group(StartParameters, "Where a job resumes.")
+    start_at: StartParameters = f.group(StartParameters, "Layer and bead at which a job resumes.")
     blend: int = f.parameter(
         100,
         f.COUNT,
@@ -193,12 +196,12 @@ class ProgramParameters:
     deposit_output: int = f.parameter(
         1, f.COUNT, "Digital output that switches the deposit.", low=1, high=4096
     )
-    axes: AxesParameters = f.group(AxesParameters, "What the controller calls the external axes.")
+    axes: AxesParameters = f.group(AxesParameters, "Names of the external axes on the controller.")
     schedule: ScheduleParameters = f.group(
-        ScheduleParameters, "How the welder or extruder is told its schedule."
+        ScheduleParameters, "Transmission of the schedule to the welder or extruder."
     )
     trigger: TriggerParameters = f.group(
-        TriggerParameters, "Switching on the move itself, ahead of a place."
+        TriggerParameters, "Switching of the deposit during the motion, ahead of a point."
     )
 
     def __post_init__(self) -> None:

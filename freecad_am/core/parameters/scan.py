@@ -17,8 +17,8 @@ class ScanParameters:
     scan_within: float = f.parameter(
         5.0,
         f.LENGTH,
-        "Largest distance of the scan from the plan; beyond it, the scan is rejected as another "
-        "part.",
+        "Largest distance of the scan from the plan; a scan farther away is rejected as a scan "
+        "of another part.",
         low=0.0,
         open_low=True,
         high=1000.0,
@@ -37,8 +37,8 @@ class ScanParameters:
     after_layer: int | None = f.parameter(
         None,
         f.COUNT,
-        "Layer after which the scan was made, counted from 0: the layers above are fitted to it; "
-        "none: the scan shows the bare substrate.",
+        "Layer after which the scan was made, counted from 0, so that the layers above are "
+        "fitted to the scan; none: the scan shows the bare substrate.",
         low=0,
         optional=True,
         advanced=True,

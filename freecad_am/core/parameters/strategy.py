@@ -60,9 +60,9 @@ class LayerParameters:
     chord_error: float = f.parameter(
         DefaultLength(MIN_CHORD_ERROR),
         f.LENGTH,
-        "Largest distance between a bead and the straight segments that approximate it. A new "
-        "feature starts with 0.01 mm up to a size of 250 mm and with more for larger ones, at "
-        "most a hundredth of the bead width.",
+        "Largest distance between a bead and the straight segments that approximate it. The "
+        "default of a new feature is 0.01 mm up to a size of 250 mm, and more for larger "
+        "features, at most a hundredth of the bead width.",
         low=1e-5,
         high=10.0,
     )
@@ -122,7 +122,7 @@ class SurfaceParameters(LayerParameters):
         "constant-distance",
         f.CHOICE,
         "Layers at the layer height from the nearest point below (constant-distance), within a "
-        "band around it and without corners (smooth), or along the lines up the wall "
+        "band around this height and without corners (smooth), or along the lines up the wall "
         "(iso-parameter).",
         choices=SPACINGS,
     )
@@ -180,7 +180,7 @@ class SurfaceParameters(LayerParameters):
             raise InputError(
                 "NO_PARAMETER",
                 "strategy.method",
-                "fronts do not follow surface lines, as iso-parameter layers do; remove "
+                "iso-parameter layers follow surface lines, but fronts do not; remove "
                 "strategy.method, or use constant-distance or smooth",
             )
 
@@ -193,7 +193,7 @@ class CurvesParameters(LayerParameters):
         (0.0, 0.0, 1.0),
         f.VECTOR,
         "Direction x y z from the deposit towards the tool, in part coordinates, used where "
-        "neither the curves nor faces define one.",
+        "neither curves nor faces define a direction.",
         records=direction_text("strategy.direction"),
     )
     repeat: int = f.parameter(
@@ -215,8 +215,8 @@ class CurvesParameters(LayerParameters):
         gcode.NO_ROTARY,
         f.CHOICE,
         "G-code: meaning of the words A, B and C while X, Y and Z are the tip in the part: the "
-        "head turns by C and then A (head-ac) or B (head-bc), or the part turns below it "
-        "(table-ac, table-bc); none rejects them.",
+        "head turns by C and then A (head-ac) or B (head-bc), or the part turns below the head "
+        "(table-ac, table-bc); none rejects these words.",
         choices=gcode.ROTARY,
         advanced=True,
     )

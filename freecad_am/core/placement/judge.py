@@ -227,7 +227,9 @@ class Judge:
             share = self._share(cell) if cell.machine.free else 1.0
             if share is not None and share < 1.0 and not _several_alike(cell):
                 return Judged(
-                    share, UNREACHED, message="some points no rotation about the tool serves"
+                    share,
+                    UNREACHED,
+                    message="some points are infeasible at every rotation about the tool axis",
                 )
             cylinders = job.cylinders(cell)
             path = plan_joints(

@@ -215,9 +215,9 @@ def clearance_issue(
     stands = what in [external_link.name for external_link in cell.shapes.external_links]
     if link == NOZZLE:
         moved = (
-            "lift the part over it by cell.platform, or move it in cell.external"
+            "raise the part with cell.platform, or move the mechanism in cell.external"
             if stands
-            else ("move it in cell.obstacles, the part or cell.deposition_point")
+            else ("move the obstacle in cell.obstacles, the part, or cell.deposition_point")
         )
         return Issue(
             ERROR,

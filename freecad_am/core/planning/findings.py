@@ -98,8 +98,8 @@ def out_of_reach(cell: Cell, paths: Sequence[BeadPath]) -> list[Issue]:
             ERROR,
             "UNREACHABLE",
             Text(
-                "the positioner is out of reach of the robot: the nearest point of the part is "
-                "{:.0f} mm from the shoulder, and arm and tool reach {:.0f} mm; move the "
+                "the robot cannot reach the positioner: the nearest point of the part is {:.0f} "
+                "mm from the shoulder, but arm and tool reach only {:.0f} mm; move the "
                 "positioner nearer (cell.external)",
                 nearest,
                 reach,
@@ -155,7 +155,8 @@ def _condition_findings(path: BeadPath, bead_fields: dict[str, int]) -> list[Iss
             ERROR,
             "SINGULAR",
             Text(
-                "inverse condition number {:.4f} is below the required {:.4f}, too close to a singularity; move the part in the cell, or lower joints.min_condition",
+                "inverse condition number {:.4f} is below the required {:.4f}, too close to a "
+                "singularity; move the part in the cell, or lower joints.min_condition",
                 path.condition[point],
                 path.threshold[point],
             ),
@@ -178,7 +179,8 @@ def _range_findings(task: Task, path: BeadPath, bead_fields: dict[str, int]) -> 
             ERROR,
             "ROTATION_RANGE",
             Text(
-                "the tool rotation would be {:.2f} deg, outside joints.rotation_range; widen the range, or move the part in the cell",
+                "the tool rotation would be {:.2f} deg, outside joints.rotation_range; widen the "
+                "range, or move the part in the cell",
                 math.degrees(path.phi[point]),
             ),
             point=point,

@@ -135,8 +135,8 @@ def check(motion: Motion, cell: Cell, rows: Index, arriving: bool, arc: bool = T
         raise InputError(
             code,
             bead_name,
-            "the deposit needs a linear approach to the bead, but the program begins at the bead "
-            "itself; set a retract distance, or another {}",
+            "the deposit needs a linear approach to the bead, but the program begins at the "
+            "bead; set a retract distance, or another {}",
             key,
         )
     off, tilt = linear_deviations(motion, cell, last_row)

@@ -50,9 +50,9 @@ def findings(motion: Motion, cell: Cell) -> list[Issue]:
     for number, (name, hits) in enumerate(zip(in_the_way(cell), met_there, strict=True)):
         laying = rows[hits]
         remedy = (
-            "move it in cell.obstacles, or the part"
+            "move the obstacle in cell.obstacles, or move the part"
             if number < len(cell.shapes.obstacles)
-            else ("lift the part over it by cell.platform, or move it in cell.external")
+            else ("raise the part with cell.platform, or move the mechanism in cell.external")
         )
         if len(laying):
             issues.append(

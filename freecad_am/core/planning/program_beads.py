@@ -57,7 +57,7 @@ def deposited(
         raise InputError(
             "NO_SCHEDULE",
             "process.schedule",
-            "beads of the class {} have no schedule, {}; set process.schedule, or one in "
+            "beads of the class {} have no schedule, {}; set process.schedule, or a schedule in "
             "process.classes.{}",
             name or "from an earlier version",
             Word(
@@ -71,7 +71,9 @@ def deposited(
         raise InputError(
             "SCHEDULE",
             "program.schedule.by",
-            "only an output can change the schedule within a bead: calls stop the machine, and arc instructions may stop it too; use output, or remove the schedules of start and end",
+            "only an output can change the schedule within a bead, because calls stop the "
+            "machine, and arc instructions may stop it too; use output, or remove the schedules "
+            "of start and end",
         )
     schedule = numbers[0] if by == ARC and not parameters.dry_run else None
     schedule_before, lead = _ahead(numbers[0], parameters), parameters.trigger.lead

@@ -54,7 +54,7 @@ class ReadBack:
 
 def program_promises(read_back: ReadBack | None, on_controller: Sequence[str]) -> list[Promise]:
     """Return the promises about a program text and the checks that only the controller can do."""
-    not_checked = "not checked: only the controller can show it"
+    not_checked = "not checked: only the controller can show the result"
     return [*_read_back(read_back), *(Promise(text, not_checked, None) for text in on_controller)]
 
 
@@ -152,7 +152,8 @@ def lies_on_part(toolpath: Toolpath, issues: Sequence[Issue]) -> Promise:
     )
     if toolpath.checks.fitted is not None:
         how = Text(
-            "distance of {:.0f} bead points from the original shape, without the layer shift due to a scan",
+            "distance of {:.0f} bead points from the original shape, without the layer shift due "
+            "to a scan",
             count,
         )
     off = worst > allowed or bool(select_issues(issues, (REMAINS_CODE,), WARNING))
@@ -193,7 +194,9 @@ def once(balance: Balance | None, issues: Sequence[Issue]) -> Promise:
     what = "Over-deposition is small"
     if balance is None or balance.twice is None:
         return Promise(
-            what, "not checked: an earlier version planned the toolpath; plan it again", None
+            what,
+            "not checked: an earlier version planned the toolpath; plan the toolpath again",
+            None,
         )
     overlaps = select_issues(
         [*issues, *deposit_balance.issues(balance)], (deposit_balance.TWICE,), WARNING
@@ -238,7 +241,8 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
     from ..process.shape import compare  # few jobs have one
 
     how = Text(
-        "distance by which the predicted deposit (cubes of {:.3g} mm, filled bead by bead from the wire feed) extends beyond the part at {} points of its faces, along their normals",
+        "distance by which the predicted deposit (cubes of {:.3g} mm, filled bead by bead from "
+        "the wire feed) extends beyond the part at {} points of its faces, along their normals",
         prediction.edge,
         prediction.places,
     )
@@ -260,7 +264,8 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
         inside,
         Promise(
             "The predicted layers have the planned height",
-            "mean surface height of each predicted layer, compared with the planned start of the next layer",
+            "mean surface height of each predicted layer, compared with the planned start of the "
+            "next layer",
             not drifts,
             largest_drift,
             "mm",
@@ -268,7 +273,8 @@ def predicted(toolpath: Toolpath, issues: Sequence[Issue]) -> tuple[Promise, ...
         ),
         Promise(
             "The predicted deposit has the volume of the wire fed",
-            "volume of the cubes against wire section x feed x time, or against the nominal volume of the beads if no wire is set",
+            "volume of the cubes against wire section x feed x time, or against the nominal "
+            "volume of the beads if no wire is set",
             off <= MAX_VOLUME_ERROR,
             PERCENT * off,
             "%",
@@ -375,7 +381,8 @@ def payload_promises(
     how = Text("{}, compared with the payload of {}", Word(weighed), weakest.title)
     if not math.isinf(weakest.payload.from_axis):
         how = Text(
-            "{}, compared with the payload of {}, and its moment about the last axis as the deposit grows",
+            "{}, compared with the payload of {}, and its moment about the last axis as the "
+            "deposit grows",
             Word(weighed),
             weakest.title,
         )

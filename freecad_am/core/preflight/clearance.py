@@ -56,10 +56,10 @@ def promises(
 
 def _limits(motion: Motion, cell: Cell) -> Promise:
     what = "Every axis stays within its limits"
-    how = "every point of the motion, rapids included, compared with the machine file"
+    how = "each point of the motion, rapids included, compared with the limits in the machine file"
     margins = shown_margins(cell, motion.joints)
     if not np.isfinite(margins).any():
-        return Promise(what, "no axis has limits, or no point is reached", None)
+        return Promise(what, "no axis has limits, or no point is reachable", None)
     row, limit = np.unravel_index(int(np.nanargmin(margins)), margins.shape)
     worst = float(margins[row, limit])
     units = cell.machine.units
@@ -109,7 +109,7 @@ def _speeds(motion: Motion, cell: Cell, max_percent: float) -> Promise:
         return Promise(what, "the machine file has no maximum speeds", None)
     ratios = speed_ratios(motion.joints, motion.duration, cell.machine.max_speed).max(axis=1)
     if not np.isfinite(ratios).any():
-        return Promise(what, "no point is reached", None)
+        return Promise(what, "no point is reachable", None)
     row = int(np.nanargmax(ratios))
     worst = PERCENT * float(ratios[row])
     how = "mean speed of each axis on each move, rapids included, compared with the machine file"
@@ -314,7 +314,8 @@ def external_links(
     is_complete = true_shapes and not lacking
     step = number(math.degrees(touches.step))
     how = Text(
-        "{} moving links, checked every {} deg of the whole motion, and the nozzle every mm: they touch {}",
+        "{} moving links, checked every {} deg of the whole motion, and the nozzle every mm: "
+        "they touch {}",
         len(names),
         step,
         Word(met),
@@ -322,7 +323,8 @@ def external_links(
     if not is_complete:
         lacks = missing or "the links of the robot are drawn from the kinematics only"
         how = Text(
-            "not checked in full, because {}: {} moving links, checked every {} deg of the whole motion, and the nozzle every mm; they touch {}",
+            "not checked in full, because {}: {} moving links, checked every {} deg of the whole "
+            "motion, and the nozzle every mm; they touch {}",
             lacks,
             len(names),
             step,

@@ -275,7 +275,11 @@ def fit(
     if len(radius) < MIN_ROWS:
         rows = "1 row" if len(radius) == 1 else Text("{} rows", len(radius))
         raise InputError(
-            "TOO_FEW_ROWS", label, "it has {}; measure at least {} beads", Word(rows), MIN_ROWS
+            "TOO_FEW_ROWS",
+            label,
+            "the bead table has {}; measure at least {} beads",
+            Word(rows),
+            MIN_ROWS,
         )
     for name, (column, unit) in columns.items():
         wrong = np.flatnonzero(~((np.isfinite(column) | (column is radius)) & (column > 0.0)))
@@ -310,9 +314,9 @@ def fit(
             raise InputError(
                 "TABLE_CONTRADICTS",
                 label,
-                "rows with the same settings have different results: {}; with both of each pair "
-                "the bead width would increase with speed; measure these beads again, or remove "
-                "the wrong row",
+                "rows with the same settings have different results: {}; with both rows of each "
+                "pair the bead width would increase with speed; measure these beads again, or "
+                "remove the wrong rows",
                 Text.joined(", ", contradictions),
             )
         raise InputError(
@@ -376,7 +380,7 @@ def _besides(contradictions: Sequence[str]) -> str:
     if not contradictions:
         return ""
     return Text(
-        "; and rows with the same settings have different results: {}; measure them again",
+        "; and rows with the same settings have different results: {}; measure these beads again",
         Text.joined(", ", contradictions),
     )
 
@@ -461,7 +465,7 @@ def check_speeds(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
         raise InputError(
             "BAD_VALUE",
             "process.material.slowest",
-            "{:g} mm/s is more than the fastest, {:g} mm/s; give the slower speed here",
+            "{:g} mm/s is above the fastest speed, {:g} mm/s; give a slower speed",
             slowest,
             fastest,
         )

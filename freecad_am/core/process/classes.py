@@ -78,8 +78,8 @@ def refuse_speeds(process: ProcessParameters) -> None:
         raise InputError(
             "NOT_FOR_FAMILY",
             f"{named[0]}.travel_speed",
-            "the bead model sets the travel speed of every bead; remove it, or use bead_model: "
-            "none",
+            "the bead model sets the travel speed of every bead; remove the travel speed, or use "
+            "bead_model: none",
         )
 
 
@@ -100,7 +100,8 @@ def set_bead_ends(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
                     "PHASE_LENGTH",
                     f"process.classes.{bead.role.bead_class}",
                     "start and end take {:.4g} mm{}, but a bead of the class in layer {} is "
-                    "{:.4g} mm long; shorten them for the class, or avoid such short beads",
+                    "{:.4g} mm long; shorten start and end of the class, or avoid such short "
+                    "beads",
                     ends.length,
                     Word(" with their ramps" if ends.has_ramps else ""),
                     number,

@@ -262,7 +262,7 @@ def model_issues(
                 "TABLE_CONTRADICTS",
                 Text(
                     "rows of the bead table have the same settings but different results: {}; "
-                    "measure these beads again, or remove one of each pair",
+                    "measure these beads again, or remove one row of each pair",
                     Text.joined(", ", model.contradictions),
                 ),
             )
@@ -322,8 +322,8 @@ def _outside(
                 Text(
                     "on {:.3g} % of the length, in {} of {} beads and {} segments, the required "
                     "width needs a speed outside the {:.4g} to {:.4g} mm/min of the table; the "
-                    "speed is clamped, and the width deviates: it is {:.3g} mm at worst instead "
-                    "of {:g} mm. Straight beads of the table are {:.4g} to {:.4g} mm wide: set "
+                    "speed is clamped, and the bead width is {:.3g} mm at worst instead of {:g} "
+                    "mm. Straight beads of the table are {:.4g} to {:.4g} mm wide: set "
                     "process.bead_width in this range, or measure beads at other speeds",
                     100.0 * slow,
                     beads,
@@ -344,9 +344,9 @@ def _outside(
                 NOTE,
                 "TIGHT_BENDS",
                 Text(
-                    "{:.3g} % of the length bends more tightly than the beads of the table, of "
-                    "{:.4g} mm radius or more, and is treated like these; widths are only "
-                    "estimates there",
+                    "{:.3g} % of the length bends more tightly than the beads of the table, "
+                    "which have radii of {:.4g} mm or more; the model uses the smallest radius "
+                    "there, so widths are only estimates",
                     100.0 * bent,
                     model.radii[0],
                 ),

@@ -380,7 +380,7 @@ class SeamPlacer:
                     "SEAM_POINT",
                     Text(
                         "seen along the build direction, process.seam.point is inside the closed "
-                        "beads, {:.3g} mm from the nearest one, so a small change of a layer may "
+                        "beads, {:.3g} mm from the nearest bead, so a small change of a layer may "
                         "move its seam to the other side; choose a point on the surface or outside",
                         distance,
                     ),
@@ -426,9 +426,9 @@ class SeamPlacer:
                     WARNING,
                     "SEAM_SIDE",
                     Text(
-                        "{} closed bead(s) are in a plane across process.seam.away_from, so no "
-                        "side of them is hidden, and they start by process.seam.angle; choose a "
-                        "direction along the layers",
+                        "{} closed bead(s) are in a plane across process.seam.away_from without "
+                        "a hidden side, and start by process.seam.angle; choose a direction "
+                        "along the layers",
                         self._without,
                     ),
                 )
@@ -504,7 +504,8 @@ def check_parameters(seam: SeamParameters) -> None:
             raise InputError(
                 "BAD_VALUE",
                 f"process.seam.{key}",
-                "position: {} needs it; give three numbers such as {}, or choose another position",
+                "position: {} needs a value; give three numbers such as {}, or choose another "
+                "position",
                 position,
                 example,
             )
@@ -552,8 +553,8 @@ def unused_issues(toolpath: Toolpath, seam: SeamParameters) -> list[Issue]:
             WARNING,
             NO_EFFECT,
             Text(
-                "process.seam.{} has no effect with process.seam.position: {}; remove it, or use "
-                "position: {}",
+                "process.seam.{} has no effect with process.seam.position: {}; remove the key, "
+                "or use position: {}",
                 key,
                 seam.position,
                 positions[0],
@@ -568,7 +569,8 @@ def unused_issues(toolpath: Toolpath, seam: SeamParameters) -> list[Issue]:
                 WARNING,
                 NO_EFFECT,
                 Text(
-                    "process.seam.position: {} has no effect: no bead is closed; remove it",
+                    "process.seam.position: {} has no effect, as no bead is closed; remove "
+                    "process.seam.position",
                     seam.position,
                 ),
             )

@@ -306,10 +306,10 @@ def _check_classes(toolpath: Toolpath, process: ProcessParameters) -> Toolpath:
                 WARNING,
                 CODE,
                 Text(
-                    "the wire feeds {:.4g} mm3/s, but beads of these classes, at their own "
-                    "travel speeds, need {} mm3/s, so they are over- or under-filled; give them "
-                    "a schedule with a matching wire feed, or the travel speed of the other "
-                    "beads",
+                    "the wire feeds {:.4g} mm3/s, but beads of these classes need {} mm3/s at "
+                    "their own travel speeds, so they are over- or under-filled; give the "
+                    "classes a schedule with a matching wire feed, or the travel speed of the "
+                    "other beads",
                     wire_rate,
                     text,
                 ),
@@ -383,8 +383,8 @@ def read_table(name: str, folder: Path | None = None) -> Measured:
             raise InputError(
                 "BAD_TABLE",
                 name,
-                "it is not a table: it contains bytes that are not UTF-8 text; save it as CSV in "
-                "UTF-8",
+                "the file is not a table: it contains bytes that are not UTF-8 text; save the "
+                "table as CSV in UTF-8",
             ) from None
         why = (getattr(error, "strerror", None) or str(error) or "no access").lower()
         raise InputError(
@@ -454,13 +454,13 @@ def _check_columns(header: list[str], where: str) -> None:
     for column in header:
         if header.count(column) > 1:
             raise InputError(
-                "BAD_TABLE", where, "the column {!r} appears twice; remove one", column
+                "BAD_TABLE", where, "the column {!r} appears twice; remove one column", column
             )
         if column not in COLUMNS and any(name in COLUMNS for name in header):
             raise InputError(
                 "BAD_TABLE",
                 where,
-                "unknown column {!r}; remove it, or rename it to one of {}",
+                "unknown column {!r}; remove the column, or rename it to one of {}",
                 column,
                 ", ".join(COLUMNS),
             )

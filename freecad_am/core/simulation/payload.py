@@ -23,7 +23,7 @@ from .timeline import volumes
 
 CODE = "PAYLOAD"
 KG = 1e-6  # kg; mass of 1 mm3 at 1 g/cm3
-REMEDY = "process.density sets its weight; the payload is in the machine file"
+REMEDY = "check process.density, and the payload in the machine file"
 
 
 def issues(
@@ -67,8 +67,8 @@ def issues(
                     motion,
                     row,
                     Text(
-                        "from here on the part weighs more than {:g} kg, {:.4g} kg when finished "
-                        "including {:.3g} kg of substrate, above the payload of {}; {}",
+                        "from here on the part weighs more than {:g} kg ({:.4g} kg when "
+                        "finished, including {:.3g} kg of substrate), the payload of {}; {}",
                         machine.payload.kg,
                         mass[-1],
                         bodies,
@@ -128,8 +128,8 @@ def _too_far(motion: Motion, machine: Machine, mass: Array, moment: Array) -> li
             row,
             Text(
                 "the centre of gravity of the part, {:.4g} kg at that time, is {:.4g} mm from "
-                "the last axis of {} ({:.4g} mm when finished), whose payload is {}; move it "
-                "nearer to the axis (cell.platform may be a pose); {}",
+                "the last axis of {} ({:.4g} mm when finished), whose payload is {}; move the "
+                "part nearer to the axis (cell.platform may be a pose); {}",
                 mass[row],
                 out,
                 machine.title,

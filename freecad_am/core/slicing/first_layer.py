@@ -98,7 +98,7 @@ def _find_exit(
             "NO_INTERSECTION",
             label,
             "the wall does not rise out of the substrate everywhere (at v = {:.4g}, for "
-            "instance): extend it into the substrate all around, or choose start edges",
+            "instance); extend the wall into the substrate all around, or choose start edges",
             missing,
         )
     last_exit = len(u) - 2 - np.argmax(leaves[::-1], axis=0)
@@ -167,7 +167,7 @@ def interpolate_polyline(
         raise InputError(
             "NOT_AROUND",
             label,
-            "the first layer does not run once around the wall: choose one closed loop of edges "
+            "the first layer does not run once around the wall; choose a closed loop of edges "
             "that crosses each line up the wall once",
         )
     chord_before = points - np.roll(points, 1, axis=0)

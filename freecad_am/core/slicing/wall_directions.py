@@ -295,7 +295,7 @@ def limit_turns(
             raise InputError(
                 "TURN_LIMIT",
                 label,
-                "build directions still turn faster than {:.3g} deg/mm on a bead of {:.4g} mm: "
+                "build directions still turn faster than {:.3g} deg/mm on a bead of {:.4g} mm; "
                 "allow a faster turn, or use the mode fixed",
                 np.degrees(rate),
                 s[-1],

@@ -311,8 +311,8 @@ def plan(
         raise InputError(
             "NOTHING_TO_DEPOSIT",
             clad_faces.label,
-            "no bead of {:g} mm or more fits on its faces; use a smaller bead spacing, or thin = "
-            "single",
+            "no bead of {:g} mm or more fits on the faces; use a smaller bead spacing, or "
+            "strategy.thin: single",
             strategy.least_bead,
         )
     layers = add_waits(
@@ -356,7 +356,7 @@ def _stretched(share: float) -> tuple[Issue, ...]:
             "DISTORTED",
             Text(
                 "doubly curved faces cannot be flattened without distortion: the bead spacing "
-                "varies by up to {:.2g} %; strategy.distortion limits it",
+                "varies by up to {:.2g} %, within the limit strategy.distortion",
                 100.0 * share,
             ),
         ),

@@ -171,8 +171,8 @@ def _bead(
         raise InputError(
             "ALONG_DIRECTION",
             label,
-            "a bead runs parallel to its tool direction, at {}, so the nozzle would hit it; set "
-            "another strategy.direction, choose faces, or give directions in the table",
+            "a bead runs parallel to its tool direction, at {}, so the nozzle would hit the "
+            "bead; set another strategy.direction, choose faces, or give directions in the table",
             place(points[worst]),
         )
     across = np.cross(forward, directions)

@@ -334,7 +334,7 @@ def size_issues(size: Size, strategy: LayerParameters) -> tuple[Issue, ...]:
             Text(
                 "planning about {} points in {} layers takes about {:g} min of processor time "
                 "and {:g} GB of memory; raise strategy.layer_height or strategy.chord_error to "
-                "reduce them",
+                "reduce both",
                 count(size.points),
                 count(size.layers),
                 at_least(seconds / 60.0),
@@ -354,8 +354,8 @@ def _shape_issues(size: Size, seconds: float) -> tuple[Issue, ...]:
                 LARGE_CODE,
                 Text(
                     "the search for curved layers on a grid of about {} nodes takes about {:g} "
-                    "min of processor time; a larger strategy.layer_height, or layers: planes, "
-                    "takes less",
+                    "min of processor time; use a larger strategy.layer_height, or layers: "
+                    "planes, to save time",
                     count(size.nodes),
                     at_least(grids / 60.0),
                 ),
@@ -367,9 +367,9 @@ def _shape_issues(size: Size, seconds: float) -> tuple[Issue, ...]:
                 NOTE,
                 LARGE_CODE,
                 Text(
-                    "facets meet at sharp angles along about {} mm of edges; computing layers "
-                    "around them takes about {:g} min of processor time; a larger "
-                    "strategy.layer_height, or a mesh with rounded edges, takes less",
+                    "facets meet at sharp angles along about {} mm of edges, and computing "
+                    "layers around these edges takes about {:g} min of processor time; use a "
+                    "larger strategy.layer_height, or a mesh with rounded edges, to save time",
                     count(size.folds),
                     at_least(folds / 60.0),
                 ),
@@ -404,9 +404,9 @@ def tilting_issues(points: int, times: int = 1) -> tuple[Issue, ...]:
                 LARGE_CODE,
                 Text(
                     "with tilts for clearance the tool turns faster than "
-                    "build_direction.max_turn on beads of {} points; the search for slower tilts "
-                    "takes up to {}; a larger build_direction.max_turn, a slimmer nozzle, or "
-                    "clearance: none avoids it",
+                    "build_direction.max_turn on beads of {} points, and the search for slower "
+                    "tilts takes up to {}; use a larger build_direction.max_turn, a slimmer "
+                    "nozzle, or clearance: none, to avoid the search",
                     count(points),
                     Word(minutes),
                 ),
@@ -417,10 +417,10 @@ def tilting_issues(points: int, times: int = 1) -> tuple[Issue, ...]:
             NOTE,
             LARGE_CODE,
             Text(
-                "at the requested tool axes the nozzle touches beads of {} points; the search "
-                "for clear tilts takes about {}, several times that where the tool would turn "
-                "too fast; a smaller build_direction.lead and build_direction.tilt, or "
-                "clearance: none, avoids it",
+                "at the requested tool axes the nozzle touches beads of {} points, and the "
+                "search for clear tilts takes about {}, several times as long where the tool "
+                "would turn too fast; use a smaller build_direction.lead and "
+                "build_direction.tilt, or clearance: none, to avoid the search",
                 count(points),
                 Word(minutes),
             ),
@@ -455,8 +455,8 @@ def remedy_issues(
             NOTE,
             LARGE_CODE,
             Text(
-                "the job is infeasible as it is; the search for a feasible change takes up to "
-                "{:g} min of processor time",
+                "the job is infeasible; the search for a feasible change takes up to {:g} min of "
+                "processor time",
                 at_least(seconds / 60.0),
             ),
         ),

@@ -179,8 +179,8 @@ def refuse_floating(toolpath: Toolpath, number: int, lengths: dict[int, float]) 
         "FLOATS",
         toolpath.features[number].label,
         "the feature has no support: {:.4g} of {:.4g} mm of its first layer are unsupported when "
-        "deposited; move it onto the existing part, set its substrate, or deposit its support "
-        "first",
+        "deposited; move the feature onto the existing part, set its substrate, or deposit its "
+        "support first",
         open_,
         length,
     )

@@ -171,7 +171,7 @@ def over_edge(
                 math.fsum(first_pieces.length[out]),
                 beyond[worst],
                 Word(
-                    "centre the part by cell.mount: feature, move it"
+                    "centre the part by cell.mount: feature, move the part"
                     if mounted
                     else "move the part"
                 ),
@@ -254,8 +254,8 @@ def above(toolpath: Toolpath, frame: Array, bodies: Sequence[Body]) -> list[Issu
             ABOVE_PLATFORM,
             Text(
                 "{:.4g} mm of the first layer are unsupported, up to {:.4g} mm above the "
-                "platform; put the part on it by cell.mount: feature, move it in its file, or "
-                "set its substrate",
+                "platform; use cell.mount: feature, move the part onto the platform in its file, "
+                "or set its substrate",
                 math.fsum(first_pieces.length[up]),
                 height[highest],
             ),

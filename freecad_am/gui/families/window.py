@@ -110,7 +110,7 @@ def ground_missing(wall: Pick, ground: Pick | None) -> str:
     """Return the missing input of a wall; a mesh may start on the platform."""
     if ground is not None or picking.is_mesh(wall.obj):
         return ""
-    return tr("Also Ctrl+click the part it grows on.")
+    return tr("Also Ctrl+click the substrate, the part below.")
 
 
 def several_elements(pick: Pick) -> Pick:

@@ -80,7 +80,7 @@ class PlannedChoice(Input):
         return (
             ""
             if self.widget.count()
-            else tr("This document has nothing to compare with; open the part first.")
+            else tr("The document has no object to compare with; open the part first.")
         )
 
     def arguments(self) -> dict[str, str]:
@@ -90,7 +90,7 @@ class PlannedChoice(Input):
             raise InputError(
                 "NO_INPUT",
                 "Inspection",
-                "The object to compare with (Planned) was deleted; choose another one",
+                "The object to compare with (Planned) was deleted; choose another object",
             )
         return {"planned": "None" if planned is None else recorded.reference(planned)}
 

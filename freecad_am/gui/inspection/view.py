@@ -27,7 +27,7 @@ class InspectionView(StageView):
         "ShowLegend": (
             "App::PropertyBool",
             True,
-            "Show in the corner of the view what the colours mean.",
+            "Show the legend of the colours in the corner of the view.",
         ),
     }
     scale: Scale | None = None

@@ -272,6 +272,8 @@ def number(text: str, where: str) -> float:
         value = math.nan
     if not math.isfinite(value):
         raise InputError(
-            "BAD_VALUE", where, tr("{} is not a number; enter one such as 12.5").format(repr(text))
+            "BAD_VALUE",
+            where,
+            tr("{} is not a number; enter a number such as 12.5").format(repr(text)),
         )
     return value

@@ -55,9 +55,9 @@ class SourcePage(Page):
             tr("Source of the geometry"),
             tr(
                 "Lengths are in mm, angles in degrees. Robots need six revolute axes, machine "
-                "tools three prismatic and two revolute axes; the wizard checks this when you "
-                "continue. Tracks, turntables and positioners next to a robot have one axis or "
-                "two."
+                "tools three prismatic and two revolute axes; the wizard checks the axes when "
+                "you continue. Tracks, turntables and positioners next to a robot have one or "
+                "two axes."
             ),
         )
         self.kind = choice(
@@ -532,7 +532,10 @@ class PosesPage(Page):
                 raise InputError(
                     "BAD_VALUE",
                     tr("Pose {}").format(row + 1),
-                    tr("a quaternion cannot be all zeros; enter the one shown on the controller"),
+                    tr(
+                        "a quaternion cannot be all zeros; enter the quaternion shown on the "
+                        "controller"
+                    ),
                 )
             values.append(line[: self.axes])
             figures.append(line[self.axes :])
@@ -555,28 +558,28 @@ class PosesPage(Page):
                 "NO_POSES",
                 tr("Check poses"),
                 tr(
-                    "only {} are entered, but at least {} are needed, as a machine without them "
-                    "is not loaded; enter more"
+                    "only {} poses are entered, but a machine file needs at least {}; enter more "
+                    "poses"
                 ).format(len(rows), MIN_POSES),
             )
         if not np.isclose(values, draft.shown.zeros, atol=1e-9).all(axis=1).any():
             raise InputError(
                 "NO_POSES",
                 tr("Check poses"),
-                tr("the pose at the serial zeros is missing; enter it too"),
+                tr("the pose at the serial zeros is missing; enter this pose too"),
             )
         if np.ptp(values, axis=0).min() < 1.0:
             still = axis_names(self.owner)[int(np.argmin(np.ptp(values, axis=0)))]
             raise InputError(
                 "NO_POSES",
                 still,
-                tr("it is the same in all poses, which proves nothing; add another pose"),
+                tr("the axis has the same value in all poses; add a pose with another value"),
             )
         if not pendant.fits(pendant.deviations(draft.chain, draft.shown, values, poses)):
             raise InputError(
                 "MISSED",
                 tr("Check poses"),
-                tr("the machine does not reproduce them; see the deviations"),
+                tr("the machine does not reproduce the poses; see the deviations"),
             )
         self.owner.draft = replace(draft, values=values, poses=poses)
 
@@ -618,15 +621,15 @@ class PosesPage(Page):
     def _reason(self, count: int) -> str:
         if count < MIN_POSES:
             return tr(
-                "The machine does not reproduce these poses; enter at least three to locate the "
-                "error."
+                "The machine does not reproduce these poses; enter at least three poses to "
+                "locate the error."
             )
         if self.suspects:
-            return tr("The machine does not reproduce these poses. It would if:")
+            return tr("The machine does not reproduce these poses. Possible causes:")
         return tr(
             "The machine does not reproduce these poses, and no single sign, zero, coupling or "
-            "frame explains it. Check for typing errors, the angle convention, the tool frame, "
-            "and lengths."
+            "frame explains the deviation. Check for typing errors, the angle convention, the "
+            "tool frame, and lengths."
         )
 
     def _show_deviation(self, row: int, deviation: Deviation) -> None:

@@ -44,7 +44,7 @@ class FramesPage(Page):
             tr("Frames and conventions"),
             tr(
                 "The next page compares these values with poses of your controller and points "
-                "out likely errors: leave unknown values as they are."
+                "out likely errors; leave unknown values unchanged."
             ),
         )
         self.frames = FigureTable(
@@ -92,7 +92,7 @@ class FramesPage(Page):
             [tr("From"), tr("To")],
             [
                 tr(
-                    "Limits from the data sheet; leave them empty if unknown. The limits on the "
+                    "Limits from the data sheet; leave unknown limits empty. The limits on the "
                     "previous page are relative to link 2."
                 )
             ]
@@ -325,14 +325,16 @@ class LimitsPage(Page):
                     ),
                 )
             if draft.chain.sliding[row] and np.isnan(lower):
-                raise InputError("BAD_VALUE", name, tr("a prismatic axis has two ends; enter both"))
+                raise InputError(
+                    "BAD_VALUE", name, tr("a prismatic axis needs a range; enter both ends")
+                )
             if any(rate <= 0.0 for rate in rates):
                 raise InputError(
                     "BAD_VALUE",
                     name,
                     tr(
-                        "enter positive values for speed, acceleration and jerk, or leave them "
-                        "empty"
+                        "enter positive values for speed, acceleration and jerk, or leave the "
+                        "fields empty"
                     ),
                 )
         values = (

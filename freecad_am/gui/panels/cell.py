@@ -178,7 +178,7 @@ class ProposingPanel(PreviewPanel):
             else:
                 self._note(
                     key,
-                    tr("Kept as entered; for {} it would be {}.").format(
+                    tr("Kept as entered; the proposal for {} is {}.").format(
                         title, _value_text(proposed)
                     ),
                 )

@@ -24,7 +24,7 @@ from .preview import PickPanel
 FACES = Link(
     "Source",
     "",
-    marked("Faces to cover; if none is selected and the object is not a solid, all its faces."),
+    marked("Faces to cover; if no face is selected, all faces of an object that is not a solid."),
     type_name="App::PropertyLinkSub",
 )
 SUBSTRATE = Link(

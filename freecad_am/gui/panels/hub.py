@@ -28,7 +28,8 @@ SOLIDS = Link(
     "Solids",
     "",
     marked(
-        "Solids or closed meshes to deposit, one after the other; click one again to remove it."
+        "Solids or closed meshes to deposit, one after the other; click an object again to "
+        "remove it."
     ),
     type_name="App::PropertyLinkList",
 )
@@ -115,8 +116,8 @@ class HubPanel(PickPanel):
 
     def _refusal(self, field: PickField, pick: picking.Pick) -> str:
         text = tr(
-            "{} is another object; the hub faces must belong to one object. Clear it first to "
-            "start again."
+            "{} is another object, but the hub faces must belong to one object; clear the field "
+            "to start again."
         )
         return text.format(pick.obj.Label)
 

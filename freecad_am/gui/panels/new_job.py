@@ -173,7 +173,7 @@ class JobPanel:
         hint = QtGui.QLabel(
             tr(
                 "Cell, feature, toolpath, joint path and program are created with their "
-                "defaults; double-click one in the tree to change it."
+                "defaults; double-click a stage in the tree to change it."
             )
         )
         hint.setWordWrap(True)

@@ -47,8 +47,8 @@ class PreflightList:
         self.widget.setHorizontalScrollBarPolicy(QtCore.Qt.ScrollBarAlwaysOff)
         self.widget.setMinimumHeight(ROW_HEIGHT * self.widget.fontMetrics().lineSpacing())
         help = tr(
-            "Checks of this program, how they were made and their worst points; click one to "
-            "show it"
+            "Checks of the program with method and worst point; click a check to show its worst "
+            "point"
         )
         self.widget.setToolTip(help)
         self.widget.setWhatsThis(help)
@@ -185,7 +185,7 @@ class ProgramPanel(PreviewPanel):
         font.setPointSizeF(max(MIN_FONT_PT, FONT_SCALE * self.form.font().pointSizeF()))
         self.text.setFont(font)
         self.text.setFixedHeight(HIGH * self.text.fontMetrics().lineSpacing())
-        help = tr("The first lines of the program as it would be written")
+        help = tr("First lines of the program to be written")
         self.text.setToolTip(help)
         self.text.setWhatsThis(help)
         self.text.hide()

@@ -61,7 +61,9 @@ def pick_line(name: str, help: str) -> Any:
     line.setReadOnly(True)
     line.setToolTip(help)
     line.setWhatsThis(help)
-    line.setPlaceholderText(tr("click it") if name == "Source" else tr("click it with Ctrl"))
+    line.setPlaceholderText(
+        tr("click the object") if name == "Source" else tr("Ctrl+click the object")
+    )
     return line
 
 
@@ -122,8 +124,9 @@ class HowItStands:
         self.setup.setObjectName("Setup")
         self.setup.setToolTip(
             tr(
-                "What the robot carries. If the job is infeasible in the proposed cell, another "
-                "position, another branch or a positioner is proposed and shown."
+                "The robot carries the tool or the part. If the job is infeasible in the "
+                "proposed cell, another position, another branch or a positioner is proposed and "
+                "shown."
             )
         )
         for arrangement in OF_ROBOTS:
@@ -199,7 +202,7 @@ class Sizes:
         self.platform = FittedLength(
             _row(CellParameters, "platform_diameter"),
             tr("auto"),
-            tr("If empty, it is sized for the first layer."),
+            tr("If empty, the platform is sized for the first layer."),
         )
         self.of_job = {
             "strategy.layer_height": self.layer,
@@ -283,7 +286,7 @@ def report_next_steps(stages: list[Any], proposed: str = "") -> None:
     if proposed == GEODESIC and any(
         obj.Proxy.kind == "feature" and obj.Layers != GEODESIC for obj in stages
     ):
-        text = tr("In planar layers, as curved ones were infeasible. {}").format(text)
+        text = tr("Planar layers are used, as curved layers were infeasible. {}").format(text)
     Gui.getMainWindow().statusBar().showMessage(text, SHOWN_MS)
     App.Console.PrintMessage(text + "\n")
     _show_whole()
@@ -352,8 +355,8 @@ def taken_whole(job: JobProposal, picks: Sequence[Pick]) -> str:
     for target in job.parts:
         if not target.names and target.obj.Name in clicked:
             return tr(
-                "The whole of {} is used. To use single faces, click several with Ctrl; for a "
-                "single one, use the panel of Feature or Wall on Part."
+                "The whole of {} is used. Ctrl+click several faces to use only these faces; for "
+                "a single face, use the panel of Feature or Wall on Part."
             ).format(target.obj.Label)
     return ""
 

@@ -38,7 +38,8 @@ SOLIDS = Link(
     "Solids",
     "",
     marked(
-        "Solids or closed meshes to deposit, one after the other; click one again to remove it."
+        "Solids or closed meshes to deposit, one after the other; click an object again to "
+        "remove it."
     ),
     type_name="App::PropertyLinkList",
 )

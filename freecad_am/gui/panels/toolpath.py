@@ -136,7 +136,7 @@ class FeatureOrder(Input):
             (
                 "AddFeature",
                 tr("Add"),
-                tr("Adds the selected features, or the next one in the document"),
+                tr("Adds the selected features, or the next feature in the document"),
                 self.add,
             ),
             (
@@ -200,7 +200,9 @@ class FeatureOrder(Input):
         for obj in features:
             self._put(obj)
         self.show_note(
-            "" if features else tr("This document has no other feature; create it first.")
+            ""
+            if features
+            else tr("The document has no other feature; create another feature first.")
         )
         self._show()
 

@@ -94,8 +94,8 @@ class WallPanel(PickPanel):
         if field.element == picking.EDGE:
             return tr("Click edges of one object.")
         text = tr(
-            "{} is another object; the wall faces must belong to one object. Clear it first to "
-            "start again."
+            "{} is another object, but the wall faces must belong to one object; clear the field "
+            "to start again."
         )
         return text.format(pick.obj.Label)
 

@@ -52,8 +52,8 @@ class Row:
         self.slider.setPageStep(page)
         for widget in (self.slider, self.box):
             widget.setToolTip(help)
-        self.back.setToolTip(tr("One back"))
-        self.on.setToolTip(tr("One on"))
+        self.back.setToolTip(tr("Previous"))
+        self.on.setToolTip(tr("Next"))
         self.moved: Any = lambda row: None
         self.slider.valueChanged.connect(self._slid)
         self.box.valueChanged.connect(lambda *_: self.moved(self))
@@ -357,7 +357,7 @@ class PathDock(Follower):
         offer(form.choice, [path.Label for path in paths], paths.index(obj) if obj in paths else -1)
         if not has_rows:
             form.facts.show_text(
-                tr("There is no path to show yet: make a toolpath or a joint path.")
+                tr("There is no path to show yet; make a toolpath or a joint path.")
                 if obj is None
                 else tr("{} is hidden, or has no result.").format(obj.Label)
             )

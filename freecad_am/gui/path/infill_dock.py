@@ -359,9 +359,9 @@ class InfillDock(Follower):
 
 def _lacking(obj: Any) -> str:
     if obj is None:
-        return tr("There is no toolpath yet: make one of a solid.")
+        return tr("There is no toolpath yet; make a toolpath of a solid.")
     return tr(
-        "{} has no measured layers. Only solids in plane layers have them; recompute one."
+        "{} has no measured layers; recompute a toolpath of a solid in planar layers."
     ).format(obj.Label)
 
 

@@ -150,7 +150,7 @@ OPTIONS: dict[str, tuple[str, Any, str]] = {
     "ShowLegend": (
         "App::PropertyBool",
         True,
-        "Show in the corner of the view what the colours mean.",
+        "Show the legend of the colours in the corner of the view.",
     ),
     "ShowDirections": ("App::PropertyBool", False, "Show the build directions as short lines."),
     "DirectionStep": (

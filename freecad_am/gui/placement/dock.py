@@ -510,7 +510,7 @@ class PlacementDock:
             self.scene.show(self.found, coloured, self.chosen())
             self.scene.show_reach(self.volume)
         except (RuntimeError, ReferenceError):
-            self.end(tr("its view was closed"))
+            self.end(tr("the view was closed"))
             return
         self.form.tell_colours(coloured)
 
@@ -593,7 +593,7 @@ def show(obj: Any) -> PlacementDock | None:
     active = document.activeView()
     view = active if hasattr(active, "getSceneGraph") else views[0] if views else None
     if view is None:
-        App.Console.PrintWarning(tr("There is no 3D view to show the poses in; open one.") + "\n")
+        App.Console.PrintWarning(tr("There is no 3D view for the poses; open a 3D view.") + "\n")
         return None
     while _open:
         _open[0].close()
@@ -614,14 +614,15 @@ def placement() -> None:
     if not selected and job_named():
         _say(
             tr(
-                "{} has no toolpath with a cell to place; make one first, or select another job."
+                "{} has no toolpath with a cell to place; make a toolpath first, or select "
+                "another job."
             ).format(job_named())
         )
         return
     paths = [obj for obj in App.ActiveDocument.Objects if _path(obj) is obj]
     candidates = sorted(paths, key=lambda obj: -KINDS.index(_kind(obj)))
     if not selected and not candidates:
-        _say(tr("There is no toolpath with a cell to place; make one first."))
+        _say(tr("There is no toolpath with a cell to place; make a toolpath first."))
         return
     try:
         show(selected[0] if selected else candidates[-1])

@@ -142,7 +142,7 @@ def summed(placed: Placed) -> str:
         index = max(range(len(placed.poses)), key=lambda k: placed.judged[k].share)
         result = placed.judged[index]
         wrong = (
-            tr("no tool rotation reaches the others")
+            tr("no tool rotation makes the other points feasible")
             if result.code == UNREACHED
             else translated(result.message)
         )

@@ -68,8 +68,8 @@ WORDS = (
     marked("condition"),
     marked("layer height"),
     marked("a toolpath has no joints yet; choose a joint path"),
-    marked("these layers have nothing to show"),
-    marked("this machine has no condition number"),
+    marked("these layers have no values to show"),
+    marked("the machine has no condition number"),
     marked("no limit known: the machine file has no max_speed"),
     marked("no limit known: the machine file has no max_acceleration"),
     marked("no limit known: the machine file has no max_jerk"),
@@ -81,7 +81,7 @@ WORDS = (
     marked("deposited"),
     marked("bead"),
     marked("only solids in planar layers have sections and volumes of layers"),
-    marked("none of these layers rests on another"),
+    marked("no layer shown rests on another layer"),
     marked("no bead model sets the speeds (process.bead_model)"),
 )
 

@@ -225,7 +225,7 @@ class PlotsDock(Follower):
         self.over.setEnabled(entry.along is not None)
         self.note.setText("")
         if obj is None:
-            self._show(None, tr("There is nothing to plot yet: make a toolpath or a joint path."))
+            self._show(None, tr("There is no path to plot yet; make a toolpath or a joint path."))
             return
         if made_from(obj)[0].Status == STALE:
             self.note.setText(tr("The plot shows an earlier state; recompute the document."))

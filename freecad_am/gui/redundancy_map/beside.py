@@ -75,7 +75,7 @@ class Controls(QtGui.QWidget):
         self.bead = self._box(
             "bead",
             tr("Bead"),
-            tr("The bead whose polynomial is shown; click the map to choose one"),
+            tr("The bead whose polynomial is shown; click the map to choose a bead"),
             curve,
         )
         self.degree = self._box("degree", tr("Degree"), tr("Degree of the polynomials"), curve)
@@ -460,7 +460,8 @@ def certified(optimality: Mapping[str, Any] | None) -> str:
     if optimality is None:
         return ""
     text = tr(
-        "Certificate: {:.4g} as planned, lower bound over all rotations {:.4g}: a gap of {:.1f} %, the largest, {:.1f} %, in layer {} bead {}"
+        "Certificate: {:.4g} as planned, lower bound over all rotations {:.4g}: a gap of {:.1f} "
+        "%, the largest, {:.1f} %, in layer {} bead {}"
     )
     worst = optimality["worst"]
     return text.format(
@@ -571,12 +572,13 @@ class Consequences:
         self.form.buttons["use"].setEnabled(edited)
         if sums.lost:
             text, wrong = (
-                tr("{} of the tested points fail: they are red").format(sums.lost),
+                tr("{} of the tested points fail and are red").format(sums.lost),
                 True,
             )
         elif edited and sums.ratio > 1.0:
             warning = tr(
-                "A joint would need {:.0f} % of its maximum speed: the planner will slow the bead down, or reject the curve"
+                "A joint would need {:.0f} % of its maximum speed: the planner will slow the "
+                "bead down, or reject the curve"
             )
             text, wrong = warning.format(100.0 * sums.ratio), True
         else:

@@ -486,14 +486,14 @@ def redundancy_map() -> None:
     selected = [path for path in map(_joint_path, job_selection()) if path is not None]
     if not selected and job_named():
         _say(
-            tr("{} has no joint path to map; make one first, or select another job.").format(
-                job_named()
-            )
+            tr(
+                "{} has no joint path to map; make a joint path first, or select another job."
+            ).format(job_named())
         )
         return
     candidates = [obj for obj in App.ActiveDocument.Objects if _joint_path(obj) is obj and obj.Key]
     if not selected and not candidates:
-        _say(tr("There is no joint path to map; make one first."))
+        _say(tr("There is no joint path to map; make a joint path first."))
         return
     try:
         show(selected[0] if selected else candidates[-1])

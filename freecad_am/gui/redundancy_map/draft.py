@@ -95,14 +95,18 @@ def source_of(obj: Any) -> Source:
     """Read the inputs for a joint path. Raises InputError with the remedy if the path has no map."""
     stage = stage_of(obj)
     if stage is None or stage.kind != "joint path":
-        raise InputError("NO_MAP", getattr(obj, "Label", "?"), "it is not a joint path; select one")
+        raise InputError(
+            "NO_MAP",
+            getattr(obj, "Label", "?"),
+            "the object is not a joint path; select a joint path",
+        )
     value, toolpath, looks = planned_of(obj, obj.Label)
     cell = resolved(looks, toolpath, user_machines.folders())
     if not cell.machine.free or not value.joint_path.branch:
         raise InputError(
             "NO_MAP",
             obj.Label,
-            "its machine has two rotary axes and no tool redundancy; open the map of a robot",
+            "the machine has two rotary axes and no tool redundancy; open the map of a robot",
         )
     return Source(
         document=obj.Document.Name,

@@ -381,7 +381,7 @@ class Simulation:
             )
             schedule_redraw(self.scene.view)
         except (RuntimeError, ReferenceError):  # the view was closed
-            self.end(tr("its view was closed"))
+            self.end(tr("the view was closed"))
             return
         self.fields.tell(moment)
 
@@ -453,9 +453,9 @@ def simulate() -> None:
     selected = [obj for obj in job_selection() if _kind(obj) in SIMULATED_KINDS]
     if not selected and job_named():
         _say(
-            tr("{} has no joint path to simulate; make one first, or select another job.").format(
-                job_named()
-            )
+            tr(
+                "{} has no joint path to simulate; make a joint path first, or select another job."
+            ).format(job_named())
         )
         return
     candidates = [
@@ -464,7 +464,7 @@ def simulate() -> None:
     if selected or candidates:
         simulate_object(selected[0] if selected else candidates[-1])
     else:
-        _say(tr("There is no joint path to simulate; make one first."))
+        _say(tr("There is no joint path to simulate; make a joint path first."))
 
 
 def simulate_object(obj: Any) -> None:
@@ -478,7 +478,7 @@ def simulate_object(obj: Any) -> None:
     active = document.activeView()
     view = active if hasattr(active, "getSceneGraph") else views[0] if views else None
     if view is None:
-        _say(tr("There is no 3D view to simulate in; open one."))
+        _say(tr("There is no 3D view for the simulation; open a 3D view."))
         return
     try:
         run = hooks.carry_out(prepared(obj), tr("Simulation"))

@@ -177,7 +177,11 @@ class Fields(QtGui.QWidget):
         column.setContentsMargins(8, 6, 8, 6)
         if run.stale:
             stale = _label(
-                "stale", tr("This is an earlier plan; recompute the document to update it.")
+                "stale",
+                tr(
+                    "The simulation shows an earlier plan; recompute the document to update the "
+                    "simulation."
+                ),
             )
             stale.setWordWrap(True)
             set_role(stale, INVALID)

@@ -70,14 +70,18 @@ def prepared(obj: Any) -> Callable[[], Run]:
     stage = stage_of(obj)
     if stage is None or stage.kind not in ("joint path", "program"):
         raise InputError(
-            "NOT_TO_PLAY", obj.Label, "it is neither a joint path nor a program; select one"
+            "NOT_TO_PLAY",
+            obj.Label,
+            "the object is neither a joint path nor a program; select a joint path or a program",
         )
     path = obj if stage.kind == "joint path" else obj.JointPath
     planned, toolpath, looks = planned_of(path, obj.Label)
     folders = user_machines.folders()
     process = path.Toolpath.Proxy.parameters(path.Toolpath, ProcessParameters)
     if not len(planned.motion):
-        raise InputError("NO_RESULT", path.Label, "it has no points to play; choose another path")
+        raise InputError(
+            "NO_RESULT", path.Label, "the path has no points to play; choose another path"
+        )
     issues, stale, label = issues_of(path), path.Status == STALE, obj.Label
     deposited = _predicted(path.Toolpath)
     names = tuple(dict.fromkeys((obj.Name, path.Name, path.Toolpath.Name, path.Cell.Name)))

@@ -66,7 +66,7 @@ def nothing(run: Run) -> str:
     if run.watch.arm_known:
         return tr(
             "No findings: no limit, singularity or speed is near, and no link of the robot "
-            "touches anything"
+            "touches an obstacle"
         )
     return tr("No findings: no limit, singularity or speed is near")
 

@@ -193,7 +193,9 @@ TOOLS = {
     "OpenPart": Tool(
         "open_part",
         marked("Open Part…"),
-        marked("Opens a part or mesh from a file in a separate process, even if it is damaged"),
+        marked(
+            "Opens a part or mesh from a file in a separate process, even if the file is damaged"
+        ),
         open_part,
         whats_this.nothing,
     ),

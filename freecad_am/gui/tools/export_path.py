@@ -82,7 +82,10 @@ class ExportPanel:
         self.rapids.setObjectName("Rapids")
         self._help(
             self.rapids,
-            tr("Also write the moves between beads, on their own layer; toolpaths have none"),
+            tr(
+                "Also write the moves between beads, on a separate layer; toolpaths have no such "
+                "moves"
+            ),
         )
         self.tolerance = QuantityField(0.1, "mm", tr("Tolerance"))
         self.tolerance.box.setObjectName("Tolerance")

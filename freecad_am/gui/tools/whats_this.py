@@ -44,7 +44,7 @@ def document(doc: Any) -> str:
 def part(doc: Any) -> str:
     """Require an object with a shape or a mesh."""
     return document(doc) or (
-        "" if _any(doc, usable) else tr("First open a part, or import one into this document.")
+        "" if _any(doc, usable) else tr("First open a part, or import a part into this document.")
     )
 
 
@@ -53,7 +53,7 @@ def faces(doc: Any) -> str:
     if document(doc) or _any(doc, lambda obj: usable(obj) and not is_mesh(obj)):
         return document(doc)
     return (
-        tr("First open a part with faces, such as a STEP file; a mesh has none.")
+        tr("First open a part with faces, such as a STEP file; a mesh has no faces.")
         if _any(doc, usable)
         else part(doc)
     )

@@ -77,7 +77,7 @@ class JointPathView(PathView):
         "Colouring": (
             "App::PropertyEnumeration",
             JOINT_KINDS,
-            "What the colours of the beads show.",
+            "Quantity shown by the colours of the beads.",
         ),
         **OPTIONS,
         "ShowRapids": ("App::PropertyBool", True, "Show the rapid moves as thin dashed lines."),
@@ -193,7 +193,7 @@ def _linked(obj: Any) -> Any:
         raise InputError(
             "NO_INPUT",
             obj.Label,
-            "its toolpath was deleted; choose another, or delete the joint path too",
+            "the toolpath was deleted; choose another toolpath, or delete the joint path too",
         )
     return obj.Toolpath
 
@@ -228,7 +228,7 @@ def _limit_shares(obj: Any, value: Seen, kind: str) -> Array:
     Raises InputError of the machine.
     """
     if obj.Cell is None:
-        raise InputError("NO_INPUT", obj.Label, "its cell was deleted; choose another cell")
+        raise InputError("NO_INPUT", obj.Label, "the cell was deleted; choose another cell")
     folders, settings = (
         tuple(user_machines.folders()),
         obj.Cell.Proxy.parameters(obj.Cell, CellParameters),

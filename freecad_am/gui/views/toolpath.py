@@ -23,7 +23,11 @@ class ToolpathView(PathView):
 
     icon = "toolpath"
     options: ClassVar[dict[str, tuple[str, Any, str]]] = {
-        "Colouring": ("App::PropertyEnumeration", KINDS, "What the colours of the beads show."),
+        "Colouring": (
+            "App::PropertyEnumeration",
+            KINDS,
+            "Quantity shown by the colours of the beads.",
+        ),
         **OPTIONS,
     }
     source_hidden = True

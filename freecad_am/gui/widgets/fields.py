@@ -46,7 +46,7 @@ class PendantLine:
         for controller, pendant in pendants.pendants().items():
             self.choice.addItem(pendant.maker, controller)
         self.choice.setToolTip(
-            tr("Type the pose as this controller's pendant shows it, X Y Z in mm first")
+            tr("Type the pose as shown on the pendant of this controller, X Y Z in mm first")
         )
         self.line.hide()
         self.choice.currentIndexChanged.connect(lambda *_: self.refresh())
@@ -178,7 +178,9 @@ def whats_this(row: Row, section: str) -> str:
     if allowed:
         lines.append(tr("Allowed: {}.").format(translated(allowed)))
     if row.form in FOLLOW:
-        lines.append(tr("It may follow an expression: {}.").format("=Spreadsheet.height / 2"))
+        lines.append(
+            tr("The value may follow an expression: {}.").format("=Spreadsheet.height / 2")
+        )
     if default:
         lines.append(
             tr("By default: {}.").format(
@@ -342,7 +344,7 @@ def _number(text: str, name: str) -> float | str:
         return float(text)
     except ValueError:
         raise InputError(
-            "BAD_VALUE", name, "{!r} is not a number; enter one such as 0.1", text
+            "BAD_VALUE", name, "{!r} is not a number; enter a number such as 0.1", text
         ) from None
 
 

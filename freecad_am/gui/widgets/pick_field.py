@@ -143,7 +143,7 @@ class PickField(Input):
         )
         self.pick.setCheckable(True)
         self.pick.toggled.connect(lambda on: toggled(self, on))
-        self.empty = pick_button("×", f"Clear{link.name}", tr("Clears it"))
+        self.empty = pick_button("×", f"Clear{link.name}", tr("Clears the field"))
         self.empty.clicked.connect(self.clear)
         row = QtGui.QHBoxLayout(self.widget)
         row.setContentsMargins(0, 0, 0, 0)

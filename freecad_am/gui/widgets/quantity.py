@@ -166,7 +166,7 @@ class QuantityField:
     def _add_mark(self) -> None:
         self.mark = self.line.addAction(QtGui.QIcon(_UNSET), QtGui.QLineEdit.TrailingPosition)
         self.mark.setToolTip(
-            tr("Let it follow an expression, such as {}Spreadsheet.height / 2").format(MARK)
+            tr("Let the value follow an expression, such as {}Spreadsheet.height / 2").format(MARK)
         )
         connect(self.mark, "triggered(bool)", self._begin)
         self._show_mark()

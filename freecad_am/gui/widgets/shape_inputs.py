@@ -136,7 +136,7 @@ class ShapeChoice(Input):
         )
         self.pick.setCheckable(True)
         self.pick.clicked.connect(self._pressed)
-        self.empty = pick_button("×", f"Clear{link.name}", tr("Clears it"))
+        self.empty = pick_button("×", f"Clear{link.name}", tr("Clears the field"))
         self.empty.clicked.connect(self.clear)
         row.addWidget(self.text, 1)
         for button in (self.pick, self.empty):
@@ -286,7 +286,7 @@ class ObjectChoice(ShapeChoice):
 
     @property
     def missing(self) -> str:
-        text = tr("{} is missing: select it and press its Pick.")
+        text = tr("{} is missing: select the object and press Pick.")
         return "" if self.present is not None else text.format(self.label)
 
     def value(self) -> Any:
@@ -403,7 +403,7 @@ class StageChoice(Input):
         if not self.link.required or self.widget.count():
             return ""
         return tr(
-            "{0} is missing in this document. Create it first: button {0} in the toolbar."
+            "{0} is missing in this document; create it with the button {0} in the toolbar."
         ).format(self.label)
 
     def value(self) -> Any:

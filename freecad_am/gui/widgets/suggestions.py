@@ -82,8 +82,8 @@ def no_post(name: str, setup: str = "") -> str:
         )
     if loaded.posts:
         return tr(
-            "Programs for this machine need the pulses per degree, which only its controller "
-            "knows, in your own machine file. Without it the job is planned, checked and "
+            "Programs for this machine need the pulses per degree, known only to its controller, "
+            "in your own machine file. Without this file the job is planned, checked and "
             "simulated; Export Path… writes its points as a table."
         )
     return tr(

@@ -162,8 +162,8 @@ def _arm_issue(collision: Collision, motion: Motion, rows: Index, sample_count: 
             ARM_NEAR,
             Text(
                 "link {} of the arm, as drawn, has {} within half its radius on {:.3g} % of the "
-                "motion, first with the nozzle at {}; it collides unless the robot is slimmer or "
-                "hollow there: check it in Simulate, give the links the shapes of the "
+                "motion, first with the nozzle at {}, and collides unless the robot is slimmer "
+                "or hollow there; check the motion in Simulate, give the links the shapes of the "
                 "manufacturer, or set cell.arm_clearance",
                 collision.link,
                 collision.what,
@@ -177,8 +177,8 @@ def _arm_issue(collision: Collision, motion: Motion, rows: Index, sample_count: 
         ARM_NEAR,
         Text(
             "link {} of the arm, as drawn, touches {} on {:.3g} % of the motion, first with the "
-            "nozzle at {}; the inner half of its radius stays clear: check it in Simulate, or "
-            "set cell.arm_clearance",
+            "nozzle at {}, although the inner half of its radius stays clear; check the motion "
+            "in Simulate, or set cell.arm_clearance",
             collision.link,
             collision.what,
             share,

@@ -43,13 +43,15 @@ def check_controller(machine: Machine, post: str) -> None:
             "WRONG_CONTROLLER",
             "program.post",
             "{} is a URDF, which does not define the display of the controller; plan without a "
-            "program, or convert it with New Machine…",
+            "program, or convert the URDF with New Machine…",
             machine.title,
         )
     readable = (
         Text("use one of {}", ", ".join(machine.posts))
         if machine.posts
-        else ("there is no post for it yet: plan without a program; waypoints.csv has its axes")
+        else (
+            "no post supports the controller yet; plan without a program, and use the axis values in waypoints.csv"
+        )
     )
     raise InputError(
         "WRONG_CONTROLLER",
@@ -75,8 +77,9 @@ def check_beads(toolpath: Toolpath, post: str, max_points: int) -> None:
         raise InputError(
             "BEAD_TOO_LONG",
             "program.max_points",
-            "layer {} bead {} has {} points, and loading another part within a bead "
-            "would stop the robot while it deposits; use at least {}, or a larger strategy.chord_error",
+            "layer {} bead {} has {} points, and loading another part within a bead would stop "
+            "the robot while it deposits; set program.max_points to at least {}, or a larger "
+            "strategy.chord_error",
             layer,
             index,
             points,
@@ -106,16 +109,16 @@ def size_issues(toolpath: Toolpath, parameters: ProgramParameters) -> list[Issue
             kind.memory_mb,
         )
         if kind.memory_mb
-        else Text("the memory of the controller is unknown; look it up")
+        else Text("the memory of the controller is unknown; look up its size")
     )
     return [
         Issue(
             WARNING if is_too_large else NOTE,
             "PROGRAM_SIZE",
             Text(
-                "the program of {} will have about {} points in {} files, {:.2g} MB: {}. A "
-                "larger strategy.chord_error or strategy.layer_height makes it smaller; "
-                "program.max_points limits the size of a file",
+                "the program of {} will have about {} points in {} files, {:.2g} MB: {}; use a "
+                "larger strategy.chord_error or strategy.layer_height for a smaller program, and "
+                "program.max_points for smaller files",
                 parameters.post,
                 count(points),
                 files,
@@ -141,9 +144,9 @@ def base_issues(machine: Machine, parameters: ProgramParameters) -> list[Issue]:
             WARNING,
             "BASE_NOT_KNOWN",
             Text(
-                "the base frame of {} is unknown: positions of the program refer to its "
-                "base_link. Compare the pose of a known point on the controller before running "
-                "the program, set base in a copy of the machine file, or use program.motion: "
+                "the base frame of {} is unknown, so positions of the program refer to its "
+                "base_link; compare the pose of a known point on the controller before running "
+                "the program, set `base` in a copy of the machine file, or use program.motion: "
                 "joint",
                 machine.title,
             ),
@@ -181,7 +184,7 @@ def check_external(cell: Cell, post: str) -> None:
     reason = (
         Text("use one of {}", ", ".join(written))
         if written
-        else "plan without a program; waypoints.csv has all axes"
+        else "plan without a program, and use the axis values in waypoints.csv"
     )
     raise InputError(
         "UNSUPPORTED_AXES",
@@ -231,7 +234,7 @@ def check_pulses(machine: Machine, motion: str, post: str) -> None:
         raise InputError(
             "NO_SPEED_UNIT",
             "cell.machine",
-            "the unit of V is a setting of the controller of {}, and a wrong one changes the "
+            "the unit of V is a setting of the controller of {}, and a wrong unit changes the "
             "speed; set controller.speed_unit in your own machine file, or use `motion: joint`",
             machine.title,
         )

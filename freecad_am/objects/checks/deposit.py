@@ -112,8 +112,8 @@ def gap_issues(
                     ABOVE_SUBSTRATE,
                     Text(
                         "{} does not touch its substrate {}: the smallest gap is {:.4g} mm, at "
-                        "({:.4g}, {:.4g}, {:.4g}); move it onto the substrate, or remove the "
-                        "substrate",
+                        "({:.4g}, {:.4g}, {:.4g}); move the part onto the substrate, or remove "
+                        "the substrate",
                         label,
                         substrate.label,
                         gap,

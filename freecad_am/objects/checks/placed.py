@@ -147,14 +147,16 @@ def placing_of(path: Any, cell: Any = None, joints: JointParameters | None = Non
     if stage is None or stage.kind not in ("joint path", "toolpath"):
         label = getattr(path, "Label", repr(path))
         raise InputError(
-            "BAD_INPUT", label, "it is neither a toolpath nor a joint path; choose one"
+            "BAD_INPUT",
+            label,
+            "the object is neither a toolpath nor a joint path; choose a toolpath or a joint path",
         )
     toolpath = path.Toolpath if stage.kind == "joint path" else path
     carried = cell if cell is not None else path.Cell
     for stage_object, what in ((toolpath, "toolpath"), (carried, "cell")):
         if stage_object is None or not stage_object.Key:
             raise InputError(
-                "NO_INPUT", path.Label, "its {} is missing; choose one and recompute", what
+                "NO_INPUT", path.Label, "the {} is missing; choose another and recompute", what
             )
     read_toolpath, folders = toolpath.Proxy.reader(toolpath), tuple(user_machines.folders())
     process = toolpath.Proxy.parameters(toolpath, ProcessParameters)

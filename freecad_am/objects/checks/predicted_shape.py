@@ -109,7 +109,9 @@ def predicted(
     processes: list[ProcessParameters] = [target.inputs.process for target in targets]
     parts = feature_parts(toolpath, processes)
     if any(feature_part.toolpath.bead_width is None for feature_part in parts):
-        raise InputError(NOTHING, "toolpath", "the effective bead width is unknown; plan it again")
+        raise InputError(
+            NOTHING, "toolpath", "the effective bead width is unknown; plan the toolpath again"
+        )
     target_faces = [_faces(target) for target in targets if target.planner.has_faces]
     if not target_faces:
         raise InputError(

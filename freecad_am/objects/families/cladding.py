@@ -44,8 +44,8 @@ class CladdingPlanner(FeaturePlanner):
             return Proposal(
                 Cladding.kind,
                 Text(
-                    "{} is a flat rather than upright open surface, {:.0%} at less than 45 deg to "
-                    "the platform, so it is a face to cover",
+                    "{} is an open surface, flat rather than upright ({:.0%} at less than 45 deg "
+                    "to the platform), and is covered as a face",
                     part.label,
                     part.lying_share,
                 ),
@@ -54,8 +54,8 @@ class CladdingPlanner(FeaturePlanner):
             return Proposal(
                 Cladding.kind,
                 Text(
-                    "the selected faces of {} share no axis of revolution, and the part is thicker "
-                    "there than a bead of {:.4g} mm, so they are covered",
+                    "the selected faces of {} share no axis of revolution, and the part is "
+                    "thicker there than a bead of {:.4g} mm, so these faces are covered",
                     part.label,
                     part.width,
                 ),
@@ -68,8 +68,8 @@ class CladdingPlanner(FeaturePlanner):
         return Proposal(
             Cladding.kind,
             Text(
-                "{} is a flat rather than upright open mesh, {:.0%} at less than 45 deg to the "
-                "platform, so it is a face to cover",
+                "{} is an open mesh, flat rather than upright ({:.0%} at less than 45 deg to the "
+                "platform), and is covered as a face",
                 part.label,
                 part.lying_share,
             ),

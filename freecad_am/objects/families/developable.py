@@ -52,7 +52,7 @@ class DevelopablePlanner(FilledPlanner):
             )
             return Proposal(Developable.kind, why)
         if part.is_several_solids and _has_own_hub(part.source):
-            return Refusal(Text("to deposit on one, name it as the substrate"))
+            return Refusal(Text("to deposit on one of the solids, name it as the substrate"))
         return Refusal()
 
 

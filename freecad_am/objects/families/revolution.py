@@ -63,8 +63,8 @@ class RevolutionPlanner(FeaturePlanner):
             return Proposal(Revolution.kind, why)
         return Refusal(
             Text(
-                "it is a solid of revolution, but a wall of one bead would leave out {:.3g} of its "
-                "{:.3g} cm3",
+                "the part is a solid of revolution, but a wall of one bead would leave out "
+                "{:.3g} of its {:.3g} cm3",
                 omitted / MM3,
                 (balance.part_volume or 0.0) / MM3,
             )

@@ -76,8 +76,8 @@ def _propose_for_mesh(part: SelectedPart) -> Proposal:
         return _choose_layers(part, Text("{} is a mesh, to be filled", part.label))
     size = at_least(mesh.opening)
     why = Text(
-        "{} is an open mesh that intersects itself at {} pairs of triangles, as at {}, so it "
-        "is not a wall of one bead: it is filled, with its {} holes of up to {:.4g} mm "
+        "{} is an open mesh that intersects itself at {} pairs of triangles, as at {}, so a wall "
+        "of one bead is impossible; the mesh is filled, with its {} holes of up to {:.4g} mm "
         "closed",
         part.label,
         mesh.crossings,
@@ -133,7 +133,9 @@ def _choose_layers(part: SelectedPart, reason: str) -> Proposal:
     best_overhang = _overhang(bodies[0], best_direction)
     hint = (
         Text(
-            "; stacked along {} it would be {:.0%}", _direction_text(best_direction), best_overhang
+            "; stacked along {} the share would be {:.0%}",
+            _direction_text(best_direction),
+            best_overhang,
         )
         if best_overhang <= OVER
         else ""
@@ -142,14 +144,20 @@ def _choose_layers(part: SelectedPart, reason: str) -> Proposal:
         return Proposal(
             Solid.kind,
             Text(
-                "{}; curved layers need a flat base face, which it lacks{}", Word(why), Word(hint)
+                "{}; curved layers need a flat base face, which the part lacks{}",
+                Word(why),
+                Word(hint),
             ),
             PLANES,
         )
     if part.tilts:
         return Proposal(
             Solid.kind,
-            Text("{}, which layers along the path through it support{}", Word(why), Word(hint)),
+            Text(
+                "{}, and layers along the path through the part support this surface{}",
+                Word(why),
+                Word(hint),
+            ),
             GEODESIC,
         )
     what = Text("a machine that tilts can use layers: {}, which need no support", GEODESIC)
@@ -233,7 +241,7 @@ def bend_hint(shape: Any) -> str:
     with contextlib.suppress(*kernel.FAULTS):
         if name := carrier(shape.Solids):
             return Text(
-                " (others are on the bend of {}: as the substrate it shapes their layers)",
+                " (other solids are on the bend of {}: as the substrate it shapes their layers)",
                 name,
             )
     return ""

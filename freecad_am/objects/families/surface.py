@@ -96,7 +96,7 @@ def _recognise_mesh(part: SelectedPart) -> Proposal | Refusal:
     )
     return Proposal(
         Surface.kind,
-        Text("{} is an open mesh, so it is a thin wall that {}", part.label, Word(where)),
+        Text("{} is an open mesh, and becomes a thin wall that {}", part.label, Word(where)),
     )
 
 
@@ -124,8 +124,8 @@ def _propose_for_faces(part: SelectedPart) -> Proposal:
         return Proposal(
             Surface.kind,
             Text(
-                "the selected faces of {} share no axis of revolution, so they are a wall that "
-                "starts on the platform if nothing else supports it",
+                "the selected faces of {} share no axis of revolution, so these faces are a "
+                "wall, which starts on the platform without another support",
                 part.label,
             ),
             stands=True,
@@ -133,8 +133,8 @@ def _propose_for_faces(part: SelectedPart) -> Proposal:
     return Proposal(
         Surface.kind,
         Text(
-            "the selected faces of {} share no axis of revolution, so they are a wall; it "
-            "needs a substrate, or start edges",
+            "the selected faces of {} share no axis of revolution, so these faces are a wall; "
+            "choose a substrate, or start edges",
             part.label,
         ),
     )
@@ -145,8 +145,8 @@ def _propose_for_skin(part: SelectedPart) -> Proposal:
         return Proposal(
             Surface.kind,
             Text(
-                "{} is an open surface without an axis of revolution, so it is a thin wall, "
-                "which starts on the platform if nothing else supports it",
+                "{} is an open surface without an axis of revolution, and becomes a thin wall, "
+                "which starts on the platform without another support",
                 part.label,
             ),
             stands=True,
@@ -155,8 +155,7 @@ def _propose_for_skin(part: SelectedPart) -> Proposal:
         Surface.kind,
         Text(
             "{} is an open surface without an axis of revolution, and no other strategy applies; "
-            "it needs a substrate or start edges, and regions that do not grow from there are "
-            "omitted",
+            "choose a substrate or start edges: regions that do not grow from there are omitted",
             part.label,
         ),
     )

@@ -365,7 +365,7 @@ def split(text: str, where: str) -> list[str]:
     comma ('10,5 20,5' is two or four numbers), or no-break spaces may group digits.
     """
     if _TWO_WAYS.search(text.strip()):
-        remedy = "write decimals with a point and one kind of separator, as in 10.5 20.5"
+        remedy = "write decimals with a point and a single kind of separator, as in 10.5 20.5"
         raise InputError(
             "BAD_VALUE", where, "{!r} is ambiguous; {}", plain_blanks(text), Word(remedy)
         )

@@ -38,7 +38,9 @@ def is_text(value: Any) -> bool:
 def checked_words(words: Any, where: str) -> list[str]:
     """Return a list of strings. Raises InputError BAD_VALUE, naming `where`, for anything else."""
     if not isinstance(words, (list, tuple)) or not all(map(is_text, words)):
-        raise InputError("BAD_VALUE", where, "{} is not a text; put it in quotes", safe_repr(words))
+        raise InputError(
+            "BAD_VALUE", where, "{} is not a text; write the text in quotes", safe_repr(words)
+        )
     return list(words)
 
 
@@ -348,7 +350,7 @@ def _count(spec: f.Spec, value: Any, where: str) -> float:
     except (TypeError, ValueError):
         also = Text(" or {}", ", ".join(spec.words)) if spec.words else ""
         raise InputError(
-            "BAD_VALUE", where, "{!r} is not a number; give one such as 2{}", value, Word(also)
+            "BAD_VALUE", where, "{!r} is not a number; give a number such as 2{}", value, Word(also)
         ) from None
     return int(number) if number.is_integer() else number
 
@@ -386,7 +388,7 @@ def evaluated(value: str, obj: Any, where: str) -> Any:
         raise InputError(
             "BAD_EXPRESSION",
             where,
-            "{!r} gives {!r}, which is not a number; write one that gives a number",
+            "{!r} gives {!r}, which is not a number; write an expression that gives a number",
             value,
             result,
         )
@@ -443,7 +445,7 @@ def _wrong(value: str, where: str, error: Exception) -> InputError:
     return InputError(
         "BAD_EXPRESSION",
         where,
-        "{!r} is not understood ({}); write it as in {}Spreadsheet.height / 2",
+        "{!r} is not understood ({}); write an expression such as {}Spreadsheet.height / 2",
         value,
         reason,
         MARK,

@@ -221,7 +221,8 @@ def _refuse_overlaps(members: Sequence[Member], names: Sequence[tuple[str, ...]]
                 raise InputError(
                     "OVERLAP",
                     entry.label,
-                    "{:.4g} cm3 overlap {} and would be deposited twice; cut one from the other",
+                    "{:.4g} cm3 overlap {} and would be deposited twice; cut one solid from the "
+                    "other",
                     shared / MM3,
                     other_entry.label,
                 )

@@ -49,7 +49,7 @@ def fit_of(obj: Any, parameters: ScanParameters) -> Fit | None:
         raise InputError(
             "BAD_VALUE",
             f"{scan.Label}.Fit",
-            "{}: only a scan in the coordinates of the part shows how far it has grown; remove it",
+            "{}: only a scan in part coordinates shows how far the part has grown; use none",
             how,
         )
     inspected = scan.Proxy.value(scan)

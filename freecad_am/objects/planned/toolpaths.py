@@ -114,9 +114,9 @@ def layers_of(inputs: Given) -> CoreToolpath:
         raise InputError(
             "NOT_FOR_FAMILY",
             "process.wire.feed_mode",
-            "without a bead model or a ramp the travel speed is constant, so the wire feed has "
-            "nothing to follow; use constant, a process.bead_model, or process.start.ramp or "
-            "process.end.ramp",
+            "without a bead model or a ramp the travel speed is constant, and a proportional "
+            "wire feed has no effect; use constant, a process.bead_model, or process.start.ramp "
+            "or process.end.ramp",
         )
     classes.refuse_speeds(process)
     seams.check_parameters(process.seam)
@@ -213,8 +213,8 @@ def try_remedy(toolpath: Toolpath, fixed: Fixed | None) -> Toolpath:
             NOTE,
             REMEDY,
             Text(
-                "with {} the nozzle is clear; the toolpath was planned with it, the joint path "
-                "was not",
+                "with {} the nozzle is clear; the toolpath, but not the joint path, was planned "
+                "with this change",
                 fixed.remedy,
             ),
         )

@@ -196,7 +196,7 @@ class _Reader:
         if "y" in tree:
             start, length = tree["y"]
             if start + length > len(self.bytes):
-                raise ValueError("it is cut short")
+                raise ValueError("the data are cut short")
             return self.bytes[start : start + length]
         if "b" in tree:  # as older documents have them
             return zlib.decompress(_older_bytes(self.numbers, *tree["b"]))
@@ -210,7 +210,7 @@ class _Reader:
     def array(self, number: int, first_row: int, rows: int, all_of_it: bool) -> NDArray[Any]:
         """Rows of a table, which they share where it is read at once."""
         if first_row < 0 or rows < 0 or first_row + rows > self.tables[number][1]:
-            raise ValueError("it is cut short")
+            raise ValueError("the data are cut short")
         if not all_of_it:
             return self.rows(number, first_row, rows, "F")
         if number not in self.whole:
@@ -225,7 +225,7 @@ class _Reader:
         """
         dtype, count, *shape = self.tables[number]
         if rows * math.prod(shape) > self.numbers.size:
-            raise ValueError("it is cut short")
+            raise ValueError("the data are cut short")
         columns = np.empty((rows, math.prod(shape)), dtype=_DTYPES[dtype], order=order)
         for k in range(columns.shape[1]):
             self.numbers.fill(self.starts[number] + k * count + first_row, columns[:, k])
@@ -261,9 +261,9 @@ class _Unfolded:
             or (target[1:] < (target + length)[:-1]).any()
             or (target + length > size).any()
         ):
-            raise ValueError("its repetitions are damaged")
+            raise ValueError("the repetitions in the data are damaged")
         if size - int(length.sum()) != len(remaining):
-            raise ValueError("it is cut short")
+            raise ValueError("the data are cut short")
         run_positions, count = runs.T
         if (
             (run_positions < 0).any()
@@ -271,7 +271,7 @@ class _Unfolded:
             or (np.diff(run_positions) <= 0).any()
             or (count < 1).any()
         ):
-            raise ValueError("its runs are damaged")
+            raise ValueError("the runs in the data are damaged")
         self.rest = remaining
         added = np.cumsum(count - 1)  # numbers added by the runs up to each one
         self.runs, self.runs_end = runs.tolist(), (run_positions + 1 + added).tolist()
@@ -297,7 +297,7 @@ class _Unfolded:
 
     def _check(self, start: int, size: int) -> None:
         if start < 0 or start + size > self.size:
-            raise ValueError("it is cut short")
+            raise ValueError("the data are cut short")
 
     def _pieces(self, start: int, end: int) -> Iterator[tuple[Array, int]]:
         """Stretches of numbers with how long they are, and for runs (1,) with how long it is."""
@@ -352,7 +352,7 @@ class _Unpacked:
 
     def __init__(self, chunks: Sequence[bytes], size: int) -> None:
         if len(chunks) != -(-size // _PIECE):
-            raise ValueError("it is cut short")
+            raise ValueError("the data are cut short")
         self.pieces, self.missing = chunks, [True] * len(chunks)
         self.numbers = np.empty(size)
 
@@ -376,7 +376,7 @@ def _unpack(chunk: bytes, bits: Integers) -> None:
         zlib.decompress(memoryview(chunk)[1:], bufsize=8 * len(bits)), dtype=np.uint8
     )
     if len(planes) != 8 * len(bits) or chunk[0] > _HIGHEST_ORDER:
-        raise ValueError("it is damaged")
+        raise ValueError("the data are damaged")
     planes = planes.reshape(8, -1)
     folded = np.zeros(len(bits), dtype="<u8")
     byte_columns, used = folded.view(np.uint8).reshape(-1, 8), 8

@@ -100,7 +100,7 @@ def unpack_parts(
     """
     try:
         if not text.startswith(f"{key} ") or not len(floats) or floats[0] != _mark(key):
-            raise ValueError("it belongs to other inputs")
+            raise ValueError("the result belongs to other inputs")
         header, numbers = json.loads(text[len(key) :]), np.asarray(floats)
         if not (isinstance(header, dict) and header.get("format")):
             from . import earlier_formats
@@ -125,7 +125,10 @@ def unpack_parts(
         zipfile.BadZipFile,
     ) as error:
         raise InputError(
-            "BAD_RESULT", where, "the stored result cannot be read ({}); recompute it", error
+            "BAD_RESULT",
+            where,
+            "the stored result cannot be read ({}); recompute the object",
+            error,
         ) from None
 
 
@@ -154,7 +157,7 @@ def _bytes_of(floats: Array, length: int) -> bytes:
     words = np.ascontiguousarray(floats, dtype="<f8").view(np.uint8).reshape(-1, 8)
     data = np.ascontiguousarray(words[:, :BYTES_PER_FLOAT]).ravel()[:length].tobytes()
     if len(data) != length:
-        raise ValueError("it is cut short")
+        raise ValueError("the data are cut short")
     return data
 
 
@@ -259,7 +262,7 @@ class _Reader:
         """Return rows of a table, as a view."""
         table = self.table(name)
         if first_row < 0 or count < 0 or first_row + count > len(table):
-            raise ValueError("it is cut short")
+            raise ValueError("the data are cut short")
         return table[first_row : first_row + count]
 
     def table(self, name: str) -> NDArray[Any]:
@@ -318,7 +321,7 @@ class Stored:
 
 def _check_made(obj: Any) -> None:
     if not obj.Key:
-        raise InputError("NO_RESULT", obj.Label, "the result is missing; recompute it")
+        raise InputError("NO_RESULT", obj.Label, "the result is missing; recompute the object")
 
 
 def _values_at(paths: Sequence[Place], value: Any) -> Any:

@@ -95,7 +95,7 @@ def shape_of(source: Any, path: str = "") -> Any:
             raise InputError(
                 "NO_SHAPE",
                 source.Label,
-                "{} in it has no shape; choose an object with a shape",
+                "{} in the group has no shape; choose an object with a shape",
                 path,
             )
         return shape
@@ -122,7 +122,9 @@ def _apply_scales(source: Any, shape: Any) -> Any:
 
 
 def _no_shape(source: Any) -> InputError:
-    return InputError("NO_SHAPE", source.Label, "it has no shape; choose an object with a shape")
+    return InputError(
+        "NO_SHAPE", source.Label, "the object has no shape; choose an object with a shape"
+    )
 
 
 def _is_element(path: str) -> bool:
@@ -276,7 +278,7 @@ def notes(obj: Any) -> tuple[Issue, ...]:
         return ()
     text = Text(
         "the chord error is {:g} mm, suitable for a part of {:.0f} mm and its beads; set "
-        "strategy.chord_error to change it",
+        "strategy.chord_error for another value",
         chord_error,
         extent(obj),
     )
@@ -370,7 +372,9 @@ def mesh_of(source: Any) -> tuple[Any, np.ndarray]:
         else:
             combined.addMesh(placed)
     if combined is None:
-        raise InputError("NO_SHAPE", source.Label, "it has no shape; choose an object with a shape")
+        raise InputError(
+            "NO_SHAPE", source.Label, "the object has no shape; choose an object with a shape"
+        )
     return combined, np.eye(4)
 
 
@@ -382,8 +386,8 @@ def refuse_mixed(source: Any) -> None:
         raise InputError(
             "MIXED",
             source.Label,
-            "it contains shapes and meshes, which cannot be used together; choose its objects "
-            "one by one",
+            "the group contains shapes and meshes, which cannot be used together; choose its "
+            "objects one by one",
         )
 
 

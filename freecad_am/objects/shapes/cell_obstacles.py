@@ -161,9 +161,9 @@ def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
             raise InputError(
                 CODE,
                 f"{OBSTACLES_KEY} {obstacle.name}",
-                "it already touches the nozzle at the first point of the job, in every arm "
-                "configuration; its pose is in the manufacturer's base frame, and its file in "
-                "mm: move it, or the deposition point",
+                "the obstacle touches the nozzle at the first point of the job in every arm "
+                "configuration; move the obstacle or the deposition point, and check that the "
+                "pose is in the manufacturer's base frame and the file in mm",
             )
 
 

@@ -50,7 +50,7 @@ class FeatureStage(Stage):
         super().complete(obj)
         self._owners = {link: _owner(obj, link) for link in self.chosen}
         if "ChosenFaces" not in obj.PropertiesList:
-            help = "The faces and edges as they were chosen."
+            help = "The chosen faces and edges."
             obj.addProperty(
                 "App::PropertyStringList", "ChosenFaces", "Result", help, HIDDEN | OUTPUT
             )

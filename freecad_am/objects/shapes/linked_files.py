@@ -41,7 +41,7 @@ def open_here(path: str, where: str) -> Any:
         return App.openDocument(path, True)
     except (OSError, RuntimeError, ValueError, AttributeError):
         raise InputError(
-            "BAD_FILE", where, "it cannot be read as a FreeCAD document; save it again"
+            "BAD_FILE", where, "the file cannot be read as a FreeCAD document; save it again"
         ) from None
 
 
@@ -58,7 +58,9 @@ def refuse(path: str, where: str) -> None:
             names = archive.namelist()
             if "Document.xml" not in names:
                 raise InputError(
-                    "BAD_FILE", where, "it cannot be read as a FreeCAD document; save it again"
+                    "BAD_FILE",
+                    where,
+                    "the file cannot be read as a FreeCAD document; save it again",
                 )
             for name in names:
                 if name.lower().endswith(".xml"):
@@ -73,7 +75,7 @@ def refuse(path: str, where: str) -> None:
         RuntimeError,
     ):
         raise InputError(
-            "BAD_FILE", where, "it cannot be read as a FreeCAD document; save it again"
+            "BAD_FILE", where, "the file cannot be read as a FreeCAD document; save it again"
         ) from None
 
 
@@ -89,8 +91,8 @@ def _refuse_doctype(archive: zipfile.ZipFile, name: str, where: str) -> None:
 
     def refused(*_: object) -> None:
         message = Text(
-            "{} in it has a document type, which FreeCAD documents never have, and is not read; "
-            "save it again",
+            "{} in the file has a document type, which FreeCAD documents never have, and is not "
+            "read; save the document again",
             name,
         )
         raise InputError("BAD_FILE", where, message)
@@ -105,7 +107,9 @@ def _refuse_doctype(archive: zipfile.ZipFile, name: str, where: str) -> None:
         except (_Begun, expat.ExpatError):  # FreeCAD reports other faults
             return
     if size > LONGEST_HEAD:
-        raise InputError("BAD_FILE", where, "{} in it does not begin as XML; save it again", name)
+        raise InputError(
+            "BAD_FILE", where, "{} in the file does not begin as XML; save the document again", name
+        )
 
 
 def refuse_missing(source: Any, where: str) -> None:

@@ -261,7 +261,7 @@ def resolved(obj: Any, names: Sequence[str], where: str) -> tuple[Any, list[str]
         raise InputError(
             _code(names[0]),
             where,
-            "{} names faces or edges of several objects ({}, {}); choose from one object",
+            "{} names faces or edges of several objects ({}, {}); choose from a single object",
             ", ".join(names),
             owners[0][0].Label,
             other_labels[0],
@@ -281,7 +281,7 @@ def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
             _code(plain[0]),
             where,
             "{} of {} is ambiguous: FreeCAD lists the contents of its group twice and numbers "
-            "both; choose it on the original object",
+            "both; choose the face or edge on the original object",
             plain[0],
             obj.Label,
         )
@@ -294,7 +294,7 @@ def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
             raise InputError(
                 _code(name),
                 where,
-                "{} of {} is {} of {}; choose it on the latter",
+                "{} of {} is {} of {}; choose it on the original object",
                 name,
                 obj.Label,
                 own_name or element,
@@ -317,7 +317,8 @@ def _resolve(obj: Any, name: str, where: str) -> tuple[Any, str]:
         raise InputError(
             _code(name),
             where,
-            "{} does not exist in {}; choose it in the 3D view, or on the original object",
+            "{} does not exist in {}; choose the face or edge in the 3D view, or on the original "
+            "object",
             name,
             obj.Label,
         )

@@ -183,8 +183,8 @@ def _refuse_without_add_on(changed: Any, needs: Dependencies, where: str) -> Non
             raise InputError(
                 "NO_ADD_ON",
                 where,
-                "{} cannot be computed: the add-on that created it is missing; install it, or "
-                "remove the value",
+                "{} cannot be computed: the add-on that created the object is missing; install "
+                "the add-on, or remove the value",
                 obj.Label,
             )
 
@@ -197,7 +197,7 @@ def _notes(
     labels = ", ".join(dict.fromkeys(obj.Label for obj in renewed if obj in decisive))
     if labels:
         text = Text(
-            "{} was recomputed for {}: a linked document changed after this one was saved",
+            "{} was recomputed for {}, because a linked document is newer than the file",
             labels,
             source.Label,
         )
@@ -205,7 +205,7 @@ def _notes(
     for obj in dict.fromkeys(changed):
         if obj not in decisive:
             text = Text(
-                "a value of {} is set, but {} does not depend on it; check the names",
+                "a value of {} is set, but {} does not depend on this value; check the names",
                 obj.Label,
                 source.Label,
             )
@@ -249,18 +249,16 @@ def _no_single_object(
 ) -> InputError:
     """Return the error of a document in which no single object is meant."""
     if not available:
-        message = (
-            "no object in it has a shape; recompute and save it in FreeCAD, or use another file"
-        )
+        message = "no object in the document has a shape; recompute and save the document in FreeCAD, or use another file"
         return InputError("NO_OBJECT", path, message)
     names = ", ".join(obj.Label for obj in candidates or available)
     if not object_name:
         message = "{} objects have a shape of their own ({}); name the part with part.object"
         return InputError("NO_OBJECT", path, message, len(candidates), names)
     if candidates:
-        message = "{} objects have the label {!r}; change one label"
+        message = "{} objects have the label {!r}; change the label of one object"
         return InputError("NO_OBJECT", path, message, len(candidates), object_name)
-    message = "no object with a shape is called {!r}; name one of {}"
+    message = "no object with a shape is called {!r}; use one of {}"
     return InputError("NO_OBJECT", path, message, object_name, names)
 
 
@@ -273,7 +271,7 @@ def _content_of(source: Any, path: str) -> tuple[Any, str]:
                 "NO_OBJECT",
                 path,
                 "{} lists the contents of a group twice, so its face numbers are ambiguous; name "
-                "an object in it, or remove the contents from the group",
+                "an object in the group, or remove the contents from the group",
                 source.Label,
             )
         shape = global_shape(source).copy()

@@ -66,8 +66,8 @@ def _container_of(obj: Any) -> Any:
         raise InputError(
             "SEVERAL_PLACES",
             obj.Label,
-            "several link groups show it ({}), each in its own place; choose one group, or make "
-            "a link to the object",
+            "several link groups show the object ({}), each in its own place; choose one group, "
+            "or make a link to the object",
             ", ".join(candidate.Label for candidate in linking),
         )
     return linking[0] if linking else obj.getParentGroup()
@@ -117,7 +117,7 @@ def outer_placement(source: Any) -> Any:
     raise InputError(
         "SCALED_CONTAINER",
         source.Label,
-        "{} scales or mirrors it; choose {} itself",
+        "{} scales or mirrors the object; choose {} itself",
         scaling[0].Label,
         scaling[0].Label,
     )
@@ -345,13 +345,13 @@ def object_of(array: Any, index: int) -> Any:
     count = max(element_count(array), len(elements_of(array)))
     if not count:
         raise InputError(
-            "BAD_INPUT", array.Label, "it is not a link array; choose the object itself"
+            "BAD_INPUT", array.Label, "the object is not a link array; choose the object itself"
         )
     if not 0 <= index < count:
         raise InputError(
             "BAD_INPUT",
             array.Label,
-            "it has no element {}; its {} elements are numbered from 0",
+            "the array has no element {}; its {} elements are numbered from 0",
             index,
             count,
         )

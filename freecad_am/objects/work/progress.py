@@ -59,7 +59,7 @@ def told_to(listener: Listener, findings: Findings | None = None) -> Iterator[No
     for called, where in ((listener, "listener"), (findings, "findings")):
         if not callable(called) and (called is not None or where == "listener"):
             raise InputError(
-                "BAD_INPUT", where, "{!r} is not a function; pass one", type(called).__name__
+                "BAD_INPUT", where, "{!r} is not a function; pass a function", type(called).__name__
             )
     _listeners.stack.append((listener, findings))
     try:

@@ -142,7 +142,7 @@ class Run:
             UNREADABLE_PROGRAM for a second output.
         """
         if self.output not in ("", output if word != ARC else ARC):
-            raise unreadable(where, "it switches a second output")
+            raise unreadable(where, "the program switches a second output")
         self.output, self.on, self.fed = ARC if word == ARC else output, on, False
         self.happens("on" if on else "off", float(output), word, digits=digits, before=before)
 
@@ -166,7 +166,7 @@ class Run:
         if move.linear and not self.nearest:
             raise unreadable(
                 where,
-                "configuration supervision (ConfL) is on, but its positions name no configurations",
+                "configuration supervision (ConfL) is on, but the positions name no configurations",
             )
         if move.zone != "fine" and move.zone not in module.zones:
             raise unreadable(where, Text("the module does not define the zone {}", move.zone))
@@ -231,7 +231,8 @@ class Run:
         ):
             raise unreadable(
                 where,
-                "other external axes have values than in earlier moves, or there are gaps between them",
+                "the external axes of the move differ from earlier moves, or have gaps between "
+                "them",
             )
         if len(self.slides) > 1 or not {*self.slides} <= {*used}:
             raise unreadable(
@@ -243,10 +244,11 @@ class Run:
         ):
             raise unreadable(
                 where,
-                "external axes have no value, or their mechanical unit is not active or does not carry the work object",
+                "external axes have no value, or their mechanical unit is not active or does not "
+                "carry the work object",
             )
         if self.used is not None and self.unit != self.active:
-            raise unreadable(where, "another mechanical unit is active than in earlier moves")
+            raise unreadable(where, "the active mechanical unit differs from earlier moves")
         self.used, self.unit = used, self.active
         self.external += [self._used_of(texts)] if used else []
 

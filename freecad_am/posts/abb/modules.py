@@ -131,7 +131,8 @@ def modules(files: dict[str, bytes]) -> dict[str, Module]:
             raise unreadable(
                 file,
                 Text(
-                    "its module is called {}, but the file has another name, or another module has the same name",
+                    "the module is called {}, but the file has another name, or another module "
+                    "has the same name",
                     module.name,
                 ),
             )
@@ -148,7 +149,7 @@ def _module(file: str, lines: list[str]) -> Module:
         or len(routines) != 1
         or [line for _, line in numbered[-2:]] != ["ENDPROC", "ENDMODULE"]
     ):
-        raise unreadable(file, "it is not a module with one routine")
+        raise unreadable(file, "the file is not a module with one routine")
     routine = _PROC_LINE.match(numbered[routines[0]][1])
     assert routine is not None
     module = Module(file, title[1].lower(), routine[1], numbered[routines[0] + 1 : -2])
@@ -344,7 +345,8 @@ class ProcessData:
             if taken_weld[1] not in module.welds or taken_weld[1] in self.welds:
                 raise unreadable(
                     where,
-                    "the weld data copied from the controller is not declared in the module, or is copied twice",
+                    "the weld data copied from the controller is not declared in the module, or "
+                    "is copied twice",
                 )
             self.welds[taken_weld[1]] = Weld(int(taken_weld[2]))
         elif speed := _SPEED.match(line):
@@ -374,7 +376,8 @@ class ProcessData:
         ):
             raise unreadable(
                 where,
-                "weld data is not copied from the controller yet, or its speed is set twice or differs from its declaration",
+                "weld data is not copied from the controller yet, or its speed is set twice or "
+                "differs from its declaration",
             )
         if speed[2]:
             weld.original = value

@@ -50,30 +50,28 @@ def refuse(request: Asked) -> None:
     if arc and request.motion != CARTESIAN:
         raise schedule_refused(
             ARC,
-            "ArcL is a linear move, but this program has joint moves; motion: cartesian has linear ones",
+            "ArcL is a linear move, but the program has joint moves; use motion: cartesian for "
+            "linear moves",
         )
     if request.weave and request.dry_run:
         raise weave_refused(
-            "ArcL carries the weave, and a dry run has no ArcL; block weld and weave on the controller instead"
+            "ArcL carries the weave, and a dry run has no ArcL; block weld and weave on the "
+            "controller instead"
         )
     if request.weave and not arc:
         raise weave_refused("ArcL carries the weave, and only program.schedule.by: arc writes ArcL")
     if request.weave and request.part_held:
-        raise weave_refused(
-            "it is unconfirmed that ArcL weaves when the robot moves the part below a fixed torch"
-        )
+        raise weave_refused("ArcL may not weave when the robot moves the part below a fixed torch")
     if not request.wire:
         return
     if arc:
         raise wire_refused("welddata sets the wire feed of ArcL")
     if request.motion != CARTESIAN:
         raise wire_refused(
-            "TriggSpeed follows the speed of linear moves, but this program has joint moves"
+            "TriggSpeed follows the speed of linear moves, but the program has joint moves"
         )
     if request.part_held or request.turned:
-        raise wire_refused(
-            "it is unconfirmed that TriggSpeed follows the speed relative to a moving part"
-        )
+        raise wire_refused("TriggSpeed may not follow the speed relative to a moving part")
 
 
 @dataclass(frozen=True)

@@ -42,16 +42,16 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     if len(main_modules) != 1:
         raise unreadable(
             "program",
-            Text("{} modules have a routine main, but exactly one must", len(main_modules)),
+            Text("{} modules have a routine main, but exactly one module must", len(main_modules)),
         )
     run = Run(by_name, slides=main_modules[0].slides)
     _follow(main_modules[0], run)
     if not run.time_or_speed:
-        raise unreadable("program", "it has no moves")
+        raise unreadable("program", "the program has no moves")
     if len(run.followed) != len(by_name):
         raise unreadable("program", "some modules never run, or run twice")
     if run.moving:
-        raise unreadable("program", "it ends before its last move")
+        raise unreadable("program", "the program ends before its last move")
     return all_moves(run)
 
 
@@ -117,7 +117,8 @@ def _load(
         raise unreadable(
             where,
             Text(
-                "{} is missing, has no routine {}, has already run, or is loaded during the deposit",
+                "{} is missing, has no routine {}, has already run, or is loaded during the "
+                "deposit",
                 part_name,
                 name[1],
             ),
@@ -158,7 +159,8 @@ def _move(module: Module, move: re.Match[str], run: Run, where: str) -> None:
         raise unreadable(
             where,
             Text(
-                "the module does not define the speed {}, or the speed is set by an argument other than \\T or \\V",
+                "the module does not define the speed {}, or the speed is set by an argument "
+                "other than \\T or \\V",
                 speed,
             ),
         )

@@ -134,7 +134,7 @@ def _trigger_names(first_trigger: str, further: str, where: str) -> list[str]:
     """Return the triggers of a move; further triggers count from \\T2 without gaps."""
     numbered = _EXTRA_TRIGGER.findall(further)
     if [int(number) for number, _ in numbered] != list(range(2, 2 + len(numbered))):
-        raise unreadable(where, "its triggers are not numbered consecutively")
+        raise unreadable(where, "the triggers of the move are not numbered consecutively")
     return [first_trigger, *(name for _, name in numbered)]
 
 
@@ -147,7 +147,8 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
         if run.analogue not in (None, feed.output) or not move.linear or not run.on:
             raise unreadable(
                 where,
-                "a second analogue output follows the speed, or one does so on a joint move or without deposit",
+                "a second analogue output follows the speed, or an analogue output follows the "
+                "speed of a joint move or without deposit",
             )
         run.analogue = feed.output
     starts = [feed for feed in feeds if feed.scale]
@@ -155,7 +156,8 @@ def _triggered(move: Move, names: list[str], module: Module, run: Run, where: st
     if len(starts) > 1 or len(ends) > 1 or (ends and not starts) or (starts and run.fed):
         raise unreadable(
             where,
-            "two analogue scales set the wire feed at once, or the wire feed ends before it begins or within a bead",
+            "two analogue scales set the wire feed at once, or the wire feed ends before it "
+            "begins or within a bead",
         )
     for feed in starts:
         digits = feed.scale * move.half + feed.digits * (move.amount + move.half)
@@ -199,7 +201,9 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
         or weld.original != weld.speed
         or weld.schedule != int(seam)
     ):
-        raise unreadable(where, "its weld data has no speed, or belongs to another seam")
+        raise unreadable(
+            where, "the weld data of the move has no speed, or belongs to another seam"
+        )
     frames = module.tool_and_object(tool, work_object, where)
     dry = _speed_of(module, speed, where)
     move = Move(True, (position, turn), axes, weld.speed, weld.half, zone, frames)
@@ -213,7 +217,9 @@ def _arc_move(arc: re.Match[str], module: Module, run: Run, where: str) -> None:
         raise unreadable(where, "the arc is off, or was started with another seam")
     if kind == "End" and run.struck is None and run.stands_at(move, where):
         if run.last_weld != (weld_name, woven):
-            raise unreadable(where, "the arc ends with other weld data than it was started with")
+            raise unreadable(
+                where, "the arc was started with weld data that differ from those at its end"
+            )
         _ends(run, where)
         return
     _burns(move, weld, weld_name, dry, woven, run, where)

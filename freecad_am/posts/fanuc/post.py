@@ -96,7 +96,9 @@ __all__ = ["read", "write"]
 LAST_ANALOGUE = 25  # number of analogue inputs
 CONTROLLER = Controller(point_bytes=205, external=True, positioner="2")
 PENDANT = Pendant("FANUC", ("W", "P", "R"), FIXED_XYZ)
-NO_WIRE = "FANUC sets AO[] between two moves when it reads the line, ahead of the motion"
+NO_WIRE = (
+    "FANUC sets AO[] between two moves when the controller reads the line, ahead of the motion"
+)
 NO_WEAVE = ""  # linear moves can be woven
 NO_TRIGGER = ""  # the deposit can be switched on the move itself
 refuse_process = refuse_no_process
@@ -223,13 +225,11 @@ def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
         return
     why = (
         (
-            "linear moves over a part on a positioner need coordinated motion (COORD), and the user frame of its "
-            "positions is unconfirmed"
+            "linear moves over a part on a positioner need coordinated motion (COORD), and the user frame of its positions is not documented"
         )
         if ROTARY in external
         else (
-            "it is unconfirmed whether the speed of linear moves includes the motion of the track, which depends on the "
-            "setup of the rail"
+            "the speed of linear moves may include the motion of the track, depending on the setup of the rail"
         )
     )
     raise InputError(
@@ -284,8 +284,8 @@ def _refuse_continuous_steps(program: Program) -> None:
         raise InputError(
             "ENDLESS_STEP",
             Text("layer {} bead {}", run.layer, run.bead),
-            "axis {} turns {:.1f} deg in one move; a continuous axis moves less than 180 deg per "
-            "move: add points, or limit the axis",
+            "axis {} turns {:.1f} deg in one move, but a continuous axis moves less than 180 deg "
+            "per move; add points, or limit the axis",
             axes[axis] + 1,
             turn,
         )

@@ -25,7 +25,7 @@ from .records import Records, records_of, unreadable
 
 # ---- Parse listings of FANUC programs: instructions, runs of moves, and position records
 
-_NO_LISTING = "it is not a listing with /PROG, /MN, /POS and /END in this order"
+_NO_LISTING = "the file is not a listing with /PROG, /MN, /POS and /END in this order"
 _TITLE = 1000  # maximum number of bytes searched for the first line
 # units of a move: duration in s or ms, speed in mm/s, fraction in percent
 UNITS = ("sec", "msec", "mm/sec", "%")
@@ -232,7 +232,7 @@ class Run:
         groups = listing.records.moved
         if groups and self.moved not in (None, groups):
             raise unreadable(
-                listing.file, "its header names other motion groups than the programs before it"
+                listing.file, "the header names other motion groups than the previous programs"
             )
         self.moved = groups or self.moved
 
@@ -246,7 +246,7 @@ class Run:
             ):
                 raise unreadable(
                     f"{listing.file} line {listing.moves.line[0]}",
-                    "it moves other motion groups than the programs before it",
+                    "the program moves other motion groups than the previous programs",
                 )
             self.group, self.track = records.group, (self.track[0], records.track)
             self.values.append(records.values[rows])
@@ -368,14 +368,15 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         raise unreadable(
             "program",
             Text(
-                "{} programs are called by no other program, but exactly one must be the main program",
+                "{} programs are called by no other program, but exactly one must be the main "
+                "program",
                 len(main),
             ),
         )
     run = Run()
     _follow(main[0], {name: (file, files[file]) for name, file in named.items()}, run, ())
     if not run.duration:
-        raise unreadable("program", "it has no moves")
+        raise unreadable("program", "the program has no moves")
     return read_moves(run)
 
 
@@ -387,7 +388,7 @@ def _follow(
     Only listings being executed stay in memory.
     """
     if name in callers:
-        raise unreadable(files[name][0], "it calls itself")
+        raise unreadable(files[name][0], "the program calls itself")
     listing = listing_of(*files[name])
     run.begin(listing)
     for position, (number, statement, begin, end) in enumerate(listing.instructions):
@@ -420,7 +421,7 @@ def _switch(
 ) -> None:
     """Switch the deposit by an output."""
     if run.output not in ("", output[1]):
-        raise unreadable(where, "it switches a second output")
+        raise unreadable(where, "the program switches a second output")
     run.output, run.on = output[1], output[2] == "ON"
     run.happens("on" if run.on else "off", float(output[1]), "DO", digits=digits, ahead=ahead)
 
@@ -449,7 +450,7 @@ def _arc(arc: re.Match[str], where: str, run: Run) -> None:
     """Start or end the arc with a schedule."""
     if run.output not in ("", ARC) or run.on == (arc[1] == "Start"):
         raise unreadable(
-            where, "an output switches the deposit too, the arc is already on, or it is not on yet"
+            where, "an output switches the deposit too, or the arc is already on or still off"
         )
     run.output, run.on = ARC, arc[1] == "Start"
     run.happens("on" if run.on else "off", float(arc[2]), ARC)
@@ -548,7 +549,7 @@ def _refuse(listing: Listing, move: int, run: Run) -> None:
     if moves.point[move] not in records.point:
         raise unreadable(where, Text("P[{}] is not recorded", moves.point[move]))
     if run.cartesian != records.cartesian and run.duration:
-        raise unreadable(where, "it mixes joint and Cartesian positions")
+        raise unreadable(where, "the program mixes joint and Cartesian positions")
     if moves.straight[move] and not records.cartesian:
         raise unreadable(
             where,

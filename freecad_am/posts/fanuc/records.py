@@ -279,7 +279,7 @@ def _check_groups(file: str, lines: list[str], records: Records) -> None:
         raise unreadable(
             f"{file} line {number}",
             Text(
-                "its header moves groups {}, but its positions have groups {}",
+                "the header moves groups {}, but the positions have groups {}",
                 ", ".join(sorted(moved)),
                 ", ".join(sorted({"1", records.group or "1"})),
             ),

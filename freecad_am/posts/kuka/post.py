@@ -243,7 +243,9 @@ def refuse_setup(
         raise InputError(
             "REMOTE_TCP",
             "cell.setup",
-            "with the part on the robot KRL needs a fixed tool ($IPO_MODE #TCP) for linear moves, and it is unconfirmed whether their points refer to nozzle or part; use `setup: tool-on-robot`",
+            "with the part on the robot KRL needs a fixed tool ($IPO_MODE #TCP) for linear "
+            "moves, and the documentation does not say whether their points refer to nozzle or "
+            "part; use `setup: tool-on-robot`",
         )
     if motion == "joint":
         raise InputError(

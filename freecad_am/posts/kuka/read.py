@@ -259,14 +259,15 @@ def read(files: dict[str, bytes]) -> ReadMoves:
         raise not_read(
             "program",
             Text(
-                "{} programs are called by no other program, but exactly one must be the main program",
+                "{} programs are called by no other program, but exactly one must be the main "
+                "program",
                 len(main),
             ),
         )
     run = Run(by_name)
     _go(main[0], run)
     if not run.speed:
-        raise not_read("program", "it has no moves")
+        raise not_read("program", "the program has no moves")
     if len(run.followed) != len(by_name):
         raise not_read("program", "some modules never run, or run twice")
     return read_moves(run)
@@ -281,11 +282,11 @@ def _routine(file: str, lines: list[str]) -> str:
     )
     heads = [head[1] for line in lines if (head := _ANY_HEAD.match(line))]
     if title is None or lines[-1] != "END" or len(heads) != 1:
-        had = Text("it has {}", ", ".join(heads)) if heads else "it has no DEF"
+        had = Text("the file has {}", ", ".join(heads)) if heads else "the file has no DEF"
         raise not_read(
             file,
             Text(
-                "it is not a module with one routine named like the file, that begins with "
+                "the file is not a module with one routine of the same name that begins with "
                 "&ACCESS RVP, &REL 1 and DEF and ends with END: {}",
                 had,
             ),
@@ -293,7 +294,7 @@ def _routine(file: str, lines: list[str]) -> str:
     if f"{title[1]}.src".lower() != file.lower():
         raise not_read(
             file,
-            Text("its routine {} and the file have different names; rename one", heads[0]),
+            Text("the routine {} and the file have different names; rename one of them", heads[0]),
         )
     return title[1]
 
@@ -316,7 +317,7 @@ def _go(name: str, run: Run) -> None:
         elif not _setting(line, run):
             _carry_out(line, run, where)
     if not run.standing or run.arc.is_open or run.trigger:
-        raise not_read(file, "it ends before its last move")
+        raise not_read(file, "the program ends before its last move")
 
 
 def _carry_out(line: str, run: Run, where: str) -> None:
@@ -367,7 +368,9 @@ def _couple(coupled: re.Match[str], run: Run, where: str) -> None:
 def _declare(declared: re.Match[str], earlier_lines: list[str], run: Run, where: str) -> None:
     """Declare a signal of several outputs; declarations precede the instructions of a module."""
     if any(not line.startswith(";") for line in earlier_lines):
-        raise not_read(where, "it is declared after an instruction; declarations come first")
+        raise not_read(
+            where, "the signal is declared after an instruction, but declarations come first"
+        )
     run.signals[declared[1]] = int(declared[2]), int(declared[3])
 
 
@@ -375,22 +378,22 @@ def _set(outputs: tuple[int, int], number: int, run: Run, where: str) -> None:
     """Set the outputs from the first to the last to a number."""
     if not run.standing or number >= 2 ** (outputs[1] - outputs[0] + 1):
         raise not_read(
-            where, "it is set ahead of the motion, or its outputs are too few for the number"
+            where, "the schedule is set ahead of the motion, or has too few outputs for the number"
         )
     if run.output and outputs[0] <= int(run.output) <= outputs[1]:
-        raise not_read(where, "one of its outputs switches the deposit")
+        raise not_read(where, "one output of the schedule switches the deposit")
     run.happens("schedule", float(outputs[0]), float(number))
 
 
 def _arc(line: str, run: Run, where: str) -> None:
     """Read an ArcTech line, which may change the settings of moves."""
     if run.trigger:
-        raise not_read(where, "it interrupts the lines of another instruction")
+        raise not_read(where, "the line interrupts the lines of another instruction")
     switched = run.arc.called(line)
     if switched is None:
         raise not_read(
             where,
-            "ArcTech has no such line here, or it names other data than the lines before it",
+            "ArcTech has no such line here, or the line names other data than the previous lines",
         )
     for name in ("speed", "rounding", "percent", *(f"E{number}" for number in range(1, 7))):
         run.state.pop(name, None)
@@ -406,7 +409,7 @@ def _arc(line: str, run: Run, where: str) -> None:
 def _trigger(trigger: re.Match[str], run: Run, where: str) -> None:
     """Let the next move switch an output."""
     if run.trigger or run.arc.is_open:
-        raise not_read(where, "it interrupts the lines of another instruction")
+        raise not_read(where, "the line interrupts the lines of another instruction")
     _one_output(trigger[2], run, where)
     run.trigger = -0.001 * int(trigger[1]), trigger[2], trigger[3] == "TRUE"
 
@@ -414,7 +417,7 @@ def _trigger(trigger: re.Match[str], run: Run, where: str) -> None:
 def _one_output(number: str, run: Run, where: str) -> None:
     """Check that a single output, and not also ArcTech, switches the deposit."""
     if run.output not in ("", number) or any(ARC in event.value for event in run.events):
-        raise not_read(where, "it switches a second output")
+        raise not_read(where, "the program switches a second output")
     run.output = number
 
 
@@ -484,7 +487,7 @@ def _stopped(run: Run, where: str) -> bool:
     rounded.
     """
     if run.speed and not np.isnan(run.rounding[-1]):
-        raise not_read(where, "the move before it is approximated, but this line stops the robot")
+        raise not_read(where, "the line stops the robot, but the previous move is approximated")
     return True
 
 
@@ -493,7 +496,7 @@ def _follow_move(line: str, run: Run, where: str) -> None:
     if not run.arc.accept_move(straight is not None, bool(straight and straight[8])):
         raise not_read(
             where,
-            "a move of ArcTech must be linear and stop, and follow all lines that belong to it",
+            "a move of ArcTech must be linear, stop, and follow all lines of its instruction",
         )
     needed = {_INITIAL, _ON_FLANGE, _TURNING, "BASE", "TOOL"} | (
         {"speed"} if straight else {"percent"}
@@ -558,7 +561,7 @@ def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str)
     """
     unit = f"{run.state['EK']:.0f}" if "EK" in run.state else ""
     if run.unit is not None and (run.unit, run.numbers) != (unit, numbers):
-        raise not_read(where, "its moves use different external axes")
+        raise not_read(where, "the moves of the program use different external axes")
     moved = set(numbers) - set(run.slides)
     in_order = numbers == tuple(range(numbers[0], numbers[0] + len(numbers)) if numbers else ())
     if (
@@ -569,7 +572,7 @@ def _external_axes(numbers: tuple[int, ...], share: float, run: Run, where: str)
     ):
         raise not_read(
             where,
-            "the external axes are out of order, or BASE is not coupled to the part that they move",
+            "the external axes are out of order, or BASE is not coupled to the part on these axes",
         )
     if any(run.state.get(f"E{number}") != share for number in numbers):
         raise not_read(where, Text("external axes are not set to {:.0f} % of their speeds", share))

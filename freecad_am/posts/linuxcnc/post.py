@@ -56,7 +56,7 @@ NO_TRIGGER = (
     "programs of five-axis machines switch the deposit between blocks only, not ahead of time"
 )
 refuse_process = refuse_no_process
-NO_SCHEDULE = {"arc": "it has no arc instructions"}
+NO_SCHEDULE = {"arc": "five-axis machines have no arc instructions"}
 LAST_SCHEDULE = 65535
 MOVE_LINE = re.compile(rb"G[01] ")
 ON_CONTROLLER = controller_checks(
@@ -176,15 +176,15 @@ def _refuse(program: Program) -> None:
         raise InputError(
             "SCHEDULE",
             "program.schedule.output",
-            "analogue output {} carries the wire feed; use another one for schedules",
+            "analogue output {} carries the wire feed; use another analogue output for schedules",
             program.schedule_output,
         )
     if not program.nc.deposit_on and not program.dry_run and program.deposit_output > LAST_PIN:
         raise InputError(
             "DEPOSIT_OUTPUT",
             "program.deposit_output",
-            "digital outputs are 1 to {} (motion.digital-out-00 is number 1), not {}; choose one "
-            "in this range",
+            "digital outputs are 1 to {} (motion.digital-out-00 is number 1), not {}; choose an "
+            "output in this range",
             LAST_PIN,
             program.deposit_output,
         )
@@ -194,7 +194,7 @@ def _refuse(program: Program) -> None:
                 "DEPOSIT_INPUT",
                 "process.between_layers.input",
                 "digital inputs are 1 to {} (motion.digital-in-00 is number 1), not {}; choose "
-                "one in this range",
+                "an input in this range",
                 LAST_PIN,
                 block.number,
             )
@@ -208,8 +208,8 @@ def _refuse_cartesian(program: Program) -> None:
         raise InputError(
             "NO_TIP_KINEMATICS",
             "program.nc.switch_kinematics",
-            "positions on the part need the kinematics that M428 selects; set it to true, or use "
-            "`motion: joint`",
+            "positions on the part need the kinematics that M428 selects; set "
+            "program.nc.switch_kinematics to true, or use `motion: joint`",
         )
     if not 1 <= program.user_frame <= len(OFFSETS):
         raise InputError(

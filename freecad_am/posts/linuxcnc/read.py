@@ -97,7 +97,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     for file, content in files.items():
         name, lines = file.rpartition(".")[0].upper(), _lines(file, content)
         if not file.lower().endswith(".ngc") or not lines or lines[-1][1] != "M2":
-            raise unreadable(file, "it is not a program that ends with M2")
+            raise unreadable(file, "the file is not a program that ends with M2")
         programs[name] = lines[:-1]
         if not _is_sub(name, lines[:-1]):
             main.append(name)
@@ -109,7 +109,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     state = _State(programs)
     _follow(main[0], programs[main[0]], state, ())
     if state.track.on or state.loop[0]:
-        raise unreadable("program", "it ends with the deposit on, or within a loop")
+        raise unreadable("program", "the program ends with the deposit on, or within a loop")
     return state.track.moves()
 
 
@@ -133,7 +133,7 @@ def _lines(file: str, content: bytes) -> list[tuple[str, str]]:
         if len(line) > 250 or (not layer and "(" in text) or ";" in text:
             raise unreadable(
                 f"{file} line {number}",
-                "its comment may be executed, or its line is too long",
+                "the comment may be executed, or the line is too long",
             )
         if text:
             located_lines.append((f"{file} line {number}", text))
@@ -145,7 +145,7 @@ def _follow(
 ) -> None:
     """Execute the lines of a program in order, and the subs that it calls."""
     if name in callers:
-        raise unreadable(name, "it calls itself")
+        raise unreadable(name, "the program calls itself")
     for where, text in lines:
         words = None if state.shape is None or state.loop[0] else state.shape.words(text)
         if words is not None:
@@ -234,12 +234,15 @@ def _cooled(where: str, text: str, state: _State) -> bool:
     loop = _LOOP.match(text)
     if sample := _SAMPLE.match(text):
         if state.loop[1] not in ("", sample[1]):
-            raise unreadable(where, "it reads another analogue input than the one it waits for")
+            raise unreadable(
+                where,
+                "the loop reads another analogue input than the one that the program waits for",
+            )
         state.sampled = sample[1]
     elif loop and loop[2] and sampled and not state.loop[0]:
         state.loop = loop[1], sampled
         if state.track.on:
-            raise unreadable(where, "it waits for an analogue input within a bead")
+            raise unreadable(where, "the program waits for an analogue input within a bead")
         state.track.happens("below", float(sampled) + 1.0, float(loop[2]), digits=1e-6)
     elif loop and not loop[2] and sampled and state.loop[0] == loop[1]:
         state.loop = "", ""
@@ -254,7 +257,7 @@ def _cooled(where: str, text: str, state: _State) -> bool:
 
 def _call(where: str, name: str, state: _State, callers: tuple[str, ...]) -> None:
     if state.track.on or state.kinematics == _TIP_ON:
-        raise unreadable(where, "it calls another program within a bead")
+        raise unreadable(where, "the program calls another program within a bead")
     if name in state.files:
         _follow(name, state.files[name][1:-1], state, callers)
     else:
@@ -302,7 +305,7 @@ def _line(where: str, text: str, state: _State) -> None:
 
 def _move(where: str, words: dict[str, str], state: _State) -> None:
     if not state.linear or state.units != _UNITS or not state.offset:
-        raise unreadable(where, "it moves before G1, G21, G90 and a work offset are set")
+        raise unreadable(where, "the program moves before G1, G21, G90 and a work offset are set")
     if state.kinematics == _TIP_ON:
         if state.feed != "G94" or state.offset == "G59.3":
             raise unreadable(

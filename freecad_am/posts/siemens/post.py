@@ -57,7 +57,7 @@ NO_TRIGGER = (
     "programs of five-axis machines switch the deposit between blocks only, not ahead of time"
 )
 refuse_process = refuse_no_process
-NO_SCHEDULE = {"arc": "it has no arc instructions"}
+NO_SCHEDULE = {"arc": "five-axis machines have no arc instructions"}
 LAST_SCHEDULE = 65535
 MOVE_LINE = re.compile(rb"N\d+ (?:G9 )?G[01] ")
 ON_CONTROLLER = controller_checks(
@@ -222,7 +222,8 @@ def _refuse(program: Program) -> None:
         raise InputError(
             "DEPOSIT_OUTPUT",
             "program.deposit_output",
-            "H words have address extensions to {}, not {}; use another output, or program.nc.deposit_on and deposit_off",
+            "H words have address extensions to {}, not {}; use another output, or "
+            "program.nc.deposit_on and deposit_off",
             LAST_OUTPUT,
             program.deposit_output,
         )
@@ -232,7 +233,8 @@ def _refuse(program: Program) -> None:
             raise InputError(
                 "DEPOSIT_INPUT",
                 "process.between_layers.input",
-                "the controller program reads inputs 1 to {}, not {}; choose one in this range",
+                "the controller program reads inputs 1 to {}, not {}; choose an input in this "
+                "range",
                 LAST_INPUT,
                 block.number,
             )
@@ -249,7 +251,7 @@ def _refuse_schedules(program: Program) -> None:
         raise InputError(
             "SCHEDULE",
             "program.schedule.output",
-            "H{} switches the deposit; use another one for schedules",
+            "H{} switches the deposit; use another H word for schedules",
             program.schedule_output,
         )
 
@@ -267,8 +269,8 @@ def _refuse_continuous_steps(program: Program) -> None:
         raise InputError(
             "ENDLESS_STEP",
             place(program.moves[run_numbers[move + 1]]),
-            "axis {} turns {:.1f} deg in one move; a continuous axis moves less than 180 deg per "
-            "move: add points, or limit the axis",
+            "axis {} turns {:.1f} deg in one move, but a continuous axis moves less than 180 deg "
+            "per move; add points, or limit the axis",
             program.axis_names[axes[axis]],
             steps[move, axis],
         )

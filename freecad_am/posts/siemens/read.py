@@ -92,7 +92,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     start = main[0].upper().rpartition(".")[0]
     _follow(start, state, ())
     if state.track.on:
-        raise unreadable("program", "it ends with the deposit on")
+        raise unreadable("program", "the program ends with the deposit on")
     return state.track.moves()
 
 
@@ -117,7 +117,7 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
     end = "M17" if callers else "M30"
     blocks = state.files[name]
     if not blocks or blocks[-1][1] != end or name in callers:
-        raise unreadable(name, Text("it does not end with {}, or calls itself", Word(end)))
+        raise unreadable(name, Text("the program does not end with {}, or calls itself", Word(end)))
     for where, text in blocks[:-1]:
         words = None if state.shape is None or state.waiting else state.shape.words(text)
         if state.shape is not None and words is not None:
@@ -132,7 +132,7 @@ def _follow(name: str, state: _State, callers: tuple[str, ...]) -> None:
         else:
             _block(where, text, state, (*callers, name))
     if state.waiting:
-        raise unreadable(name, "it ends within a loop")
+        raise unreadable(name, "the program ends within a loop")
 
 
 def _block(where: str, text: str, state: _State, callers: tuple[str, ...]) -> None:
@@ -150,7 +150,7 @@ def _wait_input(wait: re.Match[str], where: str, state: _State) -> None:
 
 def _wait_below(cool: re.Match[str], where: str, state: _State) -> None:
     if state.track.on:
-        raise unreadable(where, "it waits for an analogue input within a bead")
+        raise unreadable(where, "the program waits for an analogue input within a bead")
     state.waiting = True
     state.track.happens("below", float(cool[1]), float(cool[2]), digits=1e-6)
 
@@ -241,7 +241,7 @@ def _mode(token: str, state: _State) -> bool:
 
 def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None:
     if not state.linear or state.units != _UNITS:
-        raise unreadable(where, "it moves before G1, G90 and G710 are set")
+        raise unreadable(where, "the program moves before G1, G90 and G710 are set")
     if state.corners and not any(
         state.corners == {word, *paired} for word, paired in _PAIRED.items()
     ):
@@ -261,13 +261,16 @@ def _move(where: str, words: dict[str, str], state: _State, stops: bool) -> None
         raise unreadable(where, "axes move in a frame other than the machine frame")
     if state.feed == "G94":
         if not state.group:
-            raise unreadable(where, "it does not set the axes to which the feed applies (FGROUP)")
+            raise unreadable(
+                where, "the program does not set the axes to which the feed applies (FGROUP)"
+            )
         state.track.add(SLIDES, words, where, stops)
         return
     if state.compress:
         raise unreadable(
             where,
-            "the compressor would merge blocks that each state a time, and only the last time would count",
+            "the compressor would merge blocks that each state a time, and only the last time "
+            "would count",
         )
     state.track.add(TIME, words, where, stops)
 
@@ -276,7 +279,7 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
     output = _OUTPUT.match(token)
     if output and output[3] and token.partition("=")[0] not in state.switching:
         if state.compress or state.track.on:
-            raise unreadable(where, "it sends a schedule within a bead")
+            raise unreadable(where, "the program sends a schedule within a bead")
         state.track.happens("schedule", float(output[3]), float(output[4]))
     elif output:
         if output[5] in _TAKEN:
@@ -284,7 +287,7 @@ def _other(where: str, token: str, state: _State, callers: tuple[str, ...]) -> N
         _switch(where, token, output, state)
     elif token in state.files:
         if state.track.on or state.tip:
-            raise unreadable(where, "it calls another program within a bead")
+            raise unreadable(where, "the program calls another program within a bead")
         _follow(token, state, callers)
     elif (
         token in INSTRUCTIONS

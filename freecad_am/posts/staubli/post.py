@@ -199,9 +199,7 @@ def _delay(seconds: float) -> list[str]:
 __all__ = ["read", "write"]
 
 
-NO_ANALOGUE = (
-    "links of analogue inputs differ between controllers, and the post staubli cannot know them"
-)
+NO_ANALOGUE = "links of analogue inputs differ between controllers, and the post staubli does not know these links"
 CONTROLLER = Controller(point_bytes=250, whole_beads=True)
 PENDANT = Pendant("Stäubli", ("Rx", "Ry", "Rz"), MOVING_XYZ)
 NO_WIRE = "VAL 3 sets outputs while earlier moves are still in the queue"

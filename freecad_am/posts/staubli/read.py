@@ -57,7 +57,7 @@ def applications(files: dict[str, bytes]) -> dict[str, Application]:
     by_folder = {_folder(file): _application(file, files) for file in projects}
     listed = sum(1 + len(by_folder[folder].programs) for folder in by_folder) + len(projects)
     if len(by_folder) < len(projects) or listed != len(files):
-        raise unreadable("program", "some files belong to no project, or to two")
+        raise unreadable("program", "some files belong to no project, or to two projects")
     return by_folder
 
 
@@ -73,7 +73,7 @@ def _application(file: str, files: dict[str, bytes]) -> Application:
         or parameters is None
         or parameters.get("millimeterUnit") != "true"
     ):
-        raise unreadable(file, "it is not a project in millimetres")
+        raise unreadable(file, "the file is not a project in millimetres")
     programs = {}
     for element in root.iterfind(f"{PROJECT}Programs/{PROJECT}Program"):
         name = str(element.get("file")).removesuffix(".pgx")
@@ -82,7 +82,7 @@ def _application(file: str, files: dict[str, bytes]) -> Application:
         str(element.get("file")) for element in root.iterfind(f"{PROJECT}Database/{PROJECT}Data")
     ]
     if len(data_files) > 1:
-        raise unreadable(file, "it names several files of data, expected one")
+        raise unreadable(file, "the project names several data files, but exactly one is expected")
     libraries = {
         str(element.get("alias")): str(element.get("path"))
         for element in root.iterfind(f"{PROJECT}Libraries/{PROJECT}Library")
@@ -94,22 +94,22 @@ def _parsed(file: str, files: dict[str, bytes]) -> ElementTree.Element:
     if file not in files:
         raise unreadable(file, "the file is missing")
     if b"\0" in files[file]:  # UTF-16, in which the next check would find nothing
-        raise unreadable(file, "it is not text in UTF-8")
+        raise unreadable(file, "the file is not text in UTF-8")
     if b"<!DOCTYPE" in files[file]:
-        raise unreadable(file, "it declares a document type, which controllers never write")
+        raise unreadable(file, "the file declares a document type, which controllers never write")
     try:
         return ElementTree.fromstring(files[file])
     except ElementTree.ParseError as error:
-        raise unreadable(file, Text("it is not well-formed XML ({})", error)) from None
+        raise unreadable(file, Text("the file is not well-formed XML ({})", error)) from None
     except (LookupError, ValueError):  # the file declares another encoding
-        raise unreadable(file, "it is not text in UTF-8") from None
+        raise unreadable(file, "the file is not text in UTF-8") from None
 
 
 def _statements(name: str, file: str, files: dict[str, bytes]) -> list[tuple[int, str]]:
     program = _parsed(file, files).find(f"{PROGRAM}Program")
     code = None if program is None else program.findtext(f"{PROGRAM}Code")
     if program is None or code is None or program.get("name") != name:
-        raise unreadable(file, Text("it does not contain the code of a program {}", name))
+        raise unreadable(file, Text("the file does not contain the code of a program {}", name))
     lines = [(number, line.strip()) for number, line in enumerate(code.split("\n"), 1)]
     lines = [
         (number, line)
@@ -117,7 +117,7 @@ def _statements(name: str, file: str, files: dict[str, bytes]) -> list[tuple[int
         if line and (not line.startswith("//") or _LAYER_LINE.match(line))
     ]
     if len(lines) < 2 or lines[0][1] != "begin" or lines[-1][1] != "end":
-        raise unreadable(file, "its code does not run from begin to end")
+        raise unreadable(file, "the code does not run from `begin` to `end`")
     return lines[1:-1]
 
 
@@ -343,7 +343,9 @@ def _corners(values: _Values, app: Application, descriptor: str, step: Step) -> 
     full = values(app, descriptor, _ACCELERATION)[step.speed]
     kinds = ("off", "Cartesian") if step.linear else ("off", "joint", "Cartesian")
     if not np.isin(words, kinds).all() or (leave != reach).any() or (full != 100.0).any():
-        raise unreadable(step.where, "its rounding of corners or acceleration is not understood")
+        raise unreadable(
+            step.where, "the corner rounding or acceleration of the move is not understood"
+        )
     rounded: Array = np.where(words == "off", 0.0, np.maximum(leave, 1e-9))
     return rounded
 
@@ -380,7 +382,7 @@ def moves_of(steps: list[Step]) -> ReadMoves:
         if step.linear:
             own_frame = values.frame(app, target, step.where)
             if frame is not None and not np.array_equal(own_frame, frame):
-                raise unreadable(step.where, "it mixes positions in more than one frame")
+                raise unreadable(step.where, "the program mixes positions in more than one frame")
             frame = own_frame
             point[rows] = values.six(app, target)[step.point]
             tool_values = values.six(app, tool)[step.tool]
@@ -400,7 +402,7 @@ def moves_of(steps: list[Step]) -> ReadMoves:
         if not is_supported.all() or (not step.linear and values.father(app, tool) != _FLANGE):
             raise unreadable(
                 step.where,
-                "its speed limit or the fixture of its tool is not understood",
+                "the speed limit of the move or the fixture of its tool is not understood",
             )
     linear = bool(np.isfinite(speed).any())
     return ReadMoves(
@@ -477,9 +479,9 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     run = _Run(by_folder)
     _follow(by_folder[outer[0]], "start", run, ())
     if not run.steps:
-        raise unreadable("program", "it has no moves")
+        raise unreadable("program", "the program has no moves")
     if run.moving:
-        raise unreadable("program", "it ends before its last move")
+        raise unreadable("program", "the program ends before its last move")
     lines = Lines()
     for step in run.steps:
         lines.add(step.where, len(step.point))
@@ -504,7 +506,8 @@ def _check_stop(app: Application, output: str) -> None:
         {output} if output else set()
     ):
         raise unreadable(
-            f"{app.folder}/stop.pgx", "it does not end the motion and switch the deposit off"
+            f"{app.folder}/stop.pgx",
+            "the program does not end the motion and switch the deposit off",
         )
 
 
@@ -521,7 +524,7 @@ def _follow(app: Application, name: str, run: _Run, callers: tuple[tuple[str, st
         if loop := _FOR.match(line):
             (_, inside), (_, end) = next(statements, (0, "")), next(statements, (0, ""))
             if not _MOVE.match(inside) or end != "endFor" or int(loop[1]) > int(loop[2]):
-                raise unreadable(where, "only a loop over one move is understood")
+                raise unreadable(where, "only a loop over a single move is understood")
             _move(app, inside, np.arange(int(loop[1]), int(loop[2]) + 1), run, where)
         elif _MOVE.match(line):
             _move(app, line, np.zeros(0, np.int64), run, where)
@@ -602,7 +605,7 @@ def _other(app: Application, line: str, run: _Run, where: str) -> None:
     if output := _OUTPUT.match(line):
         link = _link(app, output[1], "Q", where)
         if run.output not in ("", link):
-            raise unreadable(where, "it switches a second output")
+            raise unreadable(where, "the program switches a second output")
         run.output, run.on = link, output[2] == "true"
         run.happens("on" if run.on else "off", _number(link, where), output[1])
     elif delay := _DELAY.match(line):

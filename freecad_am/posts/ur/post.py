@@ -393,7 +393,7 @@ def _refuse(program: Program) -> None:
             "DEPOSIT_OUTPUT",
             "program.deposit_output",
             "digital outputs are 1 to {} (1 to 8 are digital_out[0] to [7], 9 to {} the "
-            "configurable ones), not {}; choose one in this range",
+            "configurable outputs), not {}; choose an output in this range",
             LAST_PIN,
             LAST_PIN,
             program.deposit_output,
@@ -404,7 +404,7 @@ def _refuse(program: Program) -> None:
                 "DEPOSIT_INPUT",
                 "process.between_layers.input",
                 "digital inputs are 1 to {} (1 to 8 are digital_in[0] to [7], 9 to {} the "
-                "configurable ones), not {}; choose one in this range",
+                "configurable inputs), not {}; choose an input in this range",
                 LAST_PIN,
                 LAST_PIN,
                 block.number,

@@ -130,11 +130,11 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     ((file, content),) = files.items()
     name, main = _parsed(file, content)
     if not re.fullmatch(rf"(?:.*/)?{name}\.script", file):
-        raise unreadable(file, Text("its function is called {}", name))
+        raise unreadable(file, Text("the function in the file is called {}", name))
     run = _Run(file)
     _follow(name, main, {}, run, ())
     if not run.deposit:
-        raise unreadable("program", "it has no moves")
+        raise unreadable("program", "the program has no moves")
     return _moves(run)
 
 
@@ -143,10 +143,10 @@ def _parsed(file: str, content: bytes) -> tuple[str, _Function]:
     try:
         lines = content.decode("ascii").split("\n")
     except UnicodeDecodeError:
-        raise unreadable(file, "it contains characters other than ASCII") from None
+        raise unreadable(file, "the program contains characters other than ASCII") from None
     title = _DEF.match(lines[0])
     if title is None or len(lines) < 2 or lines[-2:] != ["end", ""]:
-        raise unreadable(file, "it is not one function from its first line to its last")
+        raise unreadable(file, "the file is not a single function from its first line to its last")
     main = _Function(1)
     current_function, depth = main, 1
     for number, line in enumerate(lines[1:-2], 2):
@@ -218,7 +218,7 @@ def _switch(output: re.Match[str], run: _Run, where: str) -> None:
     """Switch the deposit by an output."""
     number = _FIRST_PIN[output[1]] + float(output[2])
     if run.output not in (None, number):
-        raise unreadable(where, "it switches a second output")
+        raise unreadable(where, "the program switches a second output")
     run.output, run.on = number, output[3] == "True"
     run.happens("on" if run.on else "off", number, f"{output[1]}_digital_out")
 
@@ -264,7 +264,7 @@ def _move(text: str, run: _Run, where: str) -> bool:
         if frame is None:
             return False
         if run.deposit or (run.tcp if text.startswith("set_tcp") else run.platform):
-            raise unreadable(where, "it sets tool or platform a second time")
+            raise unreadable(where, "the program sets tool or platform a second time")
         if text.startswith("set_tcp"):
             run.tcp = frame.groups()
         else:
@@ -273,11 +273,12 @@ def _move(text: str, run: _Run, where: str) -> bool:
     if not run.tcp or (columns_read[0] == "nan") is bool(run.platform):
         raise unreadable(
             where,
-            "it moves without a tool or platform, or in joint values where positions are given",
+            "the program moves without a tool or platform, or in joint values where positions "
+            "are given",
         )
     values = [float(number) for number in columns_read]
     if values[12] <= 0.0 or values[13] <= 0.0 or values[14] < 0.0:
-        raise unreadable(where, "the robot cannot keep its time, speed or blend")
+        raise unreadable(where, "the robot cannot keep the time, speed or blend of the move")
     run.numbers.extend(values)
     run.deposit.append(run.on)
     run.lines.add(where)

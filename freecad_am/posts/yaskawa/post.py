@@ -145,12 +145,12 @@ def job(program: Program, name: str, head: Sequence[str], entries: Sequence[Piec
 
 __all__ = ["read", "write"]
 
-NO_ANALOGUE = "the instruction that waits for an analogue input depends on options of the controller, which the post yaskawa cannot know"
+NO_ANALOGUE = "the instruction that waits for an analogue input depends on options of the controller, which the post yaskawa does not know"
 CONTROLLER = Controller(point_bytes=75, external=True, positioner="ST1", pulses=True)
 PENDANT = Pendant("Yaskawa", ("Rx", "Ry", "Rz"), FIXED_XYZ)
-NO_WIRE = "INFORM sets AOUT between two moves when it reaches the line, and rounded corners shift that moment"
+NO_WIRE = "INFORM sets AOUT between two moves when the controller reaches the line, and rounded corners shift that moment"
 NO_WEAVE = ""  # linear moves can be woven
-NO_TRIGGER = "it is unconfirmed how an INFORM job switches an output ahead of a point"
+NO_TRIGGER = "INFORM has no confirmed way to switch an output ahead of a point"
 refuse_process = refuse_no_process
 LAST_WEAVE = 255  # highest number of weaving condition files
 NO_SCHEDULE: dict[str, str] = {}  # all methods of selecting schedules are supported
@@ -163,7 +163,8 @@ MOVE_LINE = re.compile(rb"MOV[JL] ")
 ON_CONTROLLER = controller_checks(
     "Pulses per degree in the machine file match the controller, and zero pulses are zero degrees",
     "VJ is a share of the maximum speed, in the machine file, of the slowest axis of a move",
-    "The tool file with the number in the job holds the nozzle tip, and speeds have the unit in the remarks",
+    "The tool file with the number in the job holds the nozzle tip, and speeds have the unit in "
+    "the remarks",
     "The deposit output switches the process",
 )
 MOST_EXTERNAL = 6
@@ -270,15 +271,9 @@ def _refuse_coordinated(motion: str, external: tuple[str, ...]) -> None:
     """
     if motion != "cartesian":
         return
-    why = (
-        "of a robot on a track also move the base axis, and it is unconfirmed whether their speed "
-        "includes its motion"
-    )
+    why = "of a robot on a track also move the base axis, and their speed may include this motion"
     if ROTARY in external:
-        why = (
-            "over a part on a positioner need coordinated motion (SMOVL), and it is unconfirmed "
-            "what its speed refers to"
-        )
+        why = "over a part on a positioner need coordinated motion (SMOVL), whose speed is not documented"
     raise InputError(
         "COORDINATED_MOTION",
         "program.motion",
@@ -314,18 +309,20 @@ def _refuse(program: Program) -> None:
         raise InputError(
             "NO_PULSES",
             "cell.machine",
-            "the machine file has no controller.pulses_per_degree; add them",
+            "the machine file has no controller.pulses_per_degree; add the pulses per degree",
         )
     if program.motion == "cartesian" and program.speed_unit not in UNITS:
         raise InputError(
-            "NO_SPEED_UNIT", "cell.machine", "the machine file has no controller.speed_unit; add it"
+            "NO_SPEED_UNIT",
+            "cell.machine",
+            "the machine file has no controller.speed_unit; add the unit",
         )
     refuse_without_speeds(program, axes)
     if not program.dry_run and program.deposit_output > OUTPUTS:
         raise InputError(
             "DEPOSIT_OUTPUT",
             "program.deposit_output",
-            "digital outputs are 1 to {}, not {}; choose one in this range",
+            "digital outputs are 1 to {}, not {}; choose an output in this range",
             OUTPUTS,
             program.deposit_output,
         )

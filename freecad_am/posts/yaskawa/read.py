@@ -119,7 +119,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     for file in sorted(files):
         name, job = _job(file, files[file])
         if not re.fullmatch(rf"(?:.*/)?{name}\.JBI", file):
-            raise unreadable(file, Text("its job is called {}", name))
+            raise unreadable(file, Text("the job in the file is called {}", name))
         jobs[name] = job
     called = {call[1] for job in jobs.values() for line in job.lines if (call := _CALL.match(line))}
     main = [name for name in jobs if name not in called]
@@ -134,7 +134,7 @@ def read(files: dict[str, bytes]) -> ReadMoves:
     run = _Run()
     _follow(main[0], jobs, run, ())
     if not run.deposit:
-        raise unreadable("program", "it has no moves")
+        raise unreadable("program", "the program has no moves")
     if run.weaves:
         raise unreadable(run.weaves, "the weave that begins here has no end")
     return _moves(run)
@@ -179,7 +179,7 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
     try:
         lines = content.decode("ascii").split("\r\n")
     except UnicodeDecodeError:
-        raise unreadable(file, "it contains characters other than ASCII") from None
+        raise unreadable(file, "the program contains characters other than ASCII") from None
     name, count = (
         (_NAME.match(lines[1]), _COUNT.match(lines[3])) if len(lines) > 3 else (None, None)
     )
@@ -189,13 +189,15 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
         or (lines[0], lines[2]) != ("/JOB", "//POS")
         or lines[-2:] != ["END", ""]
     ):
-        raise unreadable(file, "it is not a job from /JOB to END")
+        raise unreadable(file, "the file is not a job from /JOB to END")
     points, line_index, tool = int(count[1]), 4, float("nan")
     values = np.zeros((points, 6))
     if points:
         tool_match = _TOOL.match(lines[4])
         if tool_match is None or lines[5:7] != ["///POSTYPE PULSE", "///PULSE"]:
-            raise unreadable(f"{file} line 5", "its positions are not pulses of one tool")
+            raise unreadable(
+                f"{file} line 5", "the positions of the job are not pulses of one tool"
+            )
         tool, line_index = float(tool_match[1]), 7
         for number, line in enumerate(lines[line_index : line_index + points]):
             point = _POINT.match(line)
@@ -211,7 +213,7 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
         if external not in (0, points):
             raise unreadable(
                 f"{file} line 4",
-                "some positions lack the external axes, or have no other axes",
+                "some positions lack the external axes, or have only external axes",
             )
         values = (
             np.hstack(
@@ -239,7 +241,8 @@ def _job(file: str, content: bytes) -> tuple[str, _Job]:
     track, station = (bool(group[1]), group[2] or "") if group else (False, "")
     if points and (track, bool(station)) != (counts["BC"] > 0, counts["EC"] > 0):
         raise unreadable(
-            f"{file} line {first_index - 1}", "its group differs from the group of its positions"
+            f"{file} line {first_index - 1}",
+            "the group of the instructions differs from the group of the positions",
         )
     return name[1], _Job(file, tool, values, lines[first_index:-2], first_index + 1, track, station)
 
@@ -271,7 +274,7 @@ def _follow(name: str, jobs: dict[str, _Job], run: _Run, callers: tuple[str, ...
     """Execute the lines of a job in order, and the jobs that it calls."""
     job = jobs[name]
     if name in callers:
-        raise unreadable(job.file, "it calls itself")
+        raise unreadable(job.file, "the program calls itself")
     _check_units(job)
     for number, text in enumerate(job.lines, job.first_line):
         where = f"{job.file} line {number}"
@@ -317,7 +320,7 @@ def _carry_out(text: str, run: _Run, where: str) -> None:
 def _switch(output: re.Match[str], run: _Run, where: str) -> None:
     """Switch the deposit by an output."""
     if run.output not in ("", output[1]):
-        raise unreadable(where, "it switches a second output")
+        raise unreadable(where, "the program switches a second output")
     run.output, run.on = output[1], output[2] == "ON"
     run.happens("on" if run.on else "off", float(output[1]), "OT")
 
@@ -338,7 +341,7 @@ def _arc(arc: re.Match[str], run: _Run, where: str) -> None:
     """Start or end the arc with a file of conditions."""
     if run.output not in ("", ARC) or run.on == arc[1].startswith("ON"):
         raise unreadable(
-            where, "an output switches the deposit too, the arc is already on, or it is not on yet"
+            where, "an output switches the deposit too, or the arc is already on or still off"
         )
     run.output, run.on = ARC, arc[1].startswith("ON")
     run.happens("on" if run.on else "off", float(arc[2]), ARC)
@@ -347,7 +350,7 @@ def _arc(arc: re.Match[str], run: _Run, where: str) -> None:
 def _weave(weave: re.Match[str], run: _Run, where: str) -> None:
     """Start or end weaving."""
     if bool(weave[1]) == bool(run.weaves):
-        raise unreadable(where, "weaving is already on, or not on yet")
+        raise unreadable(where, "weaving is already on, or still off")
     run.weaves = where if weave[1] else ""
     run.happens("weave", float(weave[1] or 0))
 
@@ -403,7 +406,7 @@ def _move(job: _Job, text: str, run: _Run, where: str) -> None:
         raise unreadable(where, Text("the speed {} is not valid", move[4]))
     external = job.track, job.station
     if run.external not in (None, external) or run.axes not in (0, job.points.shape[1]):
-        raise unreadable(where, "its moves use more than one track or station")
+        raise unreadable(where, "the moves of the job use more than one track or station")
     run.external, run.axes = external, job.points.shape[1]
     kind = 0 if joint else 1
     run.decimals[kind] = min(run.decimals[kind], len(move[5] or ""))

@@ -264,7 +264,7 @@ def build_viewer(
     facts["width"] = width
     facts["ramp"] = [shade(k / (_SHADES - 1)) for k in range(_SHADES)]
     left_out = len(path_rows.motion) - len(path_rows.rows)
-    note = f"; {left_out:,} points between are left out here" if left_out else ""
+    note = f"; {left_out:,} intermediate points are omitted" if left_out else ""
     caption = f"<figcaption>The path with its beads{note}. Underlined places in the tables are shown here.</figcaption>"
     data = json.dumps(facts, separators=(",", ":")).replace("<", "\\u003c")
     return Turned(

@@ -250,7 +250,7 @@ def test_any_region_many_holes_slits_and_tiny_ones(seed):
         ({"solid_layers": -2}, "strategy.solid_layers: -2 is out of range; give at least 0"),
         (
             {"fill": "spiral", "fill_density": 0.3},
-            "spiral always fills everything, not 30 %; use 100 %, or fill: contours, lines",
+            "spiral always fills the whole region, not 30 %; use 100 %, or fill: contours, lines",
         ),
     ],
 )

@@ -186,7 +186,10 @@ def test_spread_starts_keep_apart_and_aligned_ones_do_not(name):
     [
         ((0.2, 1.4), "20 % is out of range; give at least 30 % and at most 200 %"),
         ((1.4, 0.7), "140 % to 70 % is not a range; give the smaller percentage first"),
-        ((1.1, 1.4), "110 % to 140 % excludes 100 %, the usual width; include it"),
+        (
+            (1.1, 1.4),
+            "110 % to 140 % excludes 100 %, the usual width; extend the range to include 100 %",
+        ),
         ((1.0,), "is not a range; give two percentages"),
         ((float("nan"), 1.2), "nan is not a number"),
     ],

@@ -90,7 +90,7 @@ def test_inside_out_solids_are_turned_and_pieces_told_apart():
         for args in ((10.0,), (6.0, (40.0, 0.0, 0.0), 150, 5), (3.0, (40.0, 0.0, 0.0), 150, 6))
     ]
     np.testing.assert_allclose(volumes, [volumes_alone[1] - volumes_alone[2], volumes_alone[0]])
-    assert "a solid was inside out" in messages_of(repaired)
+    assert "an inside-out solid was reversed" in messages_of(repaired)
 
 
 def test_what_is_not_safe_is_refused_with_its_place():

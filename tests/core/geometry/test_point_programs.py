@@ -125,7 +125,7 @@ def test_inches_are_read_until_millimetres_follow():
     ("text", "line", "words"),
     [
         ("", "part.gcode", "no bead"),
-        ("G0 X1 Y1 Z1\nG1 X5\n", "part.gcode", "none of its moves extrudes"),
+        ("G0 X1 Y1 Z1\nG1 X5\n", "part.gcode", "none of the moves extrudes"),
         ("G21 X5\n", "line 1", "G21 is followed by the word X"),
         ("G1 X1 Y1 Z1\nG18\nG2 X2 Z2 I1 E1\n", "line 3", "plane of X and Z"),
         (
@@ -442,8 +442,8 @@ def test_a_toolpath_of_adaone():
     for damaged, words in (
         (data[:40], "damaged"),
         (b"G1 X0", "damaged"),
-        (b"", "none of its segments"),
-        (toolpath([(0, [(False, line, down)])]), "none of its segments"),
+        (b"", "none of the segments"),
+        (toolpath([(0, [(False, line, down)])]), "none of the segments"),
         (toolpath([(0, [(True, [[0, 0, 1], [float("nan"), 0, 0]], down[:2])])]), "not a number"),
     ):
         with pytest.raises(InputError) as caught:

@@ -99,7 +99,7 @@ def test_what_deviations_do_not_feel_stays_as_it_was_measured():
     assert result.motion[:3, 3] == pytest.approx([-3.0, 2.0, -1.0], abs=1e-6)
     assert [
         issue.message.split(" changes")[0] for issue in result.issues if issue.code == "FREE_MOTION"
-    ] == ["turning it about the centre of the sphere"]
+    ] == ["a rotation about the centre of the sphere"]
 
 
 def box():

@@ -90,7 +90,7 @@ def test_lines_that_are_no_points_are_left_out_and_told():
     lines.append("nan;1;2")
     scan = point_file.parse("\n".join(lines).encode(), "scan.csv")
     assert len(scan.points) == len(POINTS) - 2
-    assert "2 lines that are not points are left out, the first is line 6" in message_of(scan)
+    assert "2 lines that are not points are ignored, the first in line 6" in message_of(scan)
     assert "1 points without finite" in message_of(scan) and scan.issues[0].level == "warning"
 
 
@@ -152,7 +152,7 @@ def test_large_scans_are_thinned_evenly(monkeypatch):
     scan = point_file.parse(table(",").encode(), "scan.csv")
     assert (
         scan.points == POINTS[np.linspace(0, 39, 10).astype(int)]
-    ).all() and "from 40 points 10 are kept" in message_of(scan)
+    ).all() and "of 40 points, 10 evenly distributed ones are used" in message_of(scan)
 
 
 @pytest.mark.parametrize(

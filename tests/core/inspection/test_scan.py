@@ -195,13 +195,15 @@ def test_units_and_other_parts_are_told_from_the_part():
     points = points_on(bent)
     scan_heights.refuse_size(points, "s", PLATE)
     for factor, unit in ((1e-3, "m"), (1.0 / 25.4, "inch"), (0.1, "cm")):
-        with pytest.raises(InputError, match=rf"in {unit} the size would match") as error:
+        with pytest.raises(InputError, match=rf"the size would match in {unit};") as error:
             scan_heights.refuse_size(points * factor, "s", PLATE)
         assert error.value.code == "SCAN_UNIT"
     scan_heights.refuse_other(points, "s", PLATE, 5.0)
     ball = np.random.default_rng(2).normal(size=(5000, 3))
     ball *= 80.0 / np.linalg.norm(ball, axis=1, keepdims=True)
-    with pytest.raises(InputError, match=r"% of its 5000 points are within 5 mm of plate") as error:
+    with pytest.raises(
+        InputError, match=r"% of the 5000 scanned points are within 5 mm of plate"
+    ) as error:
         scan_heights.refuse_other(ball, "s", PLATE, 5.0)
     assert error.value.code == "SCAN_OTHER"
 

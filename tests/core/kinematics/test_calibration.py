@@ -138,8 +138,8 @@ def test_every_solution_gives_its_pose_and_none_is_lost_where_the_arm_can_move(r
 @pytest.mark.parametrize(
     ("old", "new", "where", "says"),
     [
-        ("kinematics:", "kinematik:", "kinematics.shoulder.x", "this key is missing"),
-        ("    roll: 0.0021345\n", "", "kinematics.forearm.roll", "this key is missing"),
+        ("kinematics:", "kinematik:", "kinematics.shoulder.x", "the key is missing"),
+        ("    roll: 0.0021345\n", "", "kinematics.forearm.roll", "the key is missing"),
         ("x: -0.6131245", "x: 0.6 m", "kinematics.forearm.x", "'0.6 m' is not a number"),
         ("x: -0.6131245", "x: nan", "kinematics.forearm.x", "'nan' is not a number"),
         ("x: -0.6131245", "x -0.6131245", "line 18", "is not `key: value`"),
@@ -149,7 +149,7 @@ def test_every_solution_gives_its_pose_and_none_is_lost_where_the_arm_can_move(r
             "line 19",
             "the key kinematics.forearm.x is duplicated",
         ),
-        ("x: -0.6131245", "x: -0.425", "kinematics.forearm", "it is 188 mm and"),
+        ("x: -0.6131245", "x: -0.425", "kinematics.forearm", "the calibrated joint is 188 mm and"),
         ("x: -0.6131245", "x: -613.1", "kinematics.forearm", "choose the calibrated machine"),
         (
             "roll: 1.5713123",
@@ -174,7 +174,7 @@ def test_what_takes_no_calibration_says_so(calibration, tmp_path):
         (
             f"fanuc-arcmate120ic calibration={calibration}",
             "BAD_CALIBRATION",
-            "has no calibration",
+            "only Universal Robots arms have a calibration, not",
         ),
         (f"ur-ur5e calibration={calibration}", "BAD_CALIBRATION", "choose the calibrated machine"),
         (

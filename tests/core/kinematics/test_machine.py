@@ -165,9 +165,13 @@ BAD = {
     "geometry": (
         changed("joints", 2, "origin", value=[0, 0, 791]),
         "check_poses[0]",
-        "the joint frames give a flange 1 mm",
+        "the joint frames give a flange pose that deviates by 1 mm",
     ),
-    "closed form": (changed("opw", "c4", value=101), "check_poses[0]", "opw gives a flange 1 mm"),
+    "closed form": (
+        changed("opw", "c4", value=101),
+        "check_poses[0]",
+        "opw gives a flange pose that deviates by 1 mm",
+    ),
     "pose": (changed("check_poses", 2, "origin", 1, value=0), "check_poses[2]", "mm"),
     "turned pose": (
         changed("check_poses", 0, "rotation", value=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]),

@@ -310,7 +310,7 @@ def test_rounded_poses_say_so_and_rounding_has_an_end(tmp_path):
         load_with(within={"mm": 2.0, "deg": 0.0})
     with pytest.raises(InputError, match=r"the key 'cm' is not known"):
         load_with(within={"cm": 0.1})
-    with pytest.raises(InputError, match=r"check_poses\[1\].*from it"):
+    with pytest.raises(InputError, match=r"check_poses\[1\].*deviates by"):
         load_with(origin=[x + 0.1, y, z])
 
 

@@ -234,7 +234,7 @@ def test_flanges_and_counts_that_will_not_do():
         opw_recognition.recognise(
             Chain(chain.origins, chain.directions, chain.flange @ shift(x=5.0))
         )
-    with pytest.raises(InputError, match="it has 5 axes, 3 prismatic"):
+    with pytest.raises(InputError, match="the machine has 5 axes, 3 prismatic"):
         opw_recognition.recognise(machine.load("table-xyzac").chain)
 
 
@@ -395,7 +395,7 @@ def test_what_xacro_wrote_is_read_and_xacro_itself_refused(tmp_path):
     written = text.replace("<robot ", '<robot xmlns:xacro="http://ros.org/wiki/xacro" ')
     assert read(tmp_path, written).chain.axes == 6
     for line in ('<xacro:include filename="$(find x)/y.xacro"/>', '<xacro:kr16 prefix=""/>'):
-        with pytest.raises(InputError, match="this is xacro"):
+        with pytest.raises(InputError, match="the file is xacro"):
             read(tmp_path, written.replace("</robot>", line + "</robot>"))
 
 
@@ -414,11 +414,11 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
             loaded.limits("maker").lower, original.limits("maker").lower[:6], rtol=1e-14
         )
         assert loaded.axes == original.axes and loaded.posts == () and loaded.free
-        assert "does not say what the controller shows" in loaded.controller_remark
+        assert "does not define the values shown by the controller" in loaded.controller_remark
     for name, words in (
-        (f"{path} tip=hand", "arm.urdf has no link 'hand'; name one of base_link"),
+        (f"{path} tip=hand", "arm.urdf has no link 'hand'; use one of base_link"),
         (f"{path} base=tool0", "moves relative to"),
-        (f"{path} tip=link_5", "from base_link to link_5: .* it has 5 axes"),
+        (f"{path} tip=link_5", "from base_link to link_5: .* the machine has 5 axes"),
         (tmp_path / "no.urdf", "does not exist"),
     ):
         with pytest.raises(InputError, match=words):
@@ -438,8 +438,8 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
             13,
             "the joint 'turn' has no <limit>",
         ),
-        ('lower="-2.967" upper="2.9671"', "", 15, "run from 0 to 0; give the lower one first"),
-        ('lower="-2.967" upper="2.9671"', 'lower="1" upper="-1"', 15, "give the lower one first"),
+        ('lower="-2.967" upper="2.9671"', "", 15, "run from 0 to 0; give the lower limit first"),
+        ('lower="-2.967" upper="2.9671"', 'lower="1" upper="-1"', 15, "give the lower limit first"),
         ('<child link="hand"/>', '<child link="arm"/>', 17, "already has a parent joint, 'turn'"),
         ('<child link="hand"/>', '<child link="fist"/>', 17, "the link 'fist' does not exist"),
         ('<child link="hand"/>', "", 17, "<joint> 'spin' has no <child>"),
@@ -454,7 +454,7 @@ def test_a_urdf_is_a_machine_and_says_what_it_does_not_tell(tmp_path):
             '</joint>\n  <joint name="bolted"',
             '\n  <joint name="bolted"',
             20,
-            "this is not XML: mismatched tag",
+            "the file is not XML: mismatched tag",
         ),
         (
             '<?xml version="1.0"?>',
@@ -479,7 +479,7 @@ def test_chains_that_cannot_be_are_refused(tmp_path):
         read(tmp_path, ARM, "hand", "arm")
     with pytest.raises(InputError, match="no joint moves 'plate'"):
         read(tmp_path, ARM, "arm", "plate")
-    with pytest.raises(InputError, match="this is xacro"):
+    with pytest.raises(InputError, match="the file is xacro"):
         urdf.Urdf(tmp_path / "arm.xacro")
     with pytest.raises(InputError, match="cannot be read"):
         urdf.Urdf(tmp_path / "missing.urdf")

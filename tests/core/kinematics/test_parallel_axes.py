@@ -135,7 +135,8 @@ def test_seven_axes_are_refused():
     again = [0, 1, 2, 3, 4, 5, 0]
     seven = Chain(arm_chain.origins[again], arm_chain.directions[again], arm_chain.flange)
     with pytest.raises(
-        InputError, match="it has 7 axes, 0 prismatic; choose a robot with six revolute axes"
+        InputError,
+        match="the machine has 7 axes, 0 prismatic; choose a robot with six revolute axes",
     ):
         recognition.arm_of(seven)
 
@@ -155,7 +156,8 @@ def test_a_sliding_axis_before_six_that_turn_is_a_track_and_five_axis_machines_a
         arm_chain.origins[again], arm_chain.directions[again], arm_chain.flange, np.arange(7) == 6
     )
     with pytest.raises(
-        InputError, match="it has 7 axes, 1 prismatic; choose a robot with six revolute axes"
+        InputError,
+        match="the machine has 7 axes, 1 prismatic; choose a robot with six revolute axes",
     ):
         recognition.arm_of(tool_axis_chain)
     for count, sliding in itertools.product(range(1, 9), repeat=2):

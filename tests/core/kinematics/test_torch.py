@@ -95,13 +95,13 @@ def test_what_is_cut_is_all_there(seed):
     ("body", "says"),
     [
         (Body("torch", NECK.vertices, NECK.triangles[1:]), "the shape is open"),
-        (box_at((12.0, 12.0, 100.0), 0.0, 0.0, -111.0), r"it is 61 mm away from its origin"),
-        (box_at((12.0, 12.0, 100.0), 90.0, 0.0, -20.0), r"it is 84 mm away from its origin"),
+        (box_at((12.0, 12.0, 100.0), 0.0, 0.0, -111.0), r"the torch is 61 mm away from its origin"),
+        (box_at((12.0, 12.0, 100.0), 90.0, 0.0, -20.0), r"the torch is 84 mm away from its origin"),
         (
             box_at((12.0, 12.0, 100.0), 0.0, 0.0, 55.0),
-            r"it extends 105 mm beyond its origin along Z",
+            r"the torch extends 105 mm beyond its origin along Z",
         ),
-        (box_at((3.0, 3.0, 100.0), 0.0, 0.0, -48.0), r"it extends 2 mm beyond its origin"),
+        (box_at((3.0, 3.0, 100.0), 0.0, 0.0, -48.0), r"the torch extends 2 mm beyond its origin"),
         (
             box_at((30.0, 30.0, 100.0), 0.0, 0.0, -65.0),
             r"15 mm above its tip the torch extends 21.2\d mm from its axis, .* cone only 10.66 mm, .*half_angle of at least 52.1 deg",

@@ -134,6 +134,6 @@ def test_a_mechanism_of_a_urdf_needs_no_cell_of_its_own(tmp_path):
     refused = dataclasses.replace(
         CellParameters(), machine=f"{path} base=positioner_base_link tip=positioner_tool0"
     )
-    with pytest.raises(InputError, match="it has 2 axes, 0 prismatic") as caught:
+    with pytest.raises(InputError, match="the machine has 2 axes, 0 prismatic") as caught:
         cells.resolve(refused, np.eye(4))
     assert caught.value.code == "NO_CLOSED_FORM"

@@ -293,8 +293,8 @@ def test_angles_in_reasons_have_digits_that_differ(tmp_path):
 @pytest.mark.parametrize(
     ("pattern", "by", "words"),
     [
-        ("<limit", '<xacro:if value="1"/><limit', "this is xacro"),
-        ('"link_1"', '"${prefix}link_1"', "this is xacro"),
+        ("<limit", '<xacro:if value="1"/><limit', "the file is xacro"),
+        ('"link_1"', '"${prefix}link_1"', "the file is xacro"),
         ("<axis", '<offset xyz="0 0 1"/><axis', "<offset> in the joint"),
         ("<axis", '<axis xyz="1 0 0"/><axis', "several <axis>"),
         ("<axis", '<origin xyz="0 0 1"/><axis', "several <origin>"),

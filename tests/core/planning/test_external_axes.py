@@ -279,7 +279,10 @@ def test_what_leans_is_told_where_nothing_turns_the_part(hemisphere, setup, hold
         assert ((layer, number) in told) == (leans > 40.0)
         if leans > 40.0:
             assert f"would be {leans:.3g} deg from the vertical" in told[layer, number].message
-            assert "nothing turns the part; put it on a positioner" in told[layer, number].message
+            assert (
+                "no axis turns the part; put the part on a positioner"
+                in told[layer, number].message
+            )
     assert bool(told) != holds
 
 

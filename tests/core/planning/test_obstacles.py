@@ -233,7 +233,7 @@ def test_texts_of_obstacles_say_what_they_are():
 
 
 @pytest.mark.parametrize(("text", "told"), [
-    ("table.step", "'table.step' is not an obstacle; write it as in: "),
+    ("table.step", "'table.step' is not an obstacle; write, for example: "),
     ("table.step at 0 0 0", "'0 0 0' are not 6 numbers"),
     ("table.step at 0 0 zero 0 0 0", "are not 6 numbers"),
     ("box 1 2 at 0 0 0 0 0 0", "'1 2' are not 3 numbers"),

@@ -259,7 +259,7 @@ def test_a_track_that_is_too_short_is_told(track, tmp_path):
     )
     issues = plan_joints(level, cell_for(track), JointParameters()).issues
     assert any(
-        issue.code == "NOT_LEVEL" and "nothing turns the part" in issue.message for issue in issues
+        issue.code == "NOT_LEVEL" and "no axis turns the part" in issue.message for issue in issues
     )
 
 

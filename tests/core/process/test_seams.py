@@ -369,7 +369,7 @@ def test_no_corner_and_no_side_are_reported_and_the_usual_seam_stays():
 
 def test_a_position_without_its_parameter_is_rejected():
     for position, key in (("point", "point"), ("hidden", "away_from")):
-        with pytest.raises(InputError, match="needs it") as raised:
+        with pytest.raises(InputError, match="needs a value") as raised:
             seams.check_parameters(SeamParameters(position=position))
         assert raised.value.where == f"process.seam.{key}"
     seams.check_parameters(SeamParameters(position="point", point=(0.0, 0.0, 0.0)))

@@ -165,7 +165,7 @@ def test_the_mass_counts_as_the_part_grows(toolpath, positioner):
     (issue,) = find_issues(toolpath, positioner(kg=0.6 * part_mass))
     assert issue.code == "PAYLOAD" and issue.level == "error"
     assert (
-        "above the payload of" in issue.message
+        "), the payload of" in issue.message
         and f"{part_mass:.4g} kg when finished" in issue.message
     )
     counts = np.cumsum([len(bead.points) - 1 for _, _, bead in toolpath])
@@ -250,7 +250,7 @@ def test_robots_that_hold_the_part_and_what_is_not_told(toolpath):
         density=DENSITY * 10.1 / segment_masses(toolpath, toolpath.bead_width or 0.0)[0].sum()
     )
     (issue,) = payload.issues(timeline.deposit_motion(toolpath), cell, toolpath, heavy)
-    assert "above the payload of" in issue.message and "more than 10 kg" in issue.message
+    assert "), the payload of" in issue.message and "more than 10 kg" in issue.message
     tool = cells.resolve(dataclasses.replace(parameters, setup="tool-on-robot"), toolpath.frame)
     assert payload.issues(timeline.deposit_motion(toolpath), tool, toolpath, heavy) == []
     unknown = cells.resolve(

@@ -109,7 +109,7 @@ def test_solids_in_another_unit_are_told_so(factor, unit):
     with pytest.raises(InputError) as caught:
         group_by_base([small], SEATS, 0.01, "part", unitless=[small])
     assert (
-        f"Multiplied by {factor:g} it would reach Face1: is its file in {unit}?"
+        f"Multiplied by {factor:g} the solid would reach Face1: is its file in {unit}?"
         in caught.value.message
     )
     with pytest.raises(InputError) as caught:

@@ -291,7 +291,7 @@ def test_beads_deposit_the_volume_of_the_part_where_they_crowd(part, fill):
     number, numbers = r"(\d+\.?\d*)", r"(\d+\.?\d*(?: to \d+\.?\d*)?)"
     words = re.match(
         f"{number} of {number} beads are deposited at {numbers} mm/s instead of {number} mm/s, so that "
-        f"a constant wire feed makes them as wide as the available space, {numbers} mm",
+        f"a constant wire feed makes the beads as wide as the available space, {numbers} mm",
         told.message,
     )
     count, every, speeds, usual, widths = (
@@ -578,7 +578,7 @@ def test_faces_where_touching_solids_meet_lean_over_nothing():
         return solids.groups[0].base.frame[:3, 2], issue.message
 
     def along_z(message):
-        return float(message.split("along (0, 0, 1) they would be ")[1].split(" mm^2")[0])
+        return float(message.split("along (0, 0, 1) the overhang would be ")[1].split(" mm^2")[0])
 
     plate = box((-40, -10, 30), (40, 10, 40))
     for stem in (box((-5, -10, 0), (5, 10, 30)), box((-5, -10, 0), (5, 10, 31))):
@@ -616,7 +616,7 @@ def test_walls_that_lean_out_are_told(lean, most, told):
         assert [issue.layer for issue in found] == [1, 2, 3, 4]  # every layer stays in the report
         (line,) = summarised(found)
         assert line.layer == 4 and line.message.startswith(
-            "4 findings in layers 1 to 4, the worst here: "
+            "4 findings in layers 1 to 4, of which the worst is: "
         )
 
 

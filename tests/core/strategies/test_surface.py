@@ -322,6 +322,6 @@ def test_notes_tell_of_layers_that_are_deposited(options):
         )
     cornered = [index for index, turn in enumerate(turning) if turn > 1e-3]
     assert note.message.startswith(
-        f"{len(cornered)} of {count} fronts have corners, first layer {cornered[0]}"
+        f"{len(cornered)} of {count} fronts have corners, first in layer {cornered[0]}"
     )
     assert f"by {max(turning):.3g} deg" in note.message and note.layer == int(np.argmax(turning))

@@ -140,21 +140,22 @@ def read(data: bytes, where: str, roles: str = roles_of.PART) -> ReadCurves:
         raise InputError(
             CODE,
             where,
-            "it is not an AdaOne toolpath, or it is damaged ({}); export it again",
+            "the file is not an AdaOne toolpath, or is damaged ({}); export it again",
             error,
         ) from None
     if not runs:
         raise InputError(
             CODE,
             where,
-            "none of its segments deposits material; export a toolpath that deposits",
+            "none of the segments deposits material; export a toolpath that deposits",
         )
     for run in runs:
         if not (np.isfinite(run.points).all() and np.abs(run.points).max() <= MAX_MM):
             raise InputError(
                 CODE,
                 where,
-                "a coordinate is not a number, or is larger than {:g} mm; export it again",
+                "a coordinate is not a number, or is larger than {:g} mm; export the toolpath "
+                "again",
                 MAX_MM,
             )
     runs, issues = roles_of.choose_runs(runs, roles, where, CODE)
@@ -174,11 +175,15 @@ def _notes(unread: _Seen, where: str) -> list[Issue]:
         if len(numbers) > 1:
             listed = ", ".join(map(str, sorted(numbers)))
             messages.append(
-                Text("{}: all {} {} are mapped to that of the cell", where, Text(what), listed)
+                Text("{}: all {} {} are replaced by that of the cell", where, Text(what), listed)
             )
     if unread.turns_part:
         messages.append(
-            Text("{}: values of external axes are ignored; the cell plans its own", where)
+            Text(
+                "{}: the values of external axes are ignored, because the cell plans its own "
+                "external axes",
+                where,
+            )
         )
     return [Issue(NOTE, roles_of.NOT_READ, message) for message in messages]
 
@@ -199,7 +204,7 @@ def _check_parameters(data: bytes, where: str, unread: _Seen) -> None:
             raise InputError(
                 CODE,
                 where,
-                "its operation {} deposits nothing; export only the operations that deposit",
+                "the operation {} deposits nothing; export only the operations that deposit",
                 Text(NO_DEPOSIT[int(value)]),
             )
         unread.turns_part |= number in DYNAMIC_AXES and bool(value)
@@ -285,7 +290,7 @@ def _fields(data: bytes) -> Iterator[tuple[int, Value]]:
         elif kind == BYTES:
             size, position = _varint(data, position)
             if position + size > len(data):
-                raise ValueError(f"it ends within a field of {size} bytes")
+                raise ValueError(f"the data end within a field of {size} bytes")
             yield number, data[position : position + size]
             position += size
         else:
@@ -297,7 +302,7 @@ def _varint(data: bytes, position: int) -> tuple[int, int]:
     value = shift = 0
     while True:
         if position >= len(data):
-            raise ValueError("it ends within a number")
+            raise ValueError("the data end within a number")
         byte = data[position]
         position += 1
         value |= (byte & 0x7F) << shift

@@ -110,7 +110,7 @@ def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
     while lines and not lines[-1].strip():
         lines.pop()
     if not lines:
-        raise InputError(CODE, where, "it has no points; {}", FORM)
+        raise InputError(CODE, where, "the table has no points; {}", FORM)
     separator = ";" if ";" in lines[0] else ","
     columns, header_lines = _columns(_cells(lines[0], separator), where)
     numbers = [
@@ -118,7 +118,7 @@ def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
         for k, line in enumerate(lines[header_lines:], header_lines + 1)
     ]
     if not numbers:
-        raise InputError(CODE, where, "it has no points; {}", FORM)
+        raise InputError(CODE, where, "the table has no points; {}", FORM)
     rows = np.array(numbers)
     bead = rows[:, columns.index("bead")] if "bead" in columns else np.zeros(len(rows))
     starts = np.flatnonzero(np.r_[True, np.diff(bead) != 0.0])
@@ -129,7 +129,7 @@ def curves_of(text: str, where: str) -> tuple[BeadCurve, ...]:
             raise InputError(
                 CODE,
                 location,
-                "bead {:g} starts a second time; keep the lines of a bead together",
+                "bead {:g} starts a second time; keep all lines of a bead together",
                 bead[start],
             )
         beads_read.add(float(bead[start]))
@@ -150,20 +150,24 @@ def _columns(cells: Sequence[str], where: str) -> tuple[tuple[str, ...], int]:
         expected = BY_COUNT.get(len(names))
         if set(names) != set(expected or ()):
             raise InputError(
-                CODE, f"{where} line 1", "its columns are {}; {}", ", ".join(cells), FORM
+                CODE,
+                f"{where} line 1",
+                "the columns of the table are {}; {}",
+                ", ".join(cells),
+                FORM,
             )
         return names, 1
     if len(cells) not in BY_COUNT:
-        raise InputError(CODE, f"{where} line 1", "it has {} columns; {}", len(cells), FORM)
+        raise InputError(CODE, f"{where} line 1", "the table has {} columns; {}", len(cells), FORM)
     return BY_COUNT[len(cells)], 0
 
 
 def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[float]:
     if len(cells) != len(columns) or not all(cells):
         lacking = (
-            "it is empty"
+            "the line is empty"
             if not any(cells)
-            else Text("it has {} numbers in place of {}", sum(map(bool, cells)), len(columns))
+            else Text("the line has {} numbers instead of {}", sum(map(bool, cells)), len(columns))
         )
         raise InputError(CODE, where, "{}; fill the gap, or remove the line", Word(lacking))
     values = []
@@ -191,11 +195,11 @@ def _numbers(cells: Sequence[str], columns: Sequence[str], where: str) -> list[f
 def _curve(rows: Array, columns: Sequence[str], location: str, line: int, where: str) -> BeadCurve:
     points = rows[:, [columns.index(name) for name in COLUMNS[:3]]]
     if len(points) < 2:
-        raise InputError(CODE, location, "the bead has only one point; give at least two")
+        raise InputError(CODE, location, "the bead has only one point; give at least two points")
     repeated = np.flatnonzero(np.linalg.norm(np.diff(points, axis=0), axis=1) < MIN_STEP_MM)
     if len(repeated):
         location = f"{where} line {line + int(repeated[0]) + 1}"
-        raise InputError(CODE, location, "the point repeats the previous line; remove it")
+        raise InputError(CODE, location, "the point repeats the previous line; remove the line")
     if "i" not in columns:
         return BeadCurve(points)
     directions = rows[:, [columns.index(name) for name in COLUMNS[3:6]]]

@@ -74,25 +74,25 @@ OWN_MOTION = frozenset(
 REFUSED = {
     "G5": "splines are not supported; set the slicer to write lines and arcs",
     "G6": "direct stepper moves are not supported; set the slicer to write G1",
-    "G26": "it prints a built-in pattern of the machine; remove it",
-    "G41": "tool radius compensation is not supported; remove it",
-    "G42": "tool radius compensation and moves to points of a mesh are not supported; remove it",
-    "G43": "tool length offsets are not supported; switch them off in the slicer",
-    "G51": "scaled coordinates are not supported; switch them off in the slicer",
-    "G61": "it returns to a stored position; write out the move",
-    "G68": "rotated coordinates are not supported; switch them off in the slicer",
+    "G26": "the command prints a built-in pattern of the machine; remove the command",
+    "G41": "tool radius compensation is not supported; remove the command",
+    "G42": "tool radius compensation and moves to points of a mesh are not supported; remove the command",
+    "G43": "tool length offsets are not supported; switch off the offsets in the slicer",
+    "G51": "scaled coordinates are not supported; switch off the scaling in the slicer",
+    "G61": "the command returns to a stored position; write out the move",
+    "G68": "rotated coordinates are not supported; switch off the rotation in the slicer",
     "G90.1": "absolute arc centres are not supported; give I and J from the start of the arc",
-    "M28": "the machine stores the lines after it and does not run them; remove it and its M29",
-    "M808": "it repeats lines of the program; write out the moves",
-    "M97": "it calls a subprogram; write out its moves",
-    "M99": "it returns from a subprogram, or repeats the program; remove it",
-    "M206": "it shifts the origin; remove it, or use G92",
-    "M428": "it shifts the origin; remove it, or use G92",
-    "M579": "it scales axes; remove it",
-    "SET_GCODE_OFFSET": "it shifts the origin; remove it, or use G92",
-    "SET_KINEMATIC_POSITION": "it shifts the origin; remove it, or use G92",
-    "FORCE_MOVE": "it moves a single motor; remove it",
-    "EXCLUDE_OBJECT": "it cancels an object while the program runs; remove the object in the slicer",
+    "M28": "the machine stores the following lines without running them; remove the command and its M29",
+    "M808": "the command repeats lines of the program; write out the moves",
+    "M97": "the command calls a subprogram; write out the moves of the subprogram",
+    "M99": "the command returns from a subprogram, or repeats the program; remove the command",
+    "M206": "the command shifts the origin; remove the command, or use G92",
+    "M428": "the command shifts the origin; remove the command, or use G92",
+    "M579": "the command scales axes; remove the command",
+    "SET_GCODE_OFFSET": "the command shifts the origin; remove the command, or use G92",
+    "SET_KINEMATIC_POSITION": "the command shifts the origin; remove the command, or use G92",
+    "FORCE_MOVE": "the command moves a single motor; remove the command",
+    "EXCLUDE_OBJECT": "the command cancels an object while the program runs; remove the object in the slicer",
 }
 # manufacturer-specific codes: probing, levelling, machine states
 VENDOR = re.compile(r"G39(?:\.\d+)?|G\d{3,}(?:\.\d+)?")
@@ -419,7 +419,9 @@ def read(
         BAD_GCODE with the line; BAD_VALUE for roles that the file does not have.
     """
     if text.startswith("GCDE"):
-        raise InputError(CODE, where, "it is binary G-code; export G-code as text from the slicer")
+        raise InputError(
+            CODE, where, "the file is binary G-code; export G-code as text from the slicer"
+        )
     reader = _Reader(where, chord_error, rotary)
     for number, line in enumerate(text.lstrip("\ufeff").splitlines(), 1):
         reader.take(line, number)
@@ -464,7 +466,10 @@ class _Reader:
                 return
             if code[0] == "/":
                 raise BadWords(
-                    "it is skipped or run by a switch of the machine; leave it out, or its slash"
+                    Text(
+                        "a switch of the machine decides whether a line with a slash runs; remove "
+                        "the line, or the slash"
+                    )
                 )
             commands = commands_of(code)
         except BadWords as error:
@@ -482,7 +487,7 @@ class _Reader:
                 )
             if moved and command.name in ("G90", "G91", "G53", "M82", "M83", *PLANES, *UNITS):
                 raise self._error(
-                    Text("{} follows a move on the same line; put it on its own line", command.name)
+                    Text("{} follows a move on the same line; begin a new line there", command.name)
                 )
             moved |= command.name in (*MOTIONS, "")
             self._run(command, machine_frame)
@@ -555,9 +560,9 @@ class _Reader:
         if name == "M486" and CANCELLED.fullmatch(command.arguments):
             reason = REFUSED["EXCLUDE_OBJECT"]
         if name == "M605" and values.get("S", 0.0) not in (0.0, 1.0):
-            reason = "it prints copies side by side; export a single copy"
+            reason = "the command prints copies side by side; export a single copy"
         if WORK_OFFSETS.fullmatch(name):
-            reason = "the origin of another work offset is unknown; remove it"
+            reason = "the origin of another work offset is unknown; remove the command"
         if name.startswith("G43.4") and self.rotary != NO_ROTARY:
             return True
         if reason is not None:
@@ -568,7 +573,7 @@ class _Reader:
         if command.words:
             raise self._error(
                 Text(
-                    "{} is followed by the word {}; put it on its own line",
+                    "{} is followed by the word {} on the same line; begin a new line there",
                     command.name,
                     command.words[0][0],
                 )
@@ -599,7 +604,7 @@ class _Reader:
         self._end()
         letters = {letter for letter, _ in command.words}
         if letters & set("XYZABCL"):
-            raise self._error(Text("{} sets unknown offsets; remove it", command.name))
+            raise self._error(Text("{} sets unknown offsets; remove the command", command.name))
 
     def _other(self, command: Command) -> None:
         """Handle machine codes and macros that do not change the path; record unknown codes."""
@@ -634,7 +639,9 @@ class _Reader:
         stored = self.stored.get(self._state_name(command))
         if stored is None:
             raise self._error(
-                Text("{} restores a state that was never stored; store it first", command.name)
+                Text(
+                    "{} restores a state that was never stored; store the state first", command.name
+                )
             )
         self._end()
         position, state = self.state.place, stored.copied()
@@ -652,7 +659,7 @@ class _Reader:
         if stored != self.state.modes:
             raise self._error(
                 "M121 restores the modes before M120 on RepRapFirmware, but keeps the current "
-                "ones on Marlin; write G90 or G91, M82 or M83 instead"
+                "modes on Marlin; write G90 or G91, and M82 or M83 instead"
             )
 
     def _numbers(self, command: Command) -> dict[str, float]:
@@ -665,14 +672,14 @@ class _Reader:
             elif letter not in allowed:
                 raise self._error(
                     Text(
-                        "{} does not take the word {}; remove it, or use one of {}",
+                        "{} does not take the word {}; remove the word, or use one of {}",
                         self.motion,
                         letter,
                         " ".join(sorted(allowed)),
                     )
                 )
             if value is None:
-                raise self._error(Text("{} has no number; add one", letter))
+                raise self._error(Text("{} has no number; add a number", letter))
             if letter in LENGTH_WORDS:
                 value *= self.unit
             if letter != "F" and abs(value) > MAX_MM:
@@ -733,14 +740,17 @@ class _Reader:
             extrudes.append(self.state.extruders[k] - previous > EXTRUSION_TOLERANCE_MM)
         if extrudes[0] != extrudes[1]:
             raise self._error(
-                "M82 and G91 are both on: Klipper counts E from the position before, Marlin from zero; write M83, or G90"
+                "M82 and G91 are both on: Klipper counts E from the previous position, Marlin "
+                "from zero; write M83, or G90"
             )
         return extrudes[0]
 
     def _target(self, words: dict[str, float], machine_frame: bool) -> None:
         state = self.state
         if machine_frame and not state.absolute:
-            raise self._error("G53 with relative moves (G91) is not supported; write G90 before it")
+            raise self._error(
+                "G53 with relative moves (G91) is not supported; write G90 before G53"
+            )
         for k, axis in enumerate("XYZ"):
             if axis in words:
                 self.known.add(axis)
@@ -787,14 +797,15 @@ class _Reader:
         if self.ended:
             raise self._error(
                 Text(
-                    "it extrudes after {}, which ends the program; remove the lines after it",
+                    "a move extrudes after {}, the end of the program; remove the lines that "
+                    "follow",
                     self.ended,
                 )
             )
         if len(self.known) < 3:
             raise self._error(
                 Text(
-                    "it extrudes before its position is defined; set X, Y and Z first; {}",
+                    "a move extrudes before its position is defined; set X, Y and Z first; {}",
                     FORM,
                 )
             )
@@ -818,11 +829,13 @@ class _Reader:
         """Return the points (3,) of an arc without the first point."""
         if extrudes and words.get("P", 0.0) > 1.0:
             raise self._error(
-                "P asks for several turns, which are not supported; write out each turn"
+                "P requests several turns, which are not supported; write out each turn"
             )
         if self.plane == "G18":
             raise self._error(
-                "arcs are in the plane of X and Z (G18), which Klipper and other controllers turn in opposite ways; set the slicer to write arcs in another plane, or lines only"
+                "arcs are in the plane of X and Z (G18), which Klipper and other controllers "
+                "turn in opposite ways; set the slicer to write arcs in another plane, or lines "
+                "only"
             )
         axes, letters = PLANES[self.plane]
         start, end = start[list(axes)], end[list(axes)]
@@ -881,7 +894,11 @@ class _Reader:
         if words.keys() & {*letters}:
             if "R" in words:
                 raise self._error(
-                    Text("the arc has both {} or {} and R; use one form", letters[0], letters[1])
+                    Text(
+                        "the arc has both {} or {} and R; use one of these forms",
+                        letters[0],
+                        letters[1],
+                    )
                 )
             return np.asarray(start[:2] + np.array([words.get(letter, 0.0) for letter in letters]))
         if "R" not in words:
@@ -930,7 +947,7 @@ class _Reader:
         self._end()
         if not self.runs:
             raise InputError(
-                CODE, self.where, "none of its moves extrudes, so it has no bead; {}", FORM
+                CODE, self.where, "none of the moves extrudes, so there is no bead; {}", FORM
             )
         if any(run.role is not None for run in self.runs):
             self.runs = [
@@ -965,7 +982,7 @@ class _Reader:
             issues.append(Issue(NOTE, NOT_READ, message))
         if len(self.tools) > 1:
             message = Text(
-                "{}: tools {} all deposit, and are mapped to the tool of the cell",
+                "{}: tools {} all deposit, and are replaced by the tool of the cell",
                 self.where,
                 ", ".join(sorted(self.tools)),
             )

@@ -156,11 +156,11 @@ def choose_runs(
         raise InputError(
             "BAD_VALUE",
             "strategy.roles",
-            "{!r} is neither a group ({}) nor a type of {} ({}); choose a listed one",
+            "{!r} is neither a group ({}) nor a type of {} ({}); choose a group or a type",
             unknown[0],
             ", ".join((PART, ALL, *(group for group, _ in GROUPS))),
             where,
-            ", ".join(names) or "it has no types",
+            ", ".join(names) or "the file names no types",
         )
     deposited = [run for run in runs if is_deposited(run.role, entries)]
     omitted = [run for run in runs if not is_deposited(run.role, entries)]
@@ -169,15 +169,15 @@ def choose_runs(
         raise InputError(
             code,
             where,
-            "its moves are {}, and strategy.roles is {}, so nothing remains to deposit; choose "
-            "other roles",
+            "the moves of the file are {}, but strategy.roles is {}, so nothing remains to "
+            "deposit; choose other roles",
             lengths,
             roles,
         )
     issues = []
     if omitted:
         message = Text(
-            "{}: {} ignored by strategy.roles = {}; add roles to deposit more",
+            "{}: {} ignored because of strategy.roles = {}; add roles to deposit more",
             where,
             lengths,
             roles,

@@ -136,7 +136,10 @@ def split_comments(line: str) -> tuple[str, list[str]]:
             end = line.find(")", position)
             if end < 0:
                 raise BadWords(
-                    Text("the comment {!r} has no end; close it with )", line[position:][:40])
+                    Text(
+                        "the comment {!r} has no end; close the comment with )",
+                        line[position:][:40],
+                    )
                 )
             comments.append(line[position + 1 : end])
             code, position = code + " ", end + 1
@@ -188,7 +191,14 @@ def _strip_checksum(code: str) -> str:
     for byte in content.encode("utf-8", "replace"):
         value ^= byte
     if value != int(match[1]):
-        raise BadWords(Text("its checksum is {}, not {}; the line is damaged", value, match[1]))
+        raise BadWords(
+            Text(
+                "the checksum of the line is {}, not {}, so the line is damaged; export the file "
+                "again",
+                value,
+                match[1],
+            )
+        )
     return content
 
 
@@ -264,7 +274,7 @@ def _read_words(code: str, position: int) -> tuple[tuple[tuple[str, float | None
             break
         value, position = _read_value(code, match, letter)
         if letter in (name for name, _ in words):
-            raise BadWords(Text("{} appears twice in {!r}; remove one", letter, code[:60]))
+            raise BadWords(Text("{} appears twice in {!r}; remove one of them", letter, code[:60]))
         words.append((letter, value))
     return tuple(words), position
 

@@ -124,6 +124,6 @@ def refuse_scale(scale: float, path: str, key: str) -> None:
         raise InputError(
             "BAD_VALUE",
             key,
-            "{} states its own unit; remove the scale, which is for STL and OBJ",
+            "{} states a unit; remove the scale, which is for STL and OBJ",
             os.path.basename(path),
         )

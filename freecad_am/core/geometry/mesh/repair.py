@@ -233,7 +233,7 @@ def _close_holes(
             "OPEN_MESH",
             label,
             "the mesh has a hole: {} edges, {:.4g} mm across, at {}{}{}; close the holes (Mesh, "
-            "Close holes) or export it again, or deposit it as a wall",
+            "Close holes), export the mesh again, or deposit it as a wall",
             len(large[0].loop),
             large[0].size,
             place(large[0].middle),

@@ -67,7 +67,7 @@ class SolidMesh:
                 (edges.count == 1) & of_shape,
                 "OPEN_MESH",
                 "faces of the solid do not meet along their edges",
-                "check it in the CAD system or by Part, Check geometry, and redraw or sew those faces",
+                "check the solid in the CAD system or by Part, Check geometry, and redraw or sew those faces",
             ),
             (
                 edges.count == 1,
@@ -79,7 +79,7 @@ class SolidMesh:
                 several & of_shape,
                 "NON_MANIFOLD",
                 "the solid touches itself along an edge, so its inside is undefined",
-                "separate it there, or make it overlap there and fuse it (Part, Boolean)",
+                "separate the faces there, or let them overlap and fuse the solid (Part, Boolean)",
             ),
             (
                 several,
@@ -552,7 +552,7 @@ def split_solids(vertices: Array, corners: Index, messages: list[str]) -> tuple[
     turned = [k for k in outer if volume[k] < 0.0]
     if turned:
         message = Text("{} inside-out solids were reversed", len(turned))
-        messages.append("a solid was inside out and was turned" if len(turned) == 1 else message)
+        messages.append("an inside-out solid was reversed" if len(turned) == 1 else message)
     solids = []
     for k in outer:
         shells = [components[k][:, ::-1] if volume[k] < 0.0 else components[k]]

@@ -338,7 +338,7 @@ class Mesh:
             raise InputError(
                 "MESH",
                 "wall",
-                "faces of the wall mesh have opposite orientations; orient them consistently",
+                "faces of the wall mesh have opposite orientations; orient all faces consistently",
             )
         start_value, end_value = values[edges].T
         t = np.clip(start_value / (start_value - end_value), 1e-6, 1.0 - 1e-6)[:, None]

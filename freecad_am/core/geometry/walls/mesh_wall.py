@@ -410,8 +410,8 @@ def _read(points: Array, triangles: Index, label: str, mend: float) -> _Read:
                 "SELF_INTERSECTION",
                 label,
                 "the wall intersects itself: {} pairs of triangles cross, for instance at {}; "
-                "repair the mesh (Mesh, Analyze, Self-intersections), or deposit it as a solid "
-                "with holes up to strategy.mend closed",
+                "repair the mesh (Mesh, Analyze, Self-intersections), or deposit the mesh as a "
+                "solid with holes up to strategy.mend closed",
                 len(crossed.pairs),
                 position,
             )
@@ -489,8 +489,8 @@ def clad_mesh(points: Array, triangles: Index, spacing: float, back: bool, label
         raise InputError(
             "NO_FACES",
             label,
-            "it is a closed mesh without selectable faces; cut out the surface to cover (Mesh, "
-            "Cutting), or use the original CAD file",
+            "the object is a closed mesh without selectable faces; cut out the surface to cover "
+            "(Mesh, Cutting), or use the original CAD file",
         )
     front = _faces_as(points, triangles, wall)
     sheet = wall if front != back else replace(wall, triangles=wall.triangles[:, ::-1].copy())

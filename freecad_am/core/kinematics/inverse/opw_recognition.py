@@ -79,13 +79,14 @@ def recognise(chain: Chain) -> OpwArm:
         slides = int(chain.sliding.sum())
         if track_of(chain):
             raise refused(
-                "its first axis is prismatic and carries the six revolute axes, like a track",
-                "start the machine at the base of the robot, and name the track in `cell.external` with `carries: robot`",
+                "the first axis is prismatic and carries the six revolute axes, like a track",
+                "start the machine at the base of the robot, and name the track in "
+                "`cell.external` with `carries: robot`",
             )
         raise refused(
-            Text("it has {} axes, {} prismatic", chain.axes, slides),
-            "choose a robot with six revolute axes; if a gripper follows them, name the last link "
-            "of the arm as `tip`; further axes belong in `cell.external`",
+            Text("the machine has {} axes, {} prismatic", chain.axes, slides),
+            "choose a robot with six revolute axes; if a gripper follows these axes, name the "
+            "last link of the arm as `tip`; further axes belong in `cell.external`",
         )
     at_rest = chain.frames(np.zeros(6))
     centre = _wrist_centre(at_rest)
@@ -95,7 +96,7 @@ def recognise(chain: Chain) -> OpwArm:
     if off[:, :3, 3].max() > POSITION or off[:, :3, :3].max() > ROTATION:
         raise refused(
             Text(
-                "its closed form is off by {:.3g} mm and {:.2g} (rotation matrix entries)",
+                "the closed form is off by {:.3g} mm and {:.2g} (rotation matrix entries)",
                 off[:, :3, 3].max(),
                 off[:, :3, :3].max(),
             ),
@@ -145,7 +146,8 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
         raise refused("axis 1 is not the Z of the base frame")
     if all(float(np.linalg.norm(np.cross(z[1], z[axis]))) < PARALLEL_TOLERANCE for axis in (2, 3)):
         raise refused(
-            "the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as in arms of Universal Robots"
+            "the wrist is not spherical: axis 4 is parallel to axes 2 and 3, as in arms of "
+            "Universal Robots"
         )
     for first_axis, second_axis in ((0, 1), (2, 3), (3, 4), (4, 5)):
         off = math.asin(min(1.0, abs(float(z[first_axis] @ z[second_axis]))))
@@ -172,7 +174,8 @@ def _wrist_centre(at_rest: JointFrames) -> Array:
         if off > NEAR_MM:
             raise refused(
                 Text(
-                    "the wrist is not spherical: axis {} passes {:.6g} mm off the point where axes {} meet",
+                    "the wrist is not spherical: axis {} passes {:.6g} mm off the point where "
+                    "axes {} meet",
                     axis + 1,
                     off,
                     Word("5 and 6" if axis == 3 else "4 and 5"),
@@ -303,7 +306,7 @@ def refused(reason: str, remedy: str = "", where: str = "geometry") -> InputErro
     return InputError(
         "NO_CLOSED_FORM",
         where,
-        "its kinematics cannot be planned: {}; {}",
+        "the kinematics of the machine is not supported: {}; {}",
         reason,
         remedy or OTHER_GEOMETRY,
     )

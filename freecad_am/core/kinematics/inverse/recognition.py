@@ -222,8 +222,8 @@ def arm_of(chain: Chain) -> SerialArm:
     if not _agrees(arm, chain, MAX_LOST_SHARE):
         raise opw_recognition.refused(
             Text(
-                "its axes are up to {:.3g} deg off right angles, and its inverse solutions do "
-                "not reproduce its poses",
+                "the axes are up to {:.3g} deg off right angles, and the inverse solutions do "
+                "not reproduce the poses",
                 math.degrees(off_square(chain)),
             )
         )
@@ -429,7 +429,7 @@ def offset_wrist(chain: Chain) -> OffsetWristArm:
     arm = replace(arm, flips=_flips(arm))
     if not _agrees(arm, chain):
         raise opw_recognition.refused(
-            "its inverse solutions do not reproduce its poses", "give the geometry with more digits"
+            "the inverse solutions do not reproduce the poses", "give the geometry with more digits"
         )
     return arm
 

@@ -155,7 +155,8 @@ def _piece(node: Node, is_last: bool) -> LinkShape | Solid:
     size = node[kind].numbers(count)
     if (size <= 0.0).any():
         raise node[kind].bad(
-            "give sizes larger than 0: of a box along x, y and z, of a cylinder its diameter and length"
+            "give sizes larger than 0: for a box along x, y and z, for a cylinder the diameter "
+            "and the length"
         )
     pose = node.pose() if node.has("origin") or node.has("rpy") else np.eye(4)
     tone = BRIGHT if is_last else BODY

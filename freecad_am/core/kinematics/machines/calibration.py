@@ -81,7 +81,7 @@ def read(path: Path) -> tuple[Array, str]:
         raise InputError(
             "BAD_CALIBRATION",
             str(path),
-            "cannot be read as a calibration: {}; use the file as ur_calibration wrote it",
+            "the file cannot be read as a calibration: {}; use the file as ur_calibration wrote it",
             error,
         ) from None
     entries = _entries(text, path)
@@ -124,8 +124,8 @@ def calibrated(chain: Chain, base: Array, poses: Array, path: Path) -> Chain:
             raise InputError(
                 "BAD_CALIBRATION",
                 f"{path}: kinematics.{joint}",
-                "it is {:.3g} mm and {:.3g} deg from the joint in the machine file, more than a "
-                "calibration corrects; choose the calibrated machine",
+                "the calibrated joint is {:.3g} mm and {:.3g} deg from the joint in the machine "
+                "file, more than a calibration corrects; choose the calibrated machine",
                 off,
                 math.degrees(turned),
             )
@@ -172,7 +172,7 @@ def _pose(entries: dict[str, str], joint: str, path: Path) -> Array:
             raise InputError(
                 "BAD_CALIBRATION",
                 f"{path}: {key}",
-                "this key is missing; use the file as ur_calibration wrote it",
+                "the key is missing; use the file as ur_calibration wrote it",
             )
         try:
             number = float(entries[key])

@@ -93,7 +93,7 @@ def _check(table: Table) -> None:
         where = Text("table, row {}", number)
         if not np.isfinite([row.theta, row.d, row.a, row.alpha]).all():
             raise InputError(
-                "BAD_TABLE", where, "theta, d, a and alpha must be numbers; give all four"
+                "BAD_TABLE", where, "theta, d, a and alpha must be numbers; give all four numbers"
             )
         if row.sign not in (1, -1):
             raise InputError("BAD_TABLE", where, "{} is not a sign; use 1 or -1", row.sign)

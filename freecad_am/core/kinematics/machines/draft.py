@@ -252,7 +252,7 @@ def _display_of(machine: Machine) -> Shown:
     raise InputError(
         "BAD_MACHINE",
         Text("{}: controller.matrix", machine.id),
-        "it is not made of signs and a coupling of axes 2 and 3; copy the original file",
+        "the matrix is not made of signs and a coupling of axes 2 and 3; copy the original file",
     )
 
 
@@ -392,9 +392,9 @@ FANUC, KUKA, STAUBLI, ZYZ, QUATERNION = "W P R", "A B C", "RX RY RZ", "O A T", "
 # rotation convention -> names of its values, and the manufacturers that use it
 CONVENTIONS = {
     FANUC: ("W P R", "FANUC, Yaskawa (Rx Ry Rz): about X, Y, Z of the base"),
-    KUKA: ("A B C", "KUKA: about Z, Y, X, each as the one before turned it"),
-    STAUBLI: ("RX RY RZ", "Stäubli: about X, Y, Z, each as the one before turned it"),
-    ZYZ: ("O A T", "Kawasaki: about Z, Y, Z, each as the one before turned it"),
+    KUKA: ("A B C", "KUKA: about Z, Y, X, each in the rotated frame"),
+    STAUBLI: ("RX RY RZ", "Stäubli: about X, Y, Z, each in the rotated frame"),
+    ZYZ: ("O A T", "Kawasaki: about Z, Y, Z, each in the rotated frame"),
     QUATERNION: ("q1 q2 q3 q4", "ABB: quaternion, the scalar first"),
 }
 

@@ -46,7 +46,7 @@ class Node:
         if not isinstance(self.value, dict):
             raise self.bad(
                 Text(
-                    "{} is not an object with the keys {}; write one in braces",
+                    "{} is not an object with the keys {}; write an object in braces",
                     _short(self.value),
                     ", ".join(allowed),
                 )
@@ -62,7 +62,7 @@ class Node:
 
     def __getitem__(self, key: str) -> Node:
         if not isinstance(self.value, dict) or key not in self.value:
-            raise self.bad(Text("the key {!r} is missing; add it", key))
+            raise self.bad(Text("the key {!r} is missing; add the key", key))
         return Node(self.value[key], self.path, f"{self.key}.{key}".lstrip("."))
 
     def items(self, length: int | None = None) -> list[Node]:
@@ -70,7 +70,7 @@ class Node:
         if not isinstance(self.value, list) or (length is not None and len(self.value) != length):
             raise self.bad(
                 Text(
-                    "{} is not a list{}; write one in square brackets",
+                    "{} is not a list{}; write a list in square brackets",
                     _short(self.value),
                     Word(Text(" of {}", length) if length is not None else ""),
                 )
@@ -82,13 +82,15 @@ class Node:
     def pairs(self) -> Iterator[tuple[str, Node]]:
         """Return the keys and values of an object."""
         if not isinstance(self.value, dict):
-            raise self.bad(Text("{} is not an object; write one in braces", _short(self.value)))
+            raise self.bad(
+                Text("{} is not an object; write an object in braces", _short(self.value))
+            )
         return ((key, self[key]) for key in self.value)
 
     def text(self) -> str:
         """Return a non-empty text."""
         if not isinstance(self.value, str) or not self.value:
-            raise self.bad(Text("{} is not a text; write one in quotes", _short(self.value)))
+            raise self.bad(Text("{} is not a text; write the text in quotes", _short(self.value)))
         return self.value
 
     def texts(self) -> tuple[str, ...]:
@@ -102,7 +104,9 @@ class Node:
             or not isinstance(self.value, (int, float))
             or not abs(self.value) <= LARGEST_NUMBER
         ):
-            raise self.bad(Text("{} is not a number; write one such as 12.5", _short(self.value)))
+            raise self.bad(
+                Text("{} is not a number; write a number such as 12.5", _short(self.value))
+            )
         return float(self.value)
 
     def numbers(self, length: int) -> Array:
@@ -209,7 +213,7 @@ def _once(pairs: list[tuple[str, Any]], path: Path) -> dict[str, Any]:
     for key, value in pairs:
         if key in entries:
             raise InputError(
-                "BAD_MACHINE", str(path), "the key {!r} appears twice; remove one", key
+                "BAD_MACHINE", str(path), "the key {!r} appears twice; remove one entry", key
             )
         entries[key] = value
     return entries
@@ -229,13 +233,13 @@ def read(path: Path) -> Node:
         raise InputError(
             "BAD_MACHINE",
             str(path),
-            "it is nested too deeply for a machine file; choose another file",
+            "the file is nested too deeply for a machine file; choose another file",
         ) from None
     except (OSError, ValueError) as error:
         raise InputError(
             "BAD_MACHINE",
             str(path),
-            "cannot be read as a machine file: {}; correct it, or choose another file",
+            "the file cannot be read as a machine file: {}; correct the file, or choose another",
             error,
         ) from None
 
@@ -270,15 +274,13 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
     poses = [pose.only("q", "origin", "rotation", "within") for pose in node.items()]
     if len(poses) < 3:
         raise node.bad(
-            Text(
-                "the file has {}; give at least 3 joint vectors with their flange poses", len(poses)
-            )
+            Text("the file has {}; give at least 3 joint vectors with flange poses", len(poses))
         )
     q = np.array([pose["q"].numbers(chain.axes) for pose in poses]) * np.where(
         chain.sliding, 1.0, math.radians(1.0)
     )
     if not (q == 0.0).all(axis=1).any():
-        raise node.bad("the pose at all zeros is missing; add it")
+        raise node.bad("the pose at all zeros is missing; add this pose")
     expected = np.stack(
         [frames.pose(pose["rotation"].matrix(3, 3), pose["origin"].numbers(3)) for pose in poses]
     )
@@ -294,8 +296,8 @@ def check(chain: Chain, opw: OpwArm | None, node: Node) -> None:
             index = int(np.argmax(wrong))
             raise poses[index].bad(
                 Text(
-                    "{} a flange {:.6g} mm and {:.3g} (largest entry of the rotation) from it; correct the geometry or the "
-                    "pose",
+                    "{} a flange pose that deviates by {:.6g} mm and {:.3g} (largest entry of "
+                    "the rotation); correct the geometry or the pose",
                     solver_gives,
                     position[index],
                     rotation[index],
@@ -487,7 +489,7 @@ def maximum_of(joint: Node, key: str, what: str) -> float:
     maximum = joint[key].number()
     if maximum <= 0.0:
         raise joint[key].bad(
-            Text("{:g} is not {}; give more than 0, or null where not known", maximum, what)
+            Text("{:g} is not {}; give more than 0, or null if unknown", maximum, what)
         )
     return maximum
 
@@ -536,7 +538,7 @@ def opw_arm(node: Node, count: int) -> OpwArm:
     if (np.abs(signs) != 1.0).any():
         raise node["signs"].bad(
             Text(
-                "{} must be 1 or -1 each; give one for each joint",
+                "{} must be 1 or -1 each; give one sign per joint",
                 node["signs"].value,
             )
         )

@@ -64,7 +64,7 @@ BUILT_IN = Path(__file__).resolve().parents[3] / "machines"
 MAKER = "maker"
 # a remark in old machine files, which have no `warnings`
 BASE_NOT_KNOWN = "The maker's own base frame is not known: base_link is used in its place."
-UNKNOWN_REMARK = "a URDF does not say what the controller shows"
+UNKNOWN_REMARK = "a URDF does not define the values shown by the controller"
 REFUSED = (
     "BAD_MACHINE: "  # prefix of the text in place of the title of a file that is not a machine file
 )
@@ -311,7 +311,7 @@ def load(name: str | Path, folders: Sequence[Path | str] = ()) -> Machine:
         raise InputError(
             "BAD_MACHINE",
             f"{path}: id",
-            "{!r} differs from the file name, {!r}; rename it",
+            "{!r} differs from the file name, {!r}; rename the machine or the file",
             machine.id,
             text,
         )
@@ -365,7 +365,7 @@ def _parse(top: Node) -> Machine:
     )
     joints = [joint.only(*keys) for joint in top["joints"].items()]
     if not joints:
-        raise top["joints"].bad("there is no joint; add one for each axis")
+        raise top["joints"].bad("the machine has no joint; add a joint for each axis")
     count = len(joints)
     sliding = np.array([file.slides(joint) for joint in joints])
     units = unit_values(sliding)
@@ -423,7 +423,7 @@ def _parse(top: Node) -> Machine:
         bodies=link_bodies(top, links, shapes),
     )
     if MAKER not in machine.limit_sets:
-        raise top["limits"].bad(Text("the set {!r} is missing; add it", MAKER))
+        raise top["limits"].bad(Text("the set {!r} is missing; add the set", MAKER))
     if abs(np.linalg.det(machine.controller_matrix)) < 1e-9:
         raise controller["matrix"].bad(
             "the matrix has no inverse; copy the matrix of the controller"
@@ -447,7 +447,7 @@ def _calibrated(machine: Machine, path: Path) -> Machine:
         raise InputError(
             "BAD_CALIBRATION",
             "cell.machine",
-            "{} has no calibration, only Universal Robots arms do; remove it",
+            "only Universal Robots arms have a calibration, not {}; remove the calibration",
             machine.title,
         )
     poses, robot = calibration.read(path)

@@ -139,8 +139,8 @@ class UrdfCell:
             names = ", ".join(" - ".join(joint_names) for joint_names in other_chains)
             self._refuse(
                 Text(
-                    "besides the robot the file has {} chains ({}), and only one can carry the "
-                    "part; name it in `{}`, with base and tip",
+                    "besides the robot the file has {} chains ({}), but only one can carry the "
+                    "part; name this chain in `{}`, with base and tip",
                     len(other_chains),
                     names,
                     EXTERNAL_KEY,
@@ -195,8 +195,8 @@ class UrdfCell:
 
     def _several(self, robots: Sequence[Way]) -> str:
         return Text(
-            "the file has {} robots, with the last axes {}; name one in `cell.machine`, with "
-            "base and tip, and its external axes in `{}`",
+            "the file has {} robots, with the last axes {}; name the robot in `cell.machine`, "
+            "with base and tip, and its external axes in `{}`",
             len(robots),
             ", ".join(robot_joints[-1] for robot_joints in robots),
             EXTERNAL_KEY,

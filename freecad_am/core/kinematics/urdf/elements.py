@@ -49,14 +49,14 @@ class Element:
         child = self.first(tag)
         if child is None:
             name = Text(" {!r}", self.attributes["name"]) if "name" in self.attributes else ""
-            raise self.bad(Text("<{}>{} has no <{}>; add it", self.tag, Word(name), tag))
+            raise self.bad(Text("<{}>{} has no <{}>; add this element", self.tag, Word(name), tag))
         return child
 
     def text(self, name: str) -> str:
         """Return an attribute that must exist and must not be empty."""
         value = self.attributes.get(name, "").strip()
         if not value:
-            raise self.bad(Text("<{}> has no {}; add it", self.tag, name))
+            raise self.bad(Text("<{}> has no {}; add the attribute", self.tag, name))
         return value
 
     def words(self, name: str, count: int, default: str) -> list[str]:
@@ -85,7 +85,7 @@ class Element:
         if len(words) != count:
             raise self.bad(
                 Text(
-                    "{}={!r} of <{}> needs {} numbers; separate them with spaces",
+                    "{}={!r} of <{}> needs {} numbers; separate the numbers with spaces",
                     name,
                     self.attributes.get(name, ""),
                     self.tag,
@@ -154,7 +154,8 @@ class Element:
         if not math.isfinite(value):
             raise self.bad(
                 Text(
-                    "{}={!r} of <{}> holds {!r}, which is not a number; write one such as 0.25",
+                    "{}={!r} of <{}> holds {!r}, which is not a number; write a number such as "
+                    "0.25",
                     name,
                     self.attributes.get(name, word),
                     self.tag,
@@ -192,14 +193,17 @@ def read(path: Path) -> Element:
         parser.Parse(read_content(path, MAX_FILE_MB, CODE, str(path)), True)
     except OSError as error:
         raise InputError(
-            CODE, str(path), "cannot be read: {}; choose another file", error.strerror or error
+            CODE,
+            str(path),
+            "the file cannot be read: {}; choose another file",
+            error.strerror or error,
         ) from None
     except xml.parsers.expat.ExpatError as error:
         text = xml.parsers.expat.errors.messages[error.code]
         raise InputError(
             CODE,
             f"{path.name}: line {error.lineno}",
-            "this is not XML: {}; export the URDF again",
+            "the file is not XML: {}; export the URDF again",
             text,
         ) from None
     return stack[0].children[0]

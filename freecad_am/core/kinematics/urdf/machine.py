@@ -28,7 +28,7 @@ from .reference import Reference
 
 # ---- Link bodies of a mechanism, from the <collision> elements of a URDF, or else <visual>
 
-NOT_LOOKED_AT = "nothing is kept clear of it"
+NOT_LOOKED_AT = "the link is excluded from clearance checks"
 
 
 def collision(urdf: Urdf, base: str, tip: str, notes: list[str]) -> tuple[Pieces, ...]:
@@ -193,7 +193,7 @@ def _note_deviation(arm: SerialArm) -> list[str]:
         return []
     return [
         Text(
-            "its axes are up to {:.2g} deg off right angles: joint angles are solved for the "
+            "the axes are up to {:.2g} deg off right angles, and joint angles are solved for the "
             "actual axes",
             math.degrees(recognition.off_square(arm.chain)),
         )
@@ -250,7 +250,7 @@ def _ends(chain_reference: Reference, where: str) -> tuple[Urdf, str, str]:
             raise InputError(
                 "BAD_URDF",
                 where,
-                "{} has no link {!r}; name one of {}",
+                "{} has no link {!r}; use one of {}",
                 path.name,
                 link,
                 link_names,

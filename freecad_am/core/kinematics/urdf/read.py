@@ -75,13 +75,13 @@ class Urdf:
             raise InputError(
                 CODE,
                 self.path.name,
-                "this is xacro; convert it to URDF first, with the ROS program xacro",
+                "the file is xacro; convert it to URDF first, with the ROS program xacro",
             )
         self.top = urdf_xml.read(self.path)
         if self.top.tag != "robot":
             raise self.top.bad(
                 Text(
-                    "this is <{}>, not the <robot> of a URDF; choose a robot URDF",
+                    "the file contains <{}>, not the <robot> of a URDF; choose a robot URDF",
                     self.top.tag,
                 )
             )
@@ -89,7 +89,7 @@ class Urdf:
         unexpanded = _xacro_in(self.top)
         if unexpanded is not None:
             raise unexpanded.bad(
-                "this is xacro; convert it to URDF first, with the ROS program xacro"
+                "the file is xacro; convert it to URDF first, with the ROS program xacro"
             )
         self.name = self.top.attributes.get("name", self.path.stem)
         self.links = self._named("link")
@@ -99,7 +99,7 @@ class Urdf:
                 link = joint.one(end).text("link")
                 if link not in self.links:
                     raise joint.one(end).bad(
-                        Text("the link {!r} does not exist; choose an existing one", link)
+                        Text("the link {!r} does not exist; choose an existing link", link)
                     )
             child = joint.one("child").text("link")
             if child in self.parent:
@@ -119,7 +119,7 @@ class Urdf:
             if name in elements:
                 raise element.bad(
                     Text(
-                        "a {} {!r} already exists, in line {}; rename one",
+                        "a {} {!r} already exists, in line {}; rename one of them",
                         tag,
                         name,
                         elements[name].line,
@@ -228,7 +228,8 @@ class Urdf:
             if link in carriers:
                 raise self.parent[link].bad(
                     Text(
-                        "the link {!r} carries itself; correct parent and child of its joints", link
+                        "the link {!r} carries itself; correct `parent` and `child` of its joints",
+                        link,
                     )
                 )
             carriers.append(link)
@@ -252,7 +253,11 @@ class Urdf:
         above = [tip, *self.above(tip)]
         if base not in above:
             raise InputError(
-                CODE, self.path.name, "the link {!r} does not carry {!r}; choose others", base, tip
+                CODE,
+                self.path.name,
+                "the link {!r} does not carry {!r}; choose other links",
+                base,
+                tip,
             )
         for link in reversed(above[: above.index(base)]):
             joint = self.parent[link]
@@ -260,7 +265,7 @@ class Urdf:
             if kind not in (*MOVING, FIXED):
                 raise joint.bad(
                     Text(
-                        "the joint {!r} is {}; only {} and fixed ones are read",
+                        "the joint {!r} is {}; use only {} and fixed joints",
                         joint.text("name"),
                         kind,
                         ", ".join(MOVING),
@@ -324,7 +329,7 @@ class Urdf:
         elif (scales <= 0.0).any():
             notes.append(
                 f"line {mesh.line}: {file.name} is mirrored or flat by its scale {mesh.attributes['scale']}; "
-                f"write a mirrored mesh out as it is; {otherwise}"
+                f"export the mirrored mesh itself; {otherwise}"
             )
         elif np.ptp(scales) > 1e-9:
             notes.append(f"line {mesh.line}: {file.name} has unequal scales; {otherwise}")
@@ -416,7 +421,7 @@ def _check_joint(joint: Element) -> None:
         if child.tag not in JOINT_TAGS:
             raise child.bad(
                 Text(
-                    "unknown <{}> in the joint {!r}, which may move links; remove it",
+                    "unknown <{}> in the joint {!r}, which may move links; remove the element",
                     child.tag,
                     joint.text("name"),
                 )
@@ -424,7 +429,7 @@ def _check_joint(joint: Element) -> None:
         if child.tag in SINGLE_TAGS and len(list(joint.all(child.tag))) > 1:
             raise child.bad(
                 Text(
-                    "the joint {!r} has several <{}>; keep one",
+                    "the joint {!r} has several <{}>; keep one element",
                     joint.text("name"),
                     child.tag,
                 )
@@ -432,7 +437,9 @@ def _check_joint(joint: Element) -> None:
         unknown = set(child.attributes) - ATTRIBUTES.get(child.tag, set(child.attributes))
         if unknown:
             raise child.bad(
-                Text("<{}> has no attribute {}; remove it", child.tag, sorted(unknown)[0])
+                Text(
+                    "<{}> has no attribute {}; remove the attribute", child.tag, sorted(unknown)[0]
+                )
             )
     axis = joint.first("axis")
     if axis is not None and axis.numbers("rpy", 3, "0 0 0").any():
@@ -508,7 +515,7 @@ def _limits(joint: Element) -> tuple[float, float, float]:
         if kind != "continuous":
             raise joint.bad(
                 Text(
-                    "the joint {!r} has no <limit>; add one, or make the joint continuous",
+                    "the joint {!r} has no <limit>; add the limit, or make the joint continuous",
                     joint.text("name"),
                 )
             )
@@ -523,7 +530,7 @@ def _limits(joint: Element) -> tuple[float, float, float]:
         )
     lower, upper, speed = values
     if speed < 0.0:
-        raise limit.bad(Text("the velocity {:g} is negative; give a positive one", speed))
+        raise limit.bad(Text("the velocity {:g} is negative; give a positive velocity", speed))
     if kind == "revolute" and max(abs(lower), abs(upper)) > MOST_RAD:
         raise limit.bad(
             Text(
@@ -539,7 +546,7 @@ def _limits(joint: Element) -> tuple[float, float, float]:
     if not lower < upper:
         raise limit.bad(
             Text(
-                "the limits of {!r} run from {:g} to {:g}; give the lower one first",
+                "the limits of {!r} run from {:g} to {:g}; give the lower limit first",
                 joint.text("name"),
                 lower,
                 upper,

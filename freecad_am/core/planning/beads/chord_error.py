@@ -74,7 +74,9 @@ def refined_to_chord_error(
         Issue(
             ERROR,
             "NOT_STRAIGHT",
-            "the joint motion deviates from the bead between two points, near a singularity, no matter how many points are added; move the part in the cell, or choose another cell.branch",
+            "the joint motion deviates from the bead between two points near a singularity, no "
+            "matter how many points are added; move the part in the cell, or choose another "
+            "cell.branch",
             path.layer,
             path.index,
             worst,

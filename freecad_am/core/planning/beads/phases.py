@@ -73,7 +73,7 @@ def phased(cell: Cell, path: BeadPath, condition_at: Condition) -> tuple[BeadPat
                 CODE,
                 Text(
                     "start and end take {:.4g} mm of a bead of {:.4g} mm; shorten process.start "
-                    "and process.end, or those of its class",
+                    "and process.end, or the start and end of the bead class",
                     used,
                     along[-1],
                 ),

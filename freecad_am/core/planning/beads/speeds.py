@@ -327,8 +327,9 @@ def _advice(bead: Bead, point: int, able: float) -> str:
         return Text("lower the travel speed to {:.2f} mm/s", able)
     return Text(
         "{:.2f} mm/s would work, but the bead model needs {:.3g} mm/s, and too much material "
-        "would pile up: turn the torch more slowly (build_direction.max_turn), tilt it less, "
-        "mount the part differently, or use a wider bead (process.bead_width), which is slower",
+        "would pile up; turn the torch more slowly (build_direction.max_turn), tilt the torch "
+        "less, mount the part differently, or use a wider bead (process.bead_width), which is "
+        "slower",
         able,
         bead.speed[point],
     )

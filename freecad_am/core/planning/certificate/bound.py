@@ -402,8 +402,8 @@ def summed(
             Issue(
                 NOTE,
                 "NO_BOUND",
-                "joints.certificate: the lower bound is undefined, as several solutions of the "
-                "arm share a configuration; remove it",
+                "the lower bound is undefined, as several solutions of the arm share a "
+                "configuration; remove joints.certificate",
             )
         ]
     displacement = task.parameters.objective == "displacement"

@@ -149,9 +149,9 @@ def _not_level(turning: bool, tilt: Array, max_lean: float, bead_id: Place) -> l
                 ERROR,
                 "NOT_LEVEL",
                 Text(
-                    "the tool axis would be {:.3g} deg from the vertical, "
-                    "build_direction.max_from_vertical allows {:.3g} deg, and nothing turns the "
-                    "part; put it on a positioner, or raise the limit",
+                    "the tool axis would be {:.3g} deg from the vertical, but "
+                    "build_direction.max_from_vertical allows {:.3g} deg and no axis turns the "
+                    "part; put the part on a positioner, or raise the limit",
                     leans,
                     allowed,
                 ),
@@ -164,8 +164,8 @@ def _not_level(turning: bool, tilt: Array, max_lean: float, bead_id: Place) -> l
             ERROR,
             "NOT_LEVEL",
             Text(
-                "the tool axis would be {:.3g} deg from the vertical, "
-                "build_direction.max_from_vertical allows {:.3g} deg, and the positioner cannot "
+                "the tool axis would be {:.3g} deg from the vertical, but "
+                "build_direction.max_from_vertical allows {:.3g} deg and the positioner cannot "
                 "compensate; mount the part differently, or raise the limit",
                 leans,
                 allowed,

@@ -347,7 +347,8 @@ def asked(parameters: JointParameters, cell: Cell) -> tuple[bool, list[Issue]]:
                 NOTE,
                 "NOT_USED",
                 Text(
-                    "joints.external_axes: {} has no effect without cell.external; remove it",
+                    "joints.external_axes: {} has no effect without cell.external; remove "
+                    "joints.external_axes",
                     parameters.external_axes,
                 ),
             )

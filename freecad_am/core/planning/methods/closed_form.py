@@ -178,8 +178,8 @@ def _not_straight(point: int, distance: float, leans: float, layer: int, bead: i
         ERROR,
         "NOT_STRAIGHT",
         Text(
-            "the axes deviate from the bead by {:.3g} mm and {:.3g} deg between two points, no "
-            "matter how many are added: it is near a pole; tilt away from it",
+            "the axes deviate from the bead by {:.3g} mm and {:.3g} deg between two points near "
+            "a pole, no matter how many points are added; tilt the tool away from the pole",
             distance,
             math.degrees(leans),
         ),

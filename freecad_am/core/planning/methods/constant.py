@@ -56,7 +56,7 @@ def plan(
     issues: list[Issue] = []
     if isinstance(requested, str):
         coarse = gather(beads, task.cell, global_search.POINTS_PER_BEAD)
-        progress(0.1, "searching one RZ for the whole job")
+        progress(0.1, "searching for one RZ for the whole job")
         clear = None if task.kept is None else _keeps_clear(task, beads, bead_ids)
         rz, margin, served = best_rz(task, coarse, task.thresholds(coarse), clear)
         if not served:
@@ -65,8 +65,8 @@ def plan(
                     NOTE,
                     "RZ_CONSTANT",
                     Text(
-                        "none of {} values of RZ clears the links in the whole job; "
-                        "joints.method: layer-by-layer uses one value per bead",
+                        "none of the {} tested values of RZ keeps the links clear in the whole "
+                        "job; joints.method: layer-by-layer uses one value per bead",
                         LOOKED,
                     ),
                 )
@@ -77,7 +77,9 @@ def plan(
                     NOTE,
                     "RZ_CONSTANT",
                     Text(
-                        "none of {} values of RZ is feasible for the whole job, and the best one is {:.1f} deg; joints.method: layer-by-layer uses one polynomial per bead",
+                        "none of the {} tested values of RZ is feasible for the whole job, and "
+                        "the best value is {:.1f} deg; joints.method: layer-by-layer uses one "
+                        "polynomial per bead",
                         RZ_CANDIDATES,
                         np.degrees(rz),
                     ),

@@ -471,9 +471,9 @@ def _others(rapids: RapidWays) -> list[Issue]:
             NOTE,
             "RAPID_OTHER",
             Text(
-                "at {} bead ends the retract of {:g} mm would violate limits, reach or the "
-                "condition; it is {:.3g} to {:.3g} mm there, {} times off the tool axis and {} "
-                "times with the tool turned",
+                "at {} bead ends the retract of {:g} mm would violate joint limits, reach or the "
+                "condition number; the retract is {:.3g} to {:.3g} mm there, {} times off the "
+                "tool axis and {} times with the tool turned",
                 len(changed_legs),
                 rapids.retract,
                 min(heights),

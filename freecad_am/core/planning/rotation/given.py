@@ -99,7 +99,7 @@ def not_used(parameters: JointParameters, bead_ids: Sequence[Place]) -> list[Iss
                 WARNING,
                 "GIVEN_NOT_USED",
                 Text(
-                    "joints.given has no effect with the method {}; use {}, or remove it",
+                    "joints.given has no effect with the method {}; use {}, or remove joints.given",
                     parameters.method,
                     METHOD,
                 ),
@@ -119,6 +119,6 @@ def not_used(parameters: JointParameters, bead_ids: Sequence[Place]) -> list[Iss
         Issue(
             WARNING,
             "GIVEN_NOT_USED",
-            Text("joints.given names unknown beads: {}; remove them", named),
+            Text("joints.given names unknown beads: {}; remove these entries", named),
         )
     ]

@@ -330,7 +330,7 @@ def lock_of(cell: Cell, parameters: JointParameters, toolpath: Toolpath) -> Lock
         raise InputError(
             "NOT_FOR_SETUP",
             "joints.lock",
-            "robots need all their axes; only five-axis machines can work with four; use none",
+            "robots need all their axes, and only five-axis machines can work with four; use none",
         )
     axis = 0 if parameters.lock == "first" else 1
     if not isinstance(parameters.lock_at, str):
@@ -392,7 +392,8 @@ def _missed(cell: Cell, lock: Lock, worst: tuple[float, int, int, int], allowed:
     )
     stands, off, most = (math.degrees(angle) for angle in (lock.angle, missed, allowed))
     text = Text(
-        "axis {} is locked at {:.4g} deg; the tool is up to {:.3g} deg off the requested direction",
+        "axis {} is locked at {:.4g} deg, and the tool is up to {:.3g} deg off the requested "
+        "direction",
         name,
         stands,
         off,

@@ -250,7 +250,7 @@ def seam_note(layers: list[int]) -> Issue:
     return Issue(
         NOTE,
         "SEAM_MOVED",
-        Text("the seams of {} beads were moved to keep an axis within limits", len(layers)),
+        Text("the seams of {} beads were moved to keep an axis within its limits", len(layers)),
         layer=layers[0],
     )
 
@@ -352,7 +352,7 @@ def insert_replacements(
                 Issue(
                     ERROR,
                     "SPIRAL_LIMITED",
-                    "a spiral needs a continuous axis, but this set of limits bounds it; use "
+                    "a spiral needs a continuous axis, but the limit set bounds this axis; use "
                     "path: layers, or a limit set with a continuous axis",
                     layer=path.layer,
                 )

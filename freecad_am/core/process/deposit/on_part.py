@@ -156,9 +156,9 @@ def check_on_part(toolpath: Toolpath, places_: Places, off: Array, limit: float)
                 ERROR,
                 CODE,
                 Text(
-                    "{} of {} points checked are off the part, this one at {} by {:.4g} mm, with "
-                    "{:.3g} mm allowed, so the toolpath is wrong; choose another strategy or "
-                    "other faces, and report the part",
+                    "{} of {} checked points are off the part, the point at {} by {:.4g} mm, "
+                    "with {:.3g} mm allowed, so the toolpath is wrong; choose another strategy "
+                    "or other faces, and report the part",
                     int((off[measured] > limit).sum()),
                     len(measured),
                     place(places_.points[worst]),

@@ -45,7 +45,7 @@ def cut_beads(toolpath: Toolpath, share: float) -> Pieces:
     """
     beads, width = list(toolpath), toolpath.bead_width
     if width is None:
-        raise ValueError("it is not known how wide the beads count")
+        raise ValueError("the effective bead width is unknown")
     size = np.array([len(bead) for _, _, bead in beads])
     points = np.concatenate([bead.points for _, _, bead in beads])
     build = np.concatenate([bead.build for _, _, bead in beads])

@@ -266,10 +266,10 @@ def _issues(runs: list[_Run], toolpath: Toolpath, lowest: Mask) -> list[Issue]:
                 WARNING,
                 CODE,
                 Text(
-                    "{:.4g} mm of bead are unsupported, the longest run {:.4g} mm from here: the "
-                    "surface below is more than {:.4g} mm away, or beads overhang by more than "
-                    "half their width; deposit the support first, change the growth direction, "
-                    "or remove these beads",
+                    "{:.4g} mm of bead are unsupported, and the longest run, from here, is "
+                    "{:.4g} mm: the surface below is more than {:.4g} mm away, or beads overhang "
+                    "by more than half their width; deposit the support first, change the growth "
+                    "direction, or remove these beads",
                     total[layer],
                     longest.length,
                     reach,

@@ -354,7 +354,7 @@ def issues(
             CODE,
             Text(
                 "on {:.3g} % of the faces the predicted deposit extends less than {:g} mm beyond "
-                "the part, on {:.3g} % it ends inside the part: at {} {}. {}",
+                "the part, and on {:.3g} % the deposit ends inside the part: at {} {}. {}",
                 100.0 * shape.short,
                 shape.allowance,
                 100.0 * shape.outside,
@@ -388,7 +388,7 @@ def _drift(
             WARNING,
             DRIFT,
             Text(
-                "the layer is predicted to end {:.3g} mm {} the start of the next one: up to "
+                "the layer is predicted to end {:.3g} mm {} the start of the next layer: up to "
                 "here layers are {:.3g} mm high on average instead of {:g} mm; set "
                 "strategy.layer_height to {:.3g} mm, or change the wire feed",
                 abs(drift[worst]),

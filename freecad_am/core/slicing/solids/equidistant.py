@@ -96,8 +96,8 @@ class Facets:
             raise InputError(
                 "OPEN_MESH",
                 self.name,
-                "{} edges do not have two faces, one at ({:.4g}, {:.4g}, {:.4g}) mm from the hub "
-                "base; close the mesh",
+                "{} edges do not have two faces, for instance at ({:.4g}, {:.4g}, {:.4g}) mm "
+                "from the hub base; close the mesh",
                 int((counts != 2).sum()),
                 position[0],
                 position[1],
@@ -491,8 +491,8 @@ def _in_one_piece(
         raise InputError(
             "TOO_FAR_ROUND",
             where,
-            "it winds {:.3g} times around the cone and would overlap when unrolled; divide it "
-            "into shorter solids",
+            "the solid winds {:.3g} times around the cone and would overlap when unrolled; "
+            "divide the solid into shorter solids",
             widest / TURN,
         )
     flat = [

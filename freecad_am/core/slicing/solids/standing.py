@@ -41,8 +41,8 @@ def refuse_overlaps(groups: Sequence[Group], chord_error: float) -> None:
                     raise InputError(
                         "OVERLAP",
                         body.name,
-                        "it and {} overlap, as at {}, and the overlap would be deposited twice; "
-                        "fuse them into one solid, or move one",
+                        "the solid and {} overlap, as at {}, and the overlap would be deposited "
+                        "twice; fuse the two solids, or move one of them",
                         second_body.name,
                         place(overlap),
                     )
@@ -185,21 +185,21 @@ def _seat_of(body: Body, seats: Sequence[Seat], chord_error: float, unitless: bo
         ]
     )
     if (ranges[:, 1] <= 0.0).all():
-        text = "it is inside the hub"
+        text = "the solid is inside the hub"
     elif ranges[nearest, 0] > 0.0:
         text = Text(
-            "it starts {:.4g} mm outside {}, at {}",
+            "the solid starts {:.4g} mm outside {}, at {}",
             ranges[nearest, 0],
             seats[nearest].base.name,
             where,
         )
     else:
-        text = Text("it passes {} off the face, near {}", seats[nearest].base.name, where)
+        text = Text("the solid passes {} off the face, near {}", seats[nearest].base.name, where)
     hint = _unit_hint(body, seats) if unitless else ""
     raise InputError(
         "NOT_ON_HUB",
         body.name,
-        "it is not on the hub: {}; move it, or choose its base{}",
+        "not on the hub: {}; move the solid, or choose its base{}",
         Word(text),
         hint,
     )
@@ -215,8 +215,9 @@ def _unit_hint(body: Body, seats: Sequence[Seat]) -> str:
             adjacent = any(face.low <= z.max() and face.high >= z.min() for face in seat.faces)
             if heights.min() <= PAST_END_MM < heights.max() and adjacent:
                 return Text(
-                    ". Multiplied by {:g} it would reach {}: is its file in {}? If so, export it "
-                    "in mm, or set scale: {:g} mm, as part.scale (in the window: Meshes, Scale)",
+                    ". Multiplied by {:g} the solid would reach {}: is its file in {}? If so, "
+                    "export the file in mm, or set scale: {:g} mm, as part.scale (in the window: "
+                    "Meshes, Scale)",
                     factor,
                     seat.base.name,
                     unit,
@@ -272,7 +273,7 @@ def hub_among(
         raise InputError(
             "NO_HUB",
             label,
-            "none of its solids is on a cylinder or cone of another: name the hub as substrate, "
-            "choose a face, or set strategy.base; for a flat base use kind: solid",
+            "none of the solids is on a cylinder or cone of another solid; name the hub as "
+            "substrate, choose a face, or set strategy.base; for a flat base use kind: solid",
         )
     return int(np.argmax(votes))

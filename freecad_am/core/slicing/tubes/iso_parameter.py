@@ -115,7 +115,8 @@ def _step(
         raise InputError(
             "LAYER_HEIGHT",
             label,
-            "a layer height of {:g} mm is too large for the bend of the wall; lower it",
+            "a layer height of {:g} mm is too large for the bend of the wall; reduce the layer "
+            "height",
             height,
         )
     point, rise, turn = surface.derivatives(new, v)

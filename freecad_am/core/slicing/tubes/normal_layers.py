@@ -149,7 +149,7 @@ def _in_plane(
         raise InputError(
             "NOT_NORMAL",
             label,
-            "the planes normal to its centre line do not cut it in one curve each; choose other "
+            "each plane normal to the centre line must cut the wall in one curve; choose other "
             "layers for the wall",
         )
     u[-1] = u[0]

@@ -338,7 +338,7 @@ def tilt_issues(
                 NOTE,
                 "TILT_BACK",
                 Text(
-                    "{}, tool axes are tilted back for clearance, by up to {:.2f} deg",
+                    "{}, tool axes are tilted back by up to {:.2f} deg for clearance",
                     Word(where),
                     np.degrees(tilt[worst]),
                 ),
@@ -477,8 +477,8 @@ def nozzle_issues(
             ERROR,
             CLEARANCE,
             Text(
-                "the nozzle touches {} at {} of {} points; on parts of revolution it does not "
-                "tilt away from fixtures: move them, or use a slimmer nozzle",
+                "the nozzle touches {} at {} of {} points, and on parts of revolution the nozzle "
+                "does not tilt away from fixtures; move the fixtures, or use a slimmer nozzle",
                 names,
                 int(hit.sum()),
                 len(points),

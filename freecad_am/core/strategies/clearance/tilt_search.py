@@ -818,14 +818,15 @@ def what_helps(touching: Touching, now: Change, clears: Callable[[Change], bool]
         for change in _useful_changes(touching, changes):
             if touching.toolpath.point_count > MAX_TRIAL_POINTS:
                 return Text(
-                    "the nozzle would be clear at these points with {}; the other points were not tested",
+                    "the nozzle would be clear at these points with {}; the other points were "
+                    "not tested",
                     change.words,
                 )
             trials_left -= 1
             if trials_left >= 0 and clears(change):
                 return Text("with {} the nozzle is clear (tested)", change.words)
         trials += [change.words for change in changes[-1:] if trials_left >= 0]
-    fallback = Text("use other layers or another direction, or exclude the region of these points")
+    fallback = Text("use other layers or another direction, or exclude this region")
     return (
         Text(
             "the nozzle still touches with {} (all tested); {}",

@@ -36,7 +36,7 @@ DEEP = 0.05  # mm; maximum depth below the platform that chords explain
 MOVE = (
     "move the part up in its file, or set cell.platform_diameter to the real diameter (0 for none)"
 )
-MOUNT = "use mount: feature, which puts its lowest end on the platform, move the part up in its file, or set cell.platform_diameter to the real diameter (0 for none)"
+MOUNT = "use mount: feature, which puts the lowest end of the part on the platform, move the part up in its file, or set cell.platform_diameter to the real diameter (0 for none)"
 GRAIN = 0.05  # fraction of the platform radius; distance between sampled points of solids
 
 
@@ -94,7 +94,8 @@ def under(wall: RevolvedWall, diameter: float, frame: Array | None) -> Platform:
     if off > radius:
         raise _off_platform(
             Text(
-                "the axis of {} is {:.4g} mm off the middle of the platform and misses it",
+                "the axis of {} is {:.4g} mm off the middle of the platform and misses the "
+                "platform",
                 wall.label,
                 off,
             ),

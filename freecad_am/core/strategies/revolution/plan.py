@@ -111,7 +111,7 @@ def plan(
                 "BAD_VALUE",
                 "strategy.min_layer_time",
                 "a spiral has no layers to wait between; use path: layers, a slower "
-                "process.travel_speed, or remove it",
+                "process.travel_speed, or remove the waiting time",
             )
         layers, plan_issues = spiral_layers(wall, strategy, process, tilting)
     else:
@@ -170,7 +170,11 @@ def sliced(wall: RevolvedWall, strategy: RevolutionParameters) -> tuple[Slices, 
             Issue(
                 NOTE,
                 "REMAINDER",
-                Text("{:.3g} mm {} remain at the top, less than a layer", remainder, Word(measure)),
+                Text(
+                    "{:.3g} mm {} at the top, less than a layer, are not deposited",
+                    remainder,
+                    Word(measure),
+                ),
             )
         )
     if not along_wall:
@@ -215,9 +219,9 @@ def _spacing_issues(wall: RevolvedWall, layers: list[Array], layer_height: float
             WARNING,
             "SPACING",
             Text(
-                "{} of {} layers deviate by more than 20 % from the layer height of {:g} mm, "
-                "first layer {}; layer {} is {:.4g} mm above the previous one; layers along the "
-                "wall (spacing: arc-length) are even",
+                "{} of {} layers deviate by more than 20 % from the layer height of {:g} mm, the "
+                "first of them layer {}; layer {} is {:.4g} mm above the previous layer; for "
+                "even layers use spacing: arc-length",
                 len(uneven),
                 len(layers),
                 layer_height,
@@ -378,8 +382,8 @@ def _over_itself(turns: Array, end: float, pitch: float, closed_top: bool) -> li
     if end > 0.0 and start < len(turns) - 1:
         text = Text(
             "from here the second turn rises from 0 to {:g} mm above the flat first turn, so the "
-            "first half of it is over-deposited; the end of the turn is correct. Machine the "
-            "foot, or use path: layers",
+            "first half of the second turn is over-deposited; machine the foot, or use path: "
+            "layers",
             pitch,
         )
         issues.append(Issue(NOTE, "DEPOSITED_TWICE", text, 0, 0, start))
@@ -387,7 +391,8 @@ def _over_itself(turns: Array, end: float, pitch: float, closed_top: bool) -> li
     if not closed_top and start < last_start < len(turns) - 1:
         text = Text(
             "from here the flat last turn descends from {:g} to 0 mm above the previous turn, so "
-            "the second half of it is over-deposited. Machine the top, or use path: layers",
+            "the second half of the last turn is over-deposited; machine the top, or use path: "
+            "layers",
             pitch,
         )
         issues.append(Issue(NOTE, "DEPOSITED_TWICE", text, 0, 0, last_start))

@@ -469,7 +469,7 @@ class Tilting:
                     ERROR,
                     "MAX_TILT",
                     Text(
-                        "lead and tilt together already exceed max_tilt ({}); reduce them or "
+                        "lead and tilt together exceed max_tilt ({}); reduce lead and tilt, or "
                         "raise the limit",
                         Word(cap),
                     ),

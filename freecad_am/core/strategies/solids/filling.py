@@ -246,7 +246,8 @@ class Pictures:
                     NOTE,
                     "PATTERN_ROUND_HUB",
                     Text(
-                        "this layer closes around the hub and is filled with {}; strategy.fill = {} needs regions that do not",
+                        "the layer closes around the hub, where strategy.fill = {1} is "
+                        "impossible, and is filled with {0}",
                         replacement,
                         strategy.fill,
                     ),
@@ -583,12 +584,13 @@ def _wider_apart(
     if model is None and isinstance(process.wire.feed, str):
         if overlap is not None:
             return Text(
-                "set strategy.bead_overlap to {:.3g} %, or remove it and set process.fill_width "
-                "to spacing",
+                "set strategy.bead_overlap to {:.3g} %, or remove strategy.bead_overlap and set "
+                "process.fill_width to spacing",
                 100.0 * (1.0 - USUAL_SPACING),
             )
         return Text(
-            "set strategy.bead_spacing to {:.3g} mm, process.bead_width to {:.3g} mm, or process.fill_width to spacing",
+            "set strategy.bead_spacing to {:.3g} mm, process.bead_width to {:.3g} mm, or "
+            "process.fill_width to spacing",
             USUAL_SPACING * width,
             spacing / USUAL_SPACING,
         )

@@ -27,7 +27,7 @@ from .torch_tilt import Turned
 
 SLIGHTLY = 0.01  # fraction of the travel speed; minimum difference that is reported
 WIDTH_TEXT = "as wide as the available space, {} mm"
-HIGH = "as high as their layer is there, {} mm"
+HIGH = "as high as the layer there, {} mm"
 
 
 def notes(
@@ -76,7 +76,7 @@ def notes(
                 Text(
                     "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in "
                     "total, so that every layer takes at least {:g} s and at least {:g} s pass "
-                    "before it returns to a solid",
+                    "between two layers of a solid",
                     len(waits),
                     len(layers),
                     max(waits),
@@ -93,7 +93,7 @@ def notes(
                 "WAITS",
                 Text(
                     "the machine waits before {} of {} layers, up to {:.4g} s and {:.5g} s in "
-                    "total, so that at least {:g} s pass before it returns to a solid",
+                    "total, so that at least {:g} s pass between two layers of a solid",
                     len(waits),
                     len(layers),
                     max(waits),
@@ -135,7 +135,8 @@ def _speeds(
     ]
     _, layer, number = max(varied, key=lambda deviation: deviation[0])
     text = Text(
-        "{} of {} beads are deposited at {} mm/s{}, so that a constant wire feed makes them {}",
+        "{} of {} beads are deposited at {} mm/s{}, so that a constant wire feed makes the beads "
+        "{}",
         len(varied),
         len(deviations),
         _range(speed.min(), speed.max(), "{:.4g}"),
@@ -189,8 +190,8 @@ def _single_layers(layers: Sequence[Layer], strategy: FilledParameters) -> list[
             NOTE,
             "SINGLE_LAYER",
             Text(
-                "{} of {} solids or groups of solids get a single layer, on the hub: they are no "
-                "higher than strategy.layer_height, {:g} mm",
+                "{} of {} solids or groups of solids get only one layer, on the hub, because "
+                "they are no higher than strategy.layer_height, {:g} mm",
                 len(single),
                 len(starts) - 1,
                 strategy.layer_height,
@@ -261,9 +262,9 @@ def _less(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue]:
             WARNING,
             "LEAN_REDUCED",
             Text(
-                "on {} of {} beads in {} bends are too close together to turn the torch around "
-                "them at {}: its tilt is {:.3g} to {:.3g} deg there instead of {:.3g} deg; tilt "
-                "less, or allow a faster turn",
+                "on {} of {} beads in {}, bends are too close together to turn the torch around "
+                "each bend at {}: the tilt of the torch is {:.3g} to {:.3g} deg there instead of "
+                "{:.3g} deg; tilt less, or allow a faster turn",
                 len(reduced),
                 len(beads),
                 Word(where),
@@ -289,7 +290,7 @@ def _normals(beads: Sequence[tuple[Turned, int, int]], limit: str) -> list[Issue
             "TURN_OF_NORMALS",
             Text(
                 "on {} of {} beads the hub normals themselves turn by up to {:.3g} deg/mm, "
-                "faster than {}; the torch still follows them",
+                "faster than {}; the torch still follows the normals",
                 len(fast),
                 len(beads),
                 math.degrees(worst.normals),

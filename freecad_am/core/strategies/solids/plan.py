@@ -339,8 +339,8 @@ def plan(
         raise InputError(
             "NOTHING_TO_DEPOSIT",
             solids.label,
-            "no bead of {:g} mm or more fits in any layer; use a smaller bead spacing, or thin = "
-            "single",
+            "no bead of {:g} mm or more fits in any layer; use a smaller bead spacing, or "
+            "strategy.thin: single",
             strategy.least_bead,
         )
     course = order_beads(ranked, strategy.order)
@@ -592,7 +592,7 @@ def uncut_issues(missed: Sequence[Uncut], strategy: FilledParameters) -> list[Is
             Text(
                 "{} solid(s) fit between the cuts of two layers, {:g} mm apart, and get no bead, "
                 "{:.4g} cm3 in total: {}{}; set strategy.layer_height to at most their height, "
-                "or fuse them with the adjacent solid",
+                "or fuse these solids with adjacent ones",
                 len(missed),
                 strategy.layer_height,
                 sum(uncut.bare for uncut in missed) / MM3,

@@ -88,7 +88,7 @@ def symmetry_plane(wall: SurfaceWall | PatchWall, build: BuildDirectionParameter
         raise InputError(
             "NO_SYMMETRY_PLANE",
             "build_direction.mode",
-            "{} is not a bend of a torus, so it has no plane of symmetry; give the normal as "
+            "{} is not a bend of a torus, so there is no plane of symmetry; give the normal as "
             "build_direction.plane, or use local, layer or fixed",
             wall.label,
         )
@@ -361,9 +361,9 @@ def spacing_issues(distances: list[Array], strategy: SurfaceParameters) -> list[
         return [Issue(NOTE, "SPACING", text)]
     worst = int(np.argmax([np.abs(layer - height).max() for layer in distances])) + 1
     advice = (
-        "set a larger strategy.tolerance to accept this"
+        "set a larger strategy.tolerance to accept the deviation"
         if exact
-        else "spacing: constant-distance is even"
+        else "use spacing: constant-distance for an even distance"
     )
     return [
         Issue(
@@ -397,8 +397,8 @@ def corner_notes(turns: list[Array]) -> list[Issue]:
             NOTE,
             "CORNERS",
             Text(
-                "{} of {} fronts have corners, first layer {}; the sharpest turns by {:.3g} deg. "
-                "The robot slows down there",
+                "{} of {} fronts have corners, first in layer {}; the sharpest corner turns by "
+                "{:.3g} deg, and the robot slows down there",
                 len(cornered),
                 len(turns),
                 cornered[0],
@@ -426,8 +426,8 @@ def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
                 "TURN",
                 Text(
                     "a band of {:g} % is too narrow: within the wall {} of {} layers turn by "
-                    "more than {:.3g} deg/mm{}, first layer {}, by up to {:.3g} deg/mm{}. The "
-                    "robot slows down there; a wider strategy.band rounds them",
+                    "more than {:.3g} deg/mm{}, first layer {}, by up to {:.3g} deg/mm{}, and "
+                    "the robot slows down there; use a wider strategy.band to round the layers",
                     100.0 * strategy.band,
                     len(over),
                     len(rates),
@@ -441,7 +441,7 @@ def turn_notes(rates: list[float], strategy: SurfaceParameters) -> list[Issue]:
             )
         ]
     text = Text(
-        "no layer has a corner; within the wall they turn by up to {:.3g} deg/mm",
+        "no layer has a corner; within the wall the layers turn by up to {:.3g} deg/mm",
         np.degrees(finite.max()),
     )
     return [Issue(NOTE, "TURN", text, int(np.argmax(finite)))] if not np.isinf(rates).any() else []

@@ -394,14 +394,18 @@ def _deposited_pieces(
         return kept_layers, short_note(dropped)
     kept_layers = uncut_pieces(pieces)
     if not kept_layers:
-        raise InputError("TOO_LOW", label, "its end cuts the first layer; make it longer")
+        raise InputError(
+            "TOO_LOW", label, "the end of the wall cuts the first layer; make the wall longer"
+        )
     top_curves = [piece.curve for layer in kept_layers for piece in layer if not piece.children]
     remainder = (
         float(nearest_feet(top_curves, rims.upper).distance.max())
         if top_curves and len(rims.upper)
         else 0.0
     )
-    text = Text("up to {:.4g} mm of the wall remain above the last whole layer", remainder)
+    text = Text(
+        "up to {:.4g} mm of the wall above the last whole layer are not deposited", remainder
+    )
     note = Issue(NOTE, "REMAINDER", text, len(kept_layers) - 1)
     return kept_layers, [note] if remainder > 1e-4 * strategy.layer_height else []
 
@@ -428,8 +432,8 @@ def _close(
             NOTE,
             "CLOSING",
             Text(
-                "{} bead(s) close gaps between merging fronts, closer to them than a layer "
-                "height; the first in layer {}",
+                "{} bead(s) close gaps between merging fronts, closer to the fronts than a layer "
+                "height; the first is in layer {}",
                 count,
                 first_layer,
             ),

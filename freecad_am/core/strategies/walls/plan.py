@@ -160,7 +160,7 @@ def _stretches(
         raise InputError(
             "TOO_LOW",
             wall.label,
-            "its end is not above the substrate all around; make it longer",
+            "the end of the wall is not above the substrate all around; make the wall longer",
         )
     if strategy.end == "whole":
         remainder = float(
@@ -169,7 +169,10 @@ def _stretches(
         note = Issue(
             NOTE,
             "REMAINDER",
-            Text("up to {:.4g} mm of the wall remain above the last whole layer", remainder),
+            Text(
+                "up to {:.4g} mm of the wall above the last whole layer are not deposited",
+                remainder,
+            ),
             count - 1,
         )
         return stretches[:count], [note] if remainder > 1e-6 * strategy.layer_height else []
