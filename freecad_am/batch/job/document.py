@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The document of a job: made empty, saved at the end."""
+"""The document of a job: created empty and saved at the end."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ _LEVEL_PREFERENCE = "CompressionLevel"
 
 
 def new_document(job: Job) -> Any:
-    """An empty document for a job."""
+    """Create an empty document for a job."""
     import FreeCAD
 
     document = FreeCAD.newDocument("Job")
@@ -25,7 +25,7 @@ def new_document(job: Job) -> Any:
 
 
 def save(document: Any, path: str) -> None:
-    """Save it into a file. Raises InputError UNWRITABLE."""
+    """Save the document to a file. Raises InputError UNWRITABLE."""
     try:
         with _disable_deflating(document):
             document.saveAs(path)
@@ -39,8 +39,10 @@ def save(document: Any, path: str) -> None:
 
 @contextmanager
 def _disable_deflating(document: Any) -> Iterator[None]:
-    """Save a document of large results without deflating: results are packed already, and packing
-    again takes 50 ns a byte and saves a twentieth. The user's setting is restored.
+    """Save a document with large results without compression.
+
+    Results are compressed already. Compressing again takes 50 ns a byte and saves a twentieth. The
+    user's setting is restored.
     """
     results = sum(
         thing.MemSize for thing in document.Objects if thing.isDerivedFrom("App::FeaturePython")

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The job file: read, checked and turned into the parameters of every stage, before any work starts."""
+"""Read a job file, check it, and convert it to the parameters of every stage before any work
+starts.
+"""
 
 from __future__ import annotations
 
@@ -49,9 +51,11 @@ _LONGEST_NAME = 200  # bytes, so that <name>.FCStd fits every file system
 
 @dataclass(frozen=True)
 class Job:
-    """A checked job. features: one or more, in the order of the file; sequence: the order of
-    deposition. process: of the program; features may differ. `cell` or `program` None: the stages
-    that need them are left out. place: poses that the command `place` tries.
+    """A checked job.
+
+    features: one or more, in the order of the file. sequence: order of deposition. process: process
+    of the program; features may have their own. `cell` or `program` None: the stages that need it
+    are omitted. place: poses that the command `place` tries.
     """
 
     path: str
@@ -92,12 +96,12 @@ class Job:
 
     @property
     def folder(self) -> str:
-        """The folder of the job file, absolute; where relative paths start."""
+        """The absolute folder of the job file, to which relative paths refer."""
         return paths.folder_of(self.path)
 
 
 def read_job(path: str) -> Job:
-    """The job of a file. Raises InputError that names file, key and what to do."""
+    """Read the job of a file. Raises InputError naming file, key and remedy."""
     return from_tree(tree.read(path), path)
 
 
@@ -111,10 +115,10 @@ class WithoutPart:
 
 
 def read_without_part(path: str) -> WithoutPart:
-    """The cell, joints and program of a job file that has no part yet; of its other sections only
-    the keys are checked.
+    """Read cell, joints and program of a job file without a part.
 
-    Raises InputError that names file, key and what to do; NO_CELL without a cell.
+    Of other sections only the keys are checked. Raises InputError naming file, key and remedy, and
+    NO_CELL without a cell.
     """
     saved = tree.read(path, "cell: {machine: ...}", "cell")
     try:
@@ -134,7 +138,7 @@ def read_without_part(path: str) -> WithoutPart:
 
 
 def from_tree(job: tree.Tree, path: str) -> Job:
-    """The job of the values read from `path`, which may have been changed since (a row of a batch table)."""
+    """Convert the values read from `path` to a job; a row of a batch table may have changed values."""
     try:
         return _checked(job, path)
     except InputError as error:
@@ -228,8 +232,9 @@ def _joints(section: Any) -> JointParameters:
 
 
 def _resumed(program: ProgramParameters, layer: int) -> ProgramParameters:
-    """The program from this layer on, unless it says itself where it resumes: the layers below
-    exist.
+    """Return the program with its start at the given layer, unless the program sets a start itself.
+
+    The layers below exist already.
     """
     if program.start_at.layer or program.start_at.bead:
         return program
@@ -237,7 +242,9 @@ def _resumed(program: ProgramParameters, layer: int) -> ProgramParameters:
 
 
 def _program(section: Any, cell: CellParameters | None) -> ProgramParameters | None:
-    """The program of a section. Where it names no motion, one that its post writes of the set-up."""
+    """Convert the section `program`; without a motion, choose one that the post supports for the
+    setup.
+    """
     if section is None:
         return None
     program = fields.build(ProgramParameters, section, "program")
@@ -252,7 +259,7 @@ NO_EFFECT = "NO_EFFECT"
 
 
 def unused_key_issues(job: Job) -> list[Issue]:
-    """Name the keys that the job file gives and that change nothing."""
+    """Return notes on keys that the job file gives but that have no effect."""
     if job.cell is None:
         return list(_issues_without_cell(job))
     return list(_issues_of_cell(job))
@@ -303,5 +310,5 @@ def _issues_of_cell(job: Job) -> Iterator[Issue]:
 
 
 def _gives(section: Any, key: str) -> bool:
-    """Whether a section of the file has a value for a key."""
+    """Whether a section of the file gives a value for a key."""
     return isinstance(section, dict) and section.get(key) is not None

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sources of the shapes of a job: files, selections of their content, and the scan of a
-substrate."""
+"""Sources of the shapes of a job: files, selections in files, and scans of the substrate."""
 
 from __future__ import annotations
 
@@ -28,9 +27,11 @@ _SOLID = re.compile(r"Solid[1-9]\d*", re.ASCII)
 
 @dataclass(frozen=True)
 class PartSource:
-    """The source of a shape. `settings` are (object, property, text) set in an FCStd part before it
-    is used. scale: mm of one unit of a mesh file that does not state it. solids: selected solids of
-    the shape, empty for all. edges: selected edges of a guide, likewise.
+    """The source of a shape.
+
+    `settings` are (object, property, text) to set in an FCStd part before use. scale: mm of one
+    unit of a mesh file that does not state its unit. solids: selected solids of the shape, empty
+    for all. edges: selected edges of a guide, empty for all.
     """
 
     file: str
@@ -44,7 +45,7 @@ class PartSource:
 
 
 def fixtures_of(section: Any) -> tuple[PartSource, ...]:
-    """The fixtures of a section `fixtures`. Raises InputError naming key and what to do."""
+    """Convert the section `fixtures` to sources. Raises InputError naming key and remedy."""
     entries = [] if section is None else section
     if not isinstance(entries, list):
         raise InputError(
@@ -63,8 +64,10 @@ def fixtures_of(section: Any) -> tuple[PartSource, ...]:
 
 
 def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
-    """The source of a section such as `part`, whose file has an absolute name.
-    Raises InputError naming key and what to do."""
+    """Convert a section such as `part`, whose file has an absolute name, to a source.
+
+    Raises InputError naming key and remedy.
+    """
     further = ("start_edges", "edges") if key == "part" else ()
     fields.known_keys(section, ("file", "object", "solids", "faces", "set", "scale", *further), key)
     if "file" not in section:
@@ -111,8 +114,10 @@ def part_of(section: dict[str, Any], key: str = "part") -> PartSource:
 
 
 def guide_of(value: Any, part_section: dict[str, Any]) -> PartSource | None:
-    """The source of a strategy's guide: the file and object of the section `part_section`, unless it names
-    its own; None for auto. Raises InputError naming key and what to do.
+    """Return the source of the guide of a strategy, None for auto.
+
+    File and object default to those of the section `part_section`. Raises InputError naming key and
+    remedy.
     """
     key = "strategy.guide"
     if value is None or value == "auto":
@@ -142,12 +147,12 @@ def guide_of(value: Any, part_section: dict[str, Any]) -> PartSource | None:
 
 
 def faces_of(value: Any, key: str) -> tuple[str, ...]:
-    """Names of faces. Raises InputError BAD_VALUE."""
+    """Return the names of faces. Raises InputError BAD_VALUE."""
     return _names(value, key, _FACE)
 
 
 def _scale(value: Any, file: str, key: str) -> float:
-    """mm of one unit of a file."""
+    """Return the length of one unit of a file, mm."""
     if value is None:
         return 1.0
     scale = quantities.read(value, f.LENGTH, key)
@@ -156,7 +161,7 @@ def _scale(value: Any, file: str, key: str) -> float:
 
 
 def _names(value: Any, key: str, pattern: re.Pattern[str]) -> tuple[str, ...]:
-    """Names of faces, edges or solids."""
+    """Return the names of faces, edges or solids."""
     names = [value] if isinstance(value, str) else value or []
     if not isinstance(names, list) or not all(
         isinstance(name, str) and pattern.fullmatch(name) for name in names
@@ -197,7 +202,9 @@ KEYS = (*SOURCE_KEYS, *(entry.name for entry in dataclasses.fields(ScanParameter
 
 @dataclass(frozen=True)
 class ScanSource:
-    """file: of the points. unit, fit, pairs: as in an inspection; fit auto takes the points as
+    """The source of a scan of the substrate.
+
+    file: file of the points. unit, fit, pairs: as in an inspection; fit auto takes the points as
     measured if they match the substrate.
     """
 
@@ -209,7 +216,7 @@ class ScanSource:
 
 
 def split(section: Any) -> tuple[Any, dict[str, Any]]:
-    """The section of a substrate without the keys of its scan, and these."""
+    """Split the section of a substrate into the keys without its scan, and the keys of the scan."""
     if not isinstance(section, dict):
         return section, {}
     return (
@@ -219,7 +226,10 @@ def split(section: Any) -> tuple[Any, dict[str, Any]]:
 
 
 def scan_of(scan_keys: dict[str, Any], strategy: Any) -> ScanSource | None:
-    """The scan from keys of a substrate; None without any. Raises InputError naming the key."""
+    """Convert the scan keys of a substrate to a source, None without a scan.
+
+    Raises InputError naming the key.
+    """
     if not scan_keys:
         return None
     if "scan" not in scan_keys:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The shapes of a feature of a job in a document, and the feature made from them."""
+"""Open the shapes of the features of a job in a document, and create the features."""
 
 from __future__ import annotations
 
@@ -33,10 +33,11 @@ UNIT_OF_BARE_NUMBERS = {"Length": "mm", "Angle": "deg"}  # in a cell that has a 
 
 
 def bring(document: Any, source: PartSource, key: str = "part", meshes: bool = False) -> Any:
-    """The part, or another source named by the job's section `key`, as an object of the document.
-    meshes: the part may be one.
+    """Open the part, or another source named by the job's section `key`, as an object of the
+    document.
 
-    Raises the InputErrors of `api.open_part`, NO_OBJECT and BAD_VALUE.
+    meshes: whether the part may be a mesh. Raises the InputErrors of `api.open_part`, NO_OBJECT and
+    BAD_VALUE.
     """
     if key == "part" and not meshes and source.file.lower().endswith(MESHES):
         raise _no_surfaces()
@@ -69,7 +70,9 @@ def _opened(document: Any, source: PartSource, key: str) -> Any:
 
 
 def _only_solids(obj: Any, source: PartSource, key: str) -> Any:
-    """The object, with only its named solids. Raises InputError BAD_VALUE for a missing one."""
+    """Return the object with only its named solids. Raises InputError BAD_VALUE for a missing
+    solid.
+    """
     if not source.solids:
         return obj
     if getattr(obj, "Mesh", None) is not None:
@@ -98,9 +101,9 @@ def _only_solids(obj: Any, source: PartSource, key: str) -> Any:
 
 
 def _change(source: Any, part: PartSource, section: str) -> list[Any]:
-    """Set the properties of an open document, and build it with them; the objects that were changed.
+    """Set properties of an open document, recompute it, and return the changed objects.
 
-    InputError BAD_PART, BAD_VALUE, NO_OBJECT.
+    Raises InputError BAD_PART, BAD_VALUE, NO_OBJECT.
     """
     changed = [_set(source, name, key, text, section) for name, key, text in part.settings]
     failed = {obj for obj in source.Objects if "Invalid" in obj.State}
@@ -119,7 +122,7 @@ def _change(source: Any, part: PartSource, section: str) -> list[Any]:
 
 
 def _set(document: Any, name: str, key: str, text: str, section: str) -> Any:
-    """Set a property of an object of the document, or of one that it links to; the object."""
+    """Set a property of an object of the document, or of a linked object, and return the object."""
     where = f"{section}.set.{name}.{key}"
     name, constraints, _ = name.partition(".Constraints")
     matches: list[Any] = []
@@ -162,7 +165,7 @@ def _set(document: Any, name: str, key: str, text: str, section: str) -> Any:
 
 
 def _set_constraint(sketch: Any, name: str, text: str, where: str) -> None:
-    """Set a named dimension of a sketch; an expression that drives it is removed."""
+    """Set a named dimension of a sketch; remove an expression that drives the dimension."""
     constraints = [item for item in getattr(sketch, "Constraints", ()) if item.Name]
     if name not in [item.Name for item in constraints]:
         names = ", ".join(item.Name for item in constraints) or "none"
@@ -174,7 +177,7 @@ def _set_constraint(sketch: Any, name: str, text: str, where: str) -> None:
 
 
 def _set_cell(sheet: Any, key: str, text: str, where: str) -> None:
-    """Set a cell of a spreadsheet by its alias or its address; its unit stays."""
+    """Set a cell of a spreadsheet by its alias or address; the unit of the cell stays."""
     address = sheet.getCellFromAlias(key) or key
     if not CELL_ADDRESS.fullmatch(address):
         message = "{} has no cell with the alias or address {!r}; check the spreadsheet"
@@ -196,7 +199,7 @@ def _set_cell(sheet: Any, key: str, text: str, where: str) -> None:
 
 
 def _typed(now: Any, text: str) -> Any:
-    """The text as a value of the kind that the property has now."""
+    """Convert the text to the type of the current value of the property."""
     if "," in text and not isinstance(now, str):
         raise ValueError(text)
     if isinstance(now, App.Units.Quantity):
@@ -219,11 +222,14 @@ FIXED = "; but tool directions that follow the wall end with {}, so all directio
 
 
 class Shapes:
-    """The part of a feature, its substrate and fixtures, as objects of a document."""
+    """The part, substrate and fixtures of a feature as objects of a document."""
 
     def __init__(self, document: Any, job: Job, number: int, fails: str = "") -> None:
-        """fails: code of the error that curved layers, or directions that follow a wall, end with, which then are not
-        chosen."""
+        """Open the shapes of feature `number`.
+
+        fails: code of the error of curved layers, or of directions that follow a wall, which are
+        then not chosen.
+        """
         self.document, self.job, self.number, self.fails = document, job, number, fails
         self.of = job.features[number]
         self.scan: Any = (
@@ -250,13 +256,16 @@ class Shapes:
             raise self.name_feature(error) from None
 
     def name_feature(self, error: InputError) -> InputError:
-        """An error about the feature; it names the feature if the job has several."""
+        """Return the error, with the name of the feature if the job has several."""
         if len(self.job.features) == 1:
             return error
         return about_feature(error, self.number, self.of.name, self.job.tree)
 
     def choose(self, earlier: Sequence[Any]) -> Issue | None:
-        """Choose the family where the job leaves it open; a note that says what and why. Raises InputError."""
+        """Choose the family if the job leaves it open, and return a note with the reason.
+
+        Raises InputError.
+        """
         if self.of.sections is None:
             return None
         from freecad_am.core.parameters.filled import GEODESIC, PLANES
@@ -298,8 +307,10 @@ class Shapes:
         return Issue(NOTE, "PROPOSED", proposal.text())
 
     def make_feature(self, earlier: Sequence[Any]) -> Any:
-        """The feature, of the family of its strategy. earlier: parts that are deposited before;
-        touching ones are substrate too. Raises InputError.
+        """Create the feature of the strategy's family.
+
+        earlier: parts that are deposited before; parts that touch the feature are added to the
+        substrate. Raises InputError.
         """
         several = len(self.job.features) > 1
         substrate = self._standing(earlier)
@@ -333,8 +344,9 @@ class Shapes:
             raise self.name_feature(error) from None
 
     def _scan(self, source: ScanSource) -> Any:
-        """The points of a scan fitted to the substrate; after a layer not fitted, as the deposit is
-        not modelled.
+        """Create the inspection of the substrate by its scan.
+
+        A scan after a layer is not fitted, because the deposit is not modelled.
         """
         if source.parameters.after_layer is not None:
             return api.inspect(
@@ -351,16 +363,16 @@ class Shapes:
         )
 
     def _guide(self, source: PartSource) -> tuple[Any, list[str]]:
-        """The object that guides layers, the part itself or one brought into the document, and its
-        edges.
-        """
+        """Return the guide object, which is the part or an opened file, and its edges."""
         is_of_part = replace(source, edges=()) == replace(self.of.part, scale=1.0, solids=())
         owner = self.part if is_of_part else bring(self.document, source, "strategy.guide")
         return owner, list(source.edges) or [""]
 
     def _set_apart(self) -> None:
-        """Copy the feature's own shape out of the file, so that other features may use the file
-        too; only the feature gets its name.
+        """Copy the shape of the feature out of the file, so that other features can use the file
+        too.
+
+        Only the feature gets the name of the file.
         """
         self.part.Label = os.path.basename(self.of.part.file)
         if self.faces and _has_shape(self.part):
@@ -371,8 +383,8 @@ class Shapes:
 
     @property
     def solid(self) -> bool:
-        """Whether the deposit is known as a solid that can carry others: not if only faces are
-        chosen.
+        """Whether the deposit is a known solid that can support other features; False if faces are
+        selected.
         """
         return _has_shape(self.part) and bool(self.part.Shape.Solids) and not self.faces
 
@@ -386,8 +398,10 @@ class Shapes:
         ]
 
     def _standing(self, earlier: Sequence[Any]) -> Any:
-        """The carrier of the feature: its substrate and the touching earlier parts, as one object;
-        None without any.
+        """Return the support of the feature: its substrate and the touching earlier parts as one
+        object.
+
+        None without a support.
         """
         substrates = [] if self.substrate is None else [self.substrate]
         if not earlier or family_of(self.of.strategy).substrate == NONE:
@@ -403,7 +417,7 @@ class Shapes:
 
 
 def toolpath_of(job: Job, document: Any, features: Sequence[Any], cell: Any, scan: Any) -> Any:
-    """The toolpath of the features of a job; for one feature fitted to its scan, if any."""
+    """Create the toolpath of the features of a job; a single feature is fitted to its scan, if any."""
     if len(features) == 1:
         fitting = (
             None

@@ -81,7 +81,7 @@ class ObjMesh:
         self.points, self.corners = self._triangles()
 
     def issues(self) -> tuple[Issue, ...]:
-        """A note on the lines, points and curves that were left out."""
+        """Return notes on ignored lines, points and curves."""
         if not self.left_out:
             return ()
         counts = ", ".join(f"{count} x {name}" for name, count in self.left_out.items())
@@ -187,8 +187,10 @@ class ObjMesh:
         return points, corners.reshape(-1, 3).astype(np.intp)
 
     def _small_faces(self, vertices: Array) -> Index:
-        """The triangles of faces with three and four corners, in the order of the file; the latter are cut from the first
-        corner unless they have a dent there."""
+        """Return the triangles of faces with three and four corners, in the order of the file.
+
+        A face with four corners is cut from its first corner, unless it is concave there.
+        """
         counts = np.array([len(face) for face in self._faces], dtype=np.intp)
         threes, fours = (
             np.array([face for face in self._faces if len(face) == n], dtype=np.intp).reshape(-1, n)

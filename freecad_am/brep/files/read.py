@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Shapes from files, without a document; checks of STL files."""
+"""Read shapes from files, without a document; check STL files."""
 
 from __future__ import annotations
 
@@ -31,19 +31,22 @@ MAX_COORDINATE_MM = 1e7
 
 
 class FileContent(NamedTuple):
-    """shape: the Part.Shape or Mesh.Mesh of a file. issues: notes on content that was left out."""
+    """The content of a file.
+
+    shape: the Part.Shape or Mesh.Mesh of the file. issues: notes on ignored content.
+    """
 
     shape: Any
     issues: tuple[Issue, ...]
 
 
 def read_shape(path: str | os.PathLike[str]) -> Any:
-    """The Part.Shape of a STEP, IGES or BREP file, as `shape_content`."""
+    """Return the Part.Shape of a STEP, IGES or BREP file, as `shape_content`."""
     return shape_content(path).shape
 
 
 def shape_content(path: str | os.PathLike[str]) -> FileContent:
-    """The Part.Shape of a STEP, IGES or BREP file, in the file's coordinates, mm.
+    """Read the Part.Shape of a STEP, IGES or BREP file, in the file's coordinates, mm.
 
     Raises InputError 'NO_FILE', 'EMPTY_FILE', 'UNSUPPORTED_FILE' or 'BAD_FILE' naming the file.
     """
@@ -82,14 +85,15 @@ def shape_content(path: str | os.PathLike[str]) -> FileContent:
 
 
 def read_mesh(path: str | os.PathLike[str], scale: float = 1.0) -> Any:
-    """The Mesh.Mesh of an STL, OBJ or 3MF file, as `mesh_content`."""
+    """Return the Mesh.Mesh of an STL, OBJ or 3MF file, as `mesh_content`."""
     return mesh_content(path, scale).shape
 
 
 def mesh_content(path: str | os.PathLike[str], scale: float = 1.0) -> FileContent:
-    """The Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm. scale: mm of one
-    unit of an STL or OBJ file, which states none; a 3MF file states its own. InputErrors as
-    `read_shape`.
+    """Read the Mesh.Mesh of an STL, OBJ or 3MF file, in the file's coordinates, mm.
+
+    scale: mm of one unit of an STL or OBJ file, which states no unit; a 3MF file states its unit.
+    Raises the InputErrors of `read_shape`.
     """
     file = locate(path)
     where = file.name or str(path)
@@ -101,8 +105,8 @@ def mesh_content(path: str | os.PathLike[str], scale: float = 1.0) -> FileConten
 
 
 def placed_mesh(mesh: Any, matrix: Any) -> Any:
-    """A copy of a Mesh.Mesh moved by its own placement and then by a matrix; the copy has no
-    placement.
+    """Return a copy of a Mesh.Mesh without a placement, moved by its placement and then by a
+    matrix.
     """
     copy = Mesh.Mesh()
     copy.addFacets(mesh.Topology)
@@ -144,7 +148,7 @@ def _mesh(file: Path, where: str, scale: float) -> tuple[Any, tuple[Issue, ...]]
 
 
 def _read_stl(mesh: Any, file: Path, corners: Array) -> None:
-    """Read an STL file by FreeCAD, or from its triangles (m, 3, 3) if FreeCAD reads a different
+    """Read an STL file with FreeCAD, or from its triangles (m, 3, 3) if FreeCAD reads a different
     number.
     """
     with suppress(Exception), _quiet():
@@ -209,7 +213,7 @@ def _read_shape(file: Path, where: str) -> Any:
 
 
 def _refuse_bare(shape: Any, where: str) -> None:
-    """InputError UNSUPPORTED_FILE if a face has triangles but no surface."""
+    """Raise InputError UNSUPPORTED_FILE if a face has triangles but no surface."""
     bare = sum(not _has_surface(face) for face in shape.Faces)
     if bare:
         raise InputError(
@@ -230,7 +234,7 @@ def _has_surface(face: Any) -> bool:
 
 
 def _reach(box: Any) -> float:
-    """The largest coordinate of a box, nan where one is."""
+    """Return the largest absolute coordinate of a box, nan if a coordinate is nan."""
     return float(np.abs([box.XMin, box.XMax, box.YMin, box.YMax, box.ZMin, box.ZMax]).max())
 
 
@@ -248,7 +252,7 @@ def _refuse_far(reach: float, where: str) -> None:
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Sends what the geometry kernel prints on the process's standard output to standard error."""
+    """Redirect what the geometry kernel prints from standard output to standard error."""
     sys.stdout.flush()
     stdout_copy = os.dup(1)
     try:
@@ -264,10 +268,11 @@ FINENESS = 2e-3
 
 
 def triangles(path: Path) -> tuple[Array, Integers]:
-    """Points (n, 3) in the file's units and triangles (m, 3) of their indices, of a mesh or a shape; read-only.
+    """Return points (n, 3) in the file's units and triangles (m, 3) of a mesh or a shape;
+    read-only.
 
-    A file is read again only where it has changed. Raises InputError 'NO_FILE', 'EMPTY_FILE', 'UNSUPPORTED_FILE' or
-    'BAD_FILE' naming the file.
+    A file is read again only if it has changed. Raises InputError 'NO_FILE', 'EMPTY_FILE',
+    'UNSUPPORTED_FILE' or 'BAD_FILE' naming the file.
     """
     path = locate(path)
     try:
@@ -309,10 +314,10 @@ BETWEEN = ("outer", "endfacet", "end", "color")
 
 
 def stl_triangles(file: Path, where: str) -> tuple[Array, tuple[Issue, ...]]:
-    """Corners (m, 3, 3) of the triangles of every solid in an STL file, and a note on bytes after
-    them.
+    """Return the corners (m, 3, 3) of the triangles of all solids in an STL file, and a note on
+    bytes after them.
 
-    InputError BAD_FILE where it is cut off, or has anything else than triangles.
+    Raises InputError BAD_FILE if the file is truncated or contains other data.
     """
     data = file.read_bytes()
     count = struct.unpack_from("<I", data, 80)[0] if len(data) >= HEADER_BYTES else -1
@@ -326,7 +331,7 @@ def stl_triangles(file: Path, where: str) -> tuple[Array, tuple[Issue, ...]]:
 
 
 def _is_text(data: bytes) -> bool:
-    """Whether a file that is no sound binary one is text."""
+    """Whether a file that is not a valid binary STL is text."""
     head = data[:4096].removeprefix(b"\xef\xbb\xbf").lstrip().lower()
     return b"\0" not in head and (head.startswith((b"solid", b"#", b"//")) or b"facet" in head)
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The content of a STEP or IGES file that the geometry kernel skips.
+"""Content of a STEP or IGES file that the geometry kernel skips.
 
-The kernel skips without a message: solids by constructive geometry, triangles without surfaces,
-parts in other files. The text of the file names them.
+The kernel skips these without a message: solids by constructive geometry, triangles without
+surfaces, and parts in other files. The text of the file names them.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ class StepContent:
 
     @property
     def is_whole(self) -> bool:
-        """Whether it is a STEP file that was written to its end."""
+        """Whether the text is a complete STEP file."""
         text = self.data.rstrip()
         return self.data.lstrip()[:12] == b"ISO-10303-21" and text.endswith(b"END-ISO-10303-21;")
 
@@ -121,7 +121,9 @@ class StepContent:
         return any(self.kinds[kind] for kind in GEOMETRY)
 
     def refuse_unread(self) -> None:
-        """InputError UNSUPPORTED_FILE for triangles without surfaces, constructed solids, and parts in other files."""
+        """Raise InputError UNSUPPORTED_FILE for triangles without surfaces, constructed solids, and
+        parts in other files.
+        """
         self._refuse_triangles()
         constructed = [kind for kind in CONSTRUCTED if self.kinds[kind]]
         if constructed:
@@ -144,7 +146,7 @@ class StepContent:
             )
 
     def _refuse_triangles(self) -> None:
-        """InputError for tessellated solids, shells and sets without an exact counterpart."""
+        """Raise InputError for tessellated solids, shells and sets without an exact counterpart."""
         loose = sum(
             _last_argument(self.data, match.end()) == b"$"
             for match in TESSELLATED.finditer(self.data)
@@ -162,8 +164,9 @@ class StepContent:
             )
 
     def compare(self, shape: Any) -> list[Issue]:
-        """Notes and warnings on file content that is missing in its shape. Raises InputError BAD_FILE
-        where solids are lost.
+        """Return notes and warnings on content of the file that is missing in its shape.
+
+        Raises InputError BAD_FILE if solids are lost.
         """
         issues = []
         solids, faces = len(self._represented()), sum(self.kinds[kind] for kind in FACES)
@@ -226,7 +229,7 @@ class StepContent:
         return issues
 
     def _represented(self) -> set[bytes]:
-        """The numbers of the solids that a representation of a shape lists."""
+        """Return the numbers of the solids in a shape representation."""
         listed: set[bytes] = set()
         for start in self._representations:
             end = self.data.find(b";", start)
@@ -235,7 +238,7 @@ class StepContent:
 
 
 def _last_argument(data: bytes, start: int) -> bytes:
-    """The last argument of an argument list that begins at `start`, after its bracket."""
+    """Return the last argument of an argument list that begins at `start`, after its bracket."""
     depth, index, begin = 1, start, start
     while index < len(data) and depth:
         sign = data[index : index + 1]
@@ -254,8 +257,10 @@ def _last_argument(data: bytes, start: int) -> bytes:
 
 
 def refuse_iges(file: Path, where: str) -> list[Issue]:
-    """Notes on IGES content that is not read. Raises InputError UNSUPPORTED_FILE for constructed solids
-    and references to other files, EMPTY_FILE where no entity is a shape.
+    """Return notes on IGES content that is not read.
+
+    Raises InputError UNSUPPORTED_FILE for constructed solids and references to other files, and
+    EMPTY_FILE if no entity is a shape.
     """
     kinds, blanked, visible = _iges_kinds(file)
     constructed = [name for kind, name in IGES_CONSTRUCTED.items() if kinds[kind]]
@@ -308,7 +313,9 @@ def refuse_iges(file: Path, where: str) -> list[Issue]:
 
 
 def _iges_kinds(file: Path) -> tuple[Counter[int], int, int]:
-    """How many entities of each type an IGES file lists; how many independent ones are blanked, and how many are not."""
+    """Count the entities of an IGES file by type, and the independent entities that are blanked and
+    visible.
+    """
     kinds: Counter[int] = Counter()
     blanked = visible = 0
     with file.open("rb") as stream:

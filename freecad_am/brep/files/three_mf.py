@@ -134,9 +134,7 @@ class _Piece(NamedTuple):
 
 
 class Content(NamedTuple):
-    """points (n, 3) mm and corners (m, 3) of everything that a file builds, and notes on omitted
-    content.
-    """
+    """Points (n, 3) mm and corners (m, 3) of all built items, and notes on ignored content."""
 
     points: Array
     corners: Index
@@ -144,16 +142,16 @@ class Content(NamedTuple):
 
 
 def triangles(path: Path) -> tuple[Array, Index]:
-    """Points (n, 3) mm and corners (m, 3) of everything that a 3MF file builds, as `content`."""
+    """Return points (n, 3) mm and corners (m, 3) of all items that a 3MF file builds, as `content`."""
     return content(path)[:2]
 
 
 def content(path: Path) -> Content:
-    """All that a 3MF file builds, pieces apart, mirrored ones outside out, negative volumes subtracted.
+    """Read all items that a 3MF file builds.
 
-    Supports, modifiers, and items that are not to be printed, are left out, and a note names them.
-    Raises InputError BAD_FILE,
-    EMPTY_FILE, UNSUPPORTED_FILE.
+    Pieces stay separate, mirrored pieces get outward normals, and negative volumes are subtracted.
+    Supports, modifiers, and items that are not printed are ignored, and a note names them. Raises
+    InputError BAD_FILE, EMPTY_FILE, UNSUPPORTED_FILE.
     """
     where = path.name
     try:
@@ -224,7 +222,7 @@ class _Package:
         )
 
     def _merge_pieces(self) -> tuple[Array, Index]:
-        """The parts, with the negative volumes of the same item subtracted."""
+        """Return the parts, with the negative volumes of the same item subtracted."""
         negatives = [piece for piece in self.pieces if piece.role == NEGATIVE]
         points: list[Array] = [np.zeros((0, 3))]
         corners: list[Index] = [np.zeros((0, 3), dtype=np.intp)]
@@ -334,13 +332,13 @@ class _Package:
         return notes
 
     def _named(self, name: str) -> str | None:
-        """The file of the zip with that name, whatever its case."""
+        """Return the file of the zip with a name, ignoring case."""
         return next(
             (entry for entry in self.archive.namelist() if entry.lower() == name.lower()), None
         )
 
     def _read_keystore(self) -> None:
-        """Learn which files of the zip the extension for secure content encrypts."""
+        """Read which files of the zip are encrypted by the extension for secure content."""
         name = self._named("Secure/keystore.xml")
         if name is None:
             return
@@ -352,7 +350,7 @@ class _Package:
         self._parse(name, resource)
 
     def _read_roles(self) -> None:
-        """Give the objects the roles that a slicer's own files say."""
+        """Assign the roles in the slicer's own files to the objects."""
         for name in filter(roles.is_config, self.archive.namelist()):
             reader = roles.ConfigReader()
             try:
@@ -385,7 +383,7 @@ class _Package:
             )
 
     def _read_profiles(self) -> None:
-        """Note settings of all objects, in the profiles that slicers save with a project."""
+        """Note settings for all objects, from the profiles that slicers save with a project."""
         for name in self.archive.namelist():
             if roles.CURA_PROFILE.fullmatch(name):
                 pattern = roles.CURA_VALUES
@@ -400,7 +398,7 @@ class _Package:
                     self.laid[Text("{!r}: {} = {}", name, key, value)] = None
 
     def _give_settings(self, number: int, settings: dict[str, str]) -> None:
-        """Take up settings of an object by which a slicer deposits another shape than the mesh."""
+        """Note settings of an object by which a slicer prints another shape than the mesh."""
         model = self.objects.get((self.start, number))
         if model is None:
             return
@@ -412,8 +410,9 @@ class _Package:
                 model.laid.append(setting)
 
     def _give_roles(self, number: int, volumes: list[Volume], name: str) -> None:
-        """Give the pieces of an object their roles.
-        Raises InputError for roles of pieces that the model does not have."""
+        """Assign roles to the pieces of an object. Raises InputError for pieces that the model does
+        not have.
+        """
         model = self.objects.get((self.start, number))
         ranges = [volume for volume in volumes if volume.start is not None]
         if model is not None and model.triangles and ranges:
@@ -445,7 +444,7 @@ class _Package:
         self.parts[number] = parts
 
     def _start(self) -> str:
-        """The file of the zip that holds the model."""
+        """Return the file of the zip that contains the model."""
         names = {name.lower(): name for name in self.archive.namelist()}
         if "_rels/.rels" in names:
             targets: list[str] = []
@@ -595,14 +594,16 @@ class _Package:
             self._add_mesh(model, key, moved, role, name, item)
 
     def _volume(self, key: Key, within: tuple[Key, ...]) -> Volume | None:
-        """What a slicer's file says of a component of the objects that hold it, the innermost first."""
+        """Return the slicer's volume of a component, searched from its innermost container
+        outwards.
+        """
         for file, number in reversed(within):
             if file == self.start and key[1] in self.parts.get(number, {}):
                 return self.parts[number][key[1]]
         return None
 
     def _role(self, model: _Object, role: str, volume: Volume | None) -> str:
-        """The role of an object: its own, else the slicer's, else its type's, else its container's."""
+        """Return the role of an object: its own, else the slicer's, its type's, or its container's."""
         if model.kind not in (*DEPOSITED, *NOT_DEPOSITED):
             raise _bad(
                 self.where,
@@ -671,7 +672,9 @@ class _Package:
             self.pieces.append(_Piece(placed[used], corners.reshape(-1, 3), own_role, title, item))
 
     def _ranges(self, model: _Object, corners: Index, name: str) -> list[tuple[Index, Volume]]:
-        """The triangles of each volume of an object; triangles outside every volume are part."""
+        """Return the triangles of each volume of an object; triangles outside all volumes belong to
+        the part.
+        """
         free = np.ones(len(corners), dtype=bool)
         ranges = []
         for volume in model.volumes:
@@ -707,7 +710,7 @@ class _Package:
 
 
 class _Model:
-    """What the elements of one model file say."""
+    """Handler of the elements of one model file."""
 
     def __init__(self, where: str, name: str) -> None:
         self.where, self.name = where, name
@@ -821,7 +824,7 @@ class _Model:
             self.now.unread = self.now.unread or what
 
     def _start_setting(self, name: str) -> None:
-        """Begin to read a setting of Cura, of an object or an item."""
+        """Begin to read a Cura setting of an object or an item."""
         key = name.rpartition(":")[2].strip()
         known_settings = (*roles.CURA_ROLES, *roles.CURA_SHAPES, *roles.CURA_LAID)
         if key in known_settings and (self.inside or self.item is not None):
@@ -843,7 +846,7 @@ class _Model:
             self.items[self.item] = self.items[self.item]._replace(role=role)
 
     def _finish_shape(self, key: str, setting: str) -> None:
-        """Take up a setting by which Cura deposits another shape than the mesh."""
+        """Note a setting by which Cura prints another shape than the mesh."""
         if key in roles.CURA_SHAPES:
             unread = Text("the setting {} of Cura", setting)
             self._leave_unread(unread)
@@ -893,7 +896,7 @@ def _meet(points: Array, other_points: Array) -> bool:
 
 
 def _matrix(values: dict[str, str]) -> Array:
-    """(4, 3): a point (x, y, z, 1) as a row times it is the point moved."""
+    """Return the matrix (4, 3) that moves a point, given as a row (x, y, z, 1)."""
     numbers = np.array(
         re.split(r"\s+", values.get("transform", "1 0 0 0 1 0 0 0 1 0 0 0").strip()),
         dtype=np.float64,

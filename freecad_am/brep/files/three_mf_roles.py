@@ -30,12 +30,12 @@ EXACT = 1e-6  # of a volume
 def difference(
     points: Array, corners: Index, tool_points: Array, tool_corners: Index
 ) -> tuple[Array, Index] | None:
-    """Points (n, 3) and corners (m, 3) of a closed mesh less a closed tool; no triangles where the
-    tool removes the whole mesh.
+    """Return points (n, 3) and corners (m, 3) of a closed mesh minus a closed tool.
 
-    None if the kernel finds a solid unsound (it may then return too small a common part and a
-    matching difference), if its result is not closed, or if the volumes of difference and common
-    part do not add up to the volume of the mesh.
+    There are no triangles if the tool removes the whole mesh. None if the kernel finds a solid
+    invalid (it may then return too small an intersection and a matching difference), if its result
+    is not closed, or if the volumes of difference and intersection do not add up to the volume of
+    the mesh.
     """
     try:
         solid, tool = _solid(points, corners), _solid(tool_points, tool_corners)
@@ -62,8 +62,9 @@ def _solid(points: Array, corners: Index) -> Any:
 
 
 def _triangles(shape: Any, full_volume: float) -> tuple[Array, Index] | None:
-    """Triangles of the solids of a shape with flat faces; or None if they do not close or enclose
-    another volume.
+    """Return the triangles of the solids of a shape with flat faces.
+
+    None if the triangles are not closed or enclose another volume.
     """
     points: list[Array] = []
     corners: list[Index] = []
@@ -179,7 +180,7 @@ def is_config(name: str) -> bool:
 
 
 def is_used(value: str) -> bool:
-    """Whether a setting of a slicer with that value changes anything."""
+    """Whether a slicer setting with this value has an effect."""
     text = value.strip().lower()
     try:
         return float(text) != 0.0
@@ -189,7 +190,9 @@ def is_used(value: str) -> bool:
 
 @dataclass
 class Volume:
-    """A piece of an object: its triangles from `start` to `end`, or the component or object with the id `component`."""
+    """A piece of an object: its triangles from `start` to `end`, or the component or object
+    `component`.
+    """
 
     role: str = PART
     name: str = ""
@@ -202,8 +205,8 @@ class Volume:
 class ConfigReader:
     """Handler of the elements of a slicer's file of roles: the volumes of each object, by its id.
 
-    `unknown` lists the values of roles that are none of ROLES, `settings` those of SHAPES and LAID that are used, by
-    object; `plates` counts the plates on which something stands.
+    `unknown` lists role values that are not in ROLES. `settings` lists active settings in SHAPES
+    and LAID, by object. `plates` counts the plates with objects.
     """
 
     volumes: dict[int, list[Volume]] = field(default_factory=dict)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Poses as the pendants of controllers show them, X Y Z in mm first: how each turns a frame is said by its post."""
+"""Poses as pendants of controllers show them, X Y Z in mm first; each post defines its angles."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def pendants() -> dict[str, Pendant]:
 
 
 def named(words: Sequence[str]) -> str:
-    """The controller that one of the words of a pose names, '' where none does."""
+    """Return the controller named by a word of a pose, '' without a controller."""
     controller = next((word.lower() for word in words if word.lower() in catalogue.NAMES), "")
     return (
         controller if controller and catalogue.load(controller).PENDANT else ""
@@ -48,10 +48,9 @@ def named(words: Sequence[str]) -> str:
 
 
 def six(words: Sequence[str], where: str) -> Pose:
-    """x y z RX RY RZ, mm and rad (Bryant), of the words of a pose, one of them the controller's
-    name: kuka 1 0 3 90 0 0.
+    """Convert a pose with the name of a controller to x y z RX RY RZ, mm and rad (Bryant).
 
-    Raises InputError BAD_VALUE, at `where`.
+    For example: kuka 1 0 3 90 0 0. Raises InputError BAD_VALUE, at `where`.
     """
     controller = named(words)
     pendant = catalogue.load(controller).PENDANT
@@ -68,7 +67,7 @@ def six(words: Sequence[str], where: str) -> Pose:
 
 
 def _rotation(pendant: Pendant, numbers: Array, where: str) -> Array:
-    """The rotation (3, 3) of the values that a pendant shows after X Y Z."""
+    """Return the rotation (3, 3) of the values that a pendant shows after X Y Z."""
     size = float(np.linalg.norm(numbers))
     if pendant.orientation is QUATERNION and abs(size - 1.0) > UNIT:
         raise InputError(
@@ -90,7 +89,10 @@ def _rotation(pendant: Pendant, numbers: Array, where: str) -> Array:
 
 
 def pendant_values(controller: str, pose: Sequence[float]) -> tuple[float, ...]:
-    """What a pendant shows of a pose x y z RX RY RZ, mm and rad: X Y Z, and degrees, a quaternion, or rad."""
+    """Return the values that a pendant shows for a pose x y z RX RY RZ, mm and rad.
+
+    The values are X Y Z, and degrees, a quaternion, or rad.
+    """
     orientation = pendants()[controller].orientation
     numbers = orientation.numbers(frames.bryant(pose)[None, :3, :3])[0]
     return *map(float, pose[:3]), *(
@@ -99,8 +101,8 @@ def pendant_values(controller: str, pose: Sequence[float]) -> tuple[float, ...]:
 
 
 def plain(text: str, where: str) -> str:
-    """A text with positions, such as External, with poses that name a controller rewritten as x y z
-    RX RY RZ, mm and deg.
+    """Rewrite poses that name a controller in a text such as External as x y z RX RY RZ, mm and
+    deg.
 
     Raises InputError BAD_VALUE, at `where`.
     """
@@ -123,7 +125,7 @@ _X, _Y, _Z = App.Vector(1, 0, 0), App.Vector(0, 1, 0), App.Vector(0, 0, 1)
 
 
 def placement_of(pose: Any) -> App.Placement:
-    """The placement of a pose."""
+    """Return the placement of a pose."""
     x, y, z, rx, ry, rz = (float(number) for number in pose)
     turns = [
         App.Rotation(axis, math.degrees(angle))
@@ -137,7 +139,7 @@ def placement_of(pose: Any) -> App.Placement:
 
 
 def pose_of(placement: App.Placement) -> tuple[float, ...]:
-    """The pose of a placement, RY in [-90, 90] deg; at RY = +-90 deg RX is 0."""
+    """Return the pose of a placement, RY in [-90, 90] deg; at RY = +-90 deg RX is 0."""
     m = placement.toMatrix()
     cosine = math.hypot(m.A23, m.A33)
     ry = math.atan2(m.A13, cosine)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a user prefers, from FreeCAD's parameters: the only place that reads and writes them.
+"""Preferences of the user in FreeCAD's parameters; only this module reads and writes them.
 
 Preferences belong to the window: its proposals, its display and its folders. They have no effect
 without a window, so that a job gives the same program on every computer.
@@ -40,7 +40,7 @@ def scheme_unit(value: float, unit: str) -> tuple[float, str]:
 
 
 def plain_name(name: str) -> str:
-    """The name of a unit in words: `in` for FreeCAD's double prime."""
+    """Return the name of a unit in words: `in` for FreeCAD's double prime."""
     return _NAMES.get(name, name)
 
 
@@ -50,7 +50,7 @@ def is_metric() -> bool:
 
 
 def scheme_speed_unit() -> str:
-    """The unit that the scheme shows travel speeds in."""
+    """Return the unit in which the scheme shows travel speeds."""
     return plain_name(scheme_unit(6.0, "mm/s")[1])
 
 
@@ -80,12 +80,12 @@ PROCESS = (
 
 
 def text(name: str, default: str = "") -> str:
-    """An entry that is a text."""
+    """Return a text entry."""
     return str(App.ParamGet(GROUP).GetString(name, default)) if App.GuiUp else default
 
 
 def keep(name: str, value: str) -> None:
-    """Keep a text as an entry; '' removes it."""
+    """Store a text entry; '' removes the entry."""
     if value:
         App.ParamGet(GROUP).SetString(name, value)
     else:
@@ -93,34 +93,35 @@ def keep(name: str, value: str) -> None:
 
 
 def builtin_machine() -> str:
-    """The machine of new cells where none is preferred."""
+    """Return the machine of new cells without a preference."""
     return CellParameters().machine
 
 
 def machine() -> str:
-    """The machine of new cells."""
+    """Return the machine of new cells."""
     return text("Machine") or builtin_machine()
 
 
 def post() -> str:
-    """The post of new programs, '' for what the controller of the machine reads."""
+    """Return the post of new programs, '' for the post that the controller of the machine reads."""
     return text("Post")
 
 
 def machine_folder() -> str:
-    """A further folder of machine files, '' for none."""
+    """Return the additional folder of machine files, '' for none."""
     return text("MachineFolder")
 
 
 def programs_folder() -> str:
-    """Where programs are written first: the preferred folder, else the last one; '' for next to the
-    document.
+    """Return the default folder of programs: the preferred folder, else the last one used.
+
+    '' means next to the document.
     """
     return text("ProgramsFolder") or text("ExportFolder")
 
 
 def process_rows() -> tuple[rows.Row, ...]:
-    """The parameters of the process that have an entry."""
+    """Return the process parameters with a preference."""
     return tuple(row for row in rows.rows(ProcessParameters) if row.key in PROCESS)
 
 
@@ -132,7 +133,7 @@ def label(row: rows.Row) -> str:
 
 
 def process() -> dict[str, Any]:
-    """Preferred process values in place of the defaults, by row key in outer units."""
+    """Return preferred process values that replace the defaults, by row key in outer units."""
     values: dict[str, Any] = {}
     for row in process_rows() if App.GuiUp else ():
         number = App.ParamGet(GROUP).GetFloat(row.name, math.nan)
@@ -145,7 +146,7 @@ def process() -> dict[str, Any]:
 
 
 def keep_process(values: dict[str, Any]) -> None:
-    """Keep figures in outer units by row key, as texts for rows with words; defaults leave no
+    """Store values in outer units by row key, as texts for rows with words; defaults leave no
     entry.
     """
     for row in process_rows():
@@ -159,13 +160,14 @@ def keep_process(values: dict[str, Any]) -> None:
 
 
 def check(row: rows.Row, value: Any) -> None:
-    """Raises InputError where a process cannot have this inner value."""
+    """Raise InputError if the process parameters reject the inner value."""
     rows.build(ProcessParameters, {row.key: value})
 
 
 def proposed(section: str, row: rows.Row) -> Any:
-    """The inner value that the panel of a new stage proposes for a parameter: the preferred one,
-    else its default.
+    """Return the proposed inner value of a parameter in the panel of a new stage.
+
+    This is the preferred value, or else the default.
     """
     preferred: dict[str, Any] = {}
     if section == "cell":
@@ -181,18 +183,18 @@ def proposed(section: str, row: rows.Row) -> Any:
 
 
 def preferred_speed_unit() -> str:
-    """The unit of speeds that the user has chosen, '' for the unit of FreeCAD's scheme."""
+    """Return the unit of speeds that the user has chosen, '' for the unit of FreeCAD's scheme."""
     unit = text("SpeedUnit")
     return unit if unit in SPEED_UNITS else ""
 
 
 def speed_unit() -> str:
-    """The unit of speeds in read-outs: the chosen one, else the unit of FreeCAD's scheme."""
+    """Return the unit of displayed speeds: the chosen unit, else the unit of FreeCAD's scheme."""
     return preferred_speed_unit() or scheme_speed_unit()
 
 
 def speed(value: float) -> float:
-    """A speed in mm/s in that unit."""
+    """Format a speed in mm/s in the unit of displayed speeds."""
     unit = speed_unit()
     if unit in SPEED_UNITS:
         return value * SPEED_UNITS[unit]
@@ -200,13 +202,13 @@ def speed(value: float) -> float:
 
 
 def ramp() -> str:
-    """Which of RAMPS colours go by."""
+    """Return the name of the colour ramp, a key of RAMPS."""
     name = text("Ramp", RAMPS[0])
     return name if name in RAMPS else RAMPS[0]
 
 
 def machine_colour() -> tuple[float, float, float]:
-    """The colour of machines that are drawn plain, 0..1 each."""
+    """Return the colour of machines without own colours, 0..1 each."""
     packed = text("MachineColour")
     try:
         red, green, blue = (int(packed[start : start + 2], 16) / 255.0 for start in (1, 3, 5))
@@ -216,7 +218,7 @@ def machine_colour() -> tuple[float, float, float]:
 
 
 def existing(folder: str) -> bool:
-    """Whether a folder is named and there."""
+    """Whether a folder is named and exists."""
     return bool(folder) and os.path.isdir(folder)
 
 
@@ -227,8 +229,11 @@ _METRIC = re.compile(r"(?:µ|n|m|c|k)?m(?:\^[23]|²|³)?(?:/.*)?|ml|l|k?g|t")
 
 
 def conversion(value: float, unit: str) -> tuple[float, str] | None:
-    """How many of the unit that is shown make one `unit`, and its name, as `core.number_texts.in_other_units` asks; None
-    where the quantity is shown as it is."""
+    """Return the number of displayed units per `unit` and the name of the displayed unit.
+
+    This has the form that `core.number_texts.in_other_units` needs; None if the quantity is
+    displayed unchanged.
+    """
     if App.Units.Quantity(f"1 {unit}").Unit == App.Units.Velocity:
         return _speed_conversion(unit)
     if is_metric() or not math.isfinite(value):
@@ -242,7 +247,7 @@ def conversion(value: float, unit: str) -> tuple[float, str] | None:
 
 
 def _in_inches(per_unit: float, name: str) -> tuple[float, str]:
-    """Square or cubic inches for square or cubic feet."""
+    """Return square or cubic inches for square or cubic feet."""
     power = {"ft^2": 2, "ft²": 2, "ft^3": 3, "ft³": 3}.get(name)
     return (per_unit, name) if power is None else (per_unit / 12.0**power, f"in^{power}")
 
@@ -272,18 +277,24 @@ def _format_powers(name: str) -> str:
 
 
 def window_is_open() -> bool:
-    """Whether this is FreeCAD with its window, and not a command."""
+    """Whether FreeCAD runs with its window."""
     return bool(App.GuiUp)
 
 
 def in_user_units(text: str) -> str:
-    """A text of numbers in mm, mm/s and so on, with these in the user's units and without exponents; no names of users may
-    be in it."""
+    """Convert the quantities in a text in mm, mm/s and so on to the user's units, without
+    exponents.
+
+    The text must not contain names chosen by users.
+    """
     return in_other_units(expand_exponents(text), conversion)
 
 
 def quantity_text(value: float, unit: str, digits: int = 4) -> str:
-    """A quantity for people, in the user's units. value: in `unit`, one of `core.number_texts.UNITS`, or deg, s or %."""
+    """Format a quantity in the user's units.
+
+    value: in `unit`, one of `core.number_texts.UNITS`, or deg, s or %.
+    """
     converted = conversion(value, UNITS[unit]) if unit in UNITS else None
     factor, name = (1.0, unit) if converted is None else converted
     return f"{significant(value * factor, digits)} {name}"
@@ -310,7 +321,10 @@ def field_text(value: float, unit: str, display: str = "") -> tuple[str, float, 
 
 
 def _fraction(value: float, unit: str, name: str) -> str:
-    """The value in feet and fractions of inches, '' where the scheme has none or it would be another value."""
+    """Format the value in feet and fractions of inches.
+
+    '' if the scheme has no fractions, or if the fraction would be another value.
+    """
     if name != "in" or value == 0.0:
         return ""
     quantity = App.Units.Quantity(f"{value!r} {unit}")
@@ -328,7 +342,10 @@ _FEET = re.compile(
 
 
 def feet_and_inches(text: str) -> float | None:
-    """Millimetres of `1' 7+5/8"`, `1 1/2 in` and the like; None for another text. FreeCAD reads `-1' 3"` as -12 + 3 in."""
+    """Convert a text such as `1' 7+5/8"` or `1 1/2 in` to millimetres; None for other texts.
+
+    FreeCAD reads `-1' 3"` as -12 + 3 in.
+    """
     match = _FEET.fullmatch(text.replace("′", "'").replace("″", '"'))
     if match is None or (match["feet"] is None and match["inches"] is None):
         return None
@@ -344,13 +361,15 @@ def feet_and_inches(text: str) -> float | None:
 
 
 def round_conversion(value: float) -> float:
-    """A number typed in one unit, in another one, without the last digits that conversion leaves."""
+    """Round a converted number to the digits that were typed."""
     return float(f"{value:.14g}")
 
 
 def typed_text(text: str, unit: str, per_bare: float) -> str:
-    """A text typed into a plain line, for a parameter in `unit`: a number without a unit is
-    multiplied by `per_bare`. Other texts, such as words, stay.
+    """Complete a text typed for a parameter in `unit`: multiply a number without unit by
+    `per_bare`.
+
+    Other texts, such as words, are unchanged.
     """
     inches = feet_and_inches(text) if unit == "mm" else None
     if inches is not None:

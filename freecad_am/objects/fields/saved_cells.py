@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Cells saved as files of their own: in RoboticAM/cells in FreeCAD's folder of user data, and next
-to a document.
-"""
+"""Cells saved as files, in the folder RoboticAM/cells of the user's data and next to a document."""
 
 from __future__ import annotations
 
@@ -22,23 +20,24 @@ OF_JOBS = re.compile(
 
 
 def own_folder() -> str:
-    """The folder of the user's own cells, which may not exist yet."""
+    """Return the folder of the user's cells, which may not exist yet."""
     return os.path.join(App.getUserAppDataDir(), FOLDER)
 
 
 def is_file_of_cell(name: str) -> bool:
-    """Whether a text names a cell file, by its ending."""
+    """Whether a text names a cell file, by its extension."""
     return name.lower().endswith(ENDINGS)
 
 
 def path_of(name: str) -> str:
-    """The path of a cell file, with its ending where that is left out."""
+    """Return the path of a cell file, with the extension added if missing."""
     return name if is_file_of_cell(name) else f"{name}{ENDINGS[0]}"
 
 
 def known(doc: Any) -> list[tuple[str, str]]:
-    """Path and name of the cell files in the user's folder and next to a document, by name; equal
-    names get their folders. Unreadable files and job files are skipped.
+    """Return path and name of the cell files in the user's folder and next to a document, by name.
+
+    Equal names include their folders. Unreadable files and job files are skipped.
     """
     folders = [
         own_folder(),

@@ -32,14 +32,15 @@ from ...core.toolpath import Toolpath
 
 
 def meshes_of(machine: Machine) -> tuple[Mesh | None, ...]:
-    """(axes + 1) points and triangles of each link's file, base first; None without a readable
-    file: drawing the link reports the reason.
+    """Return (axes + 1) points and triangles of the file of each link, base first.
+
+    None without a readable file: drawing the link reports the reason.
     """
     return tuple(None if shape is None else readable_mesh(shape) for shape in machine.shapes)
 
 
 def readable_mesh(shape: LinkShape) -> Mesh | None:
-    """As `mesh_of`, or None if the file cannot be read."""
+    """Return the result of `mesh_of`, or None if the file cannot be read."""
     try:
         return mesh_of(shape)
     except InputError:
@@ -47,7 +48,10 @@ def readable_mesh(shape: LinkShape) -> Mesh | None:
 
 
 def mesh_of(shape: LinkShape) -> Mesh:
-    """Points (n, 3) mm in the frame of the link and triangles (m, 3) of a user's file. Raises InputError naming it."""
+    """Return points (n, 3) mm in the frame of the link and triangles (m, 3) of a user's file.
+
+    Raises InputError naming the file.
+    """
     points, triangles = read.triangles(shape.path)
     return shape.scale * points @ shape.pose[:3, :3].T + shape.pose[:3, 3], triangles
 
@@ -58,9 +62,10 @@ _torches: list[tuple[Body, NozzleParameters, torch.Torch]] = []  # with their in
 
 
 def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str]) -> Cell:
-    """The cell of a toolpath, with its obstacles. Raises InputError as `cells.resolve` does,
-    NO_FILE and the like of files of obstacles, and OBSTACLE where one is at the first point of the
-    job already.
+    """Resolve the cell of a toolpath, with its obstacles.
+
+    Raises the InputErrors of `cells.resolve` and of obstacle files, and OBSTACLE if an obstacle
+    touches the nozzle at the first point of the job.
     """
     cell = cells.resolve(settings, toolpath.frame, toolpath.family, folders)
     bodies = bodies_of(settings)
@@ -74,12 +79,18 @@ def resolved(settings: CellParameters, toolpath: Toolpath, folders: Sequence[str
 
 
 def bodies_of(settings: CellParameters) -> tuple[Body, ...]:
-    """The obstacles of a cell in the world, mm. Raises InputError naming the obstacle and its file."""
+    """Return the obstacles of a cell in world coordinates, mm.
+
+    Raises InputError naming the obstacle and its file.
+    """
     return tuple(_body(obstacle) for obstacle in settings.obstacles)
 
 
 def torch_of(settings: CellParameters) -> torch.Torch | None:
-    """The torch of a cell; None without one. Raises InputError TORCH and the errors of its file."""
+    """Return the torch of a cell, None without a torch.
+
+    Raises InputError TORCH and the errors of its file.
+    """
     shape = settings.nozzle.shape
     if shape is None:
         return None
@@ -90,8 +101,8 @@ def torch_of(settings: CellParameters) -> torch.Torch | None:
 
 
 def hashes_of(settings: CellParameters) -> list[str]:
-    """Hashes of the existing files of obstacles and of the torch. Raises InputError for a file that is
-    too large.
+    """Return hashes of the existing files of obstacles and torch. Raises InputError for a file that
+    is too large.
     """
     files = [
         (Path(obstacle.file), f"{OBSTACLES_KEY} {obstacle.name}")
@@ -115,7 +126,7 @@ def _body(obstacle: Obstacle) -> Body:
 
 
 def _read(file: Path) -> Body:
-    """The triangles of a file; it is read again only where it has changed."""
+    """Return the triangles of a file; read it again only if it has changed."""
     try:
         now = file.stat()
     except OSError:
@@ -124,7 +135,9 @@ def _read(file: Path) -> Body:
 
 
 def _torch(body: Body, nozzle: NozzleParameters) -> torch.Torch:
-    """The torch of a body, cached by the body, which stays the same while its file is unchanged."""
+    """Return the torch of a body, cached by the body, which is the same object while its file is
+    unchanged.
+    """
     for cached_body, cached_nozzle, cached_torch in _torches:
         if cached_body is body and cached_nozzle == nozzle:
             return cached_torch
@@ -145,7 +158,9 @@ def _triangles(file: Path) -> Body:
 
 
 def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
-    """Raises InputError OBSTACLE where one touches the nozzle at the first point, on any machine."""
+    """Raise InputError OBSTACLE if an obstacle touches the nozzle at the first point, on any
+    machine.
+    """
     bead = next(bead for _, _, bead in toolpath)
     point, axis = bead.points[:1], bead.tool[:1]
     if cell.torch_stands:
@@ -171,7 +186,7 @@ def _refuse_at_start(cell: Cell, toolpath: Toolpath) -> None:
 
 
 def platforms(cell: CellParameters | None, toolpath: Toolpath) -> tuple[Body, ...]:
-    """The platform under a toolpath; none without a cell, or where the cell has none."""
+    """Return the platform under a toolpath; empty without a cell or platform."""
     if cell is None or cell.platform_diameter <= 0.0:
         return ()
     return (disc(cell.platform_diameter, mounted(cell, toolpath.frame, toolpath.family)),)

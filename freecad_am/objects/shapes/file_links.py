@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The links of a saved FreeCAD document to other documents, as its file has them."""
+"""Links of a saved FreeCAD document to other documents, read from its file."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ SUFFIX = ".fcstd"
 
 
 def linked_files(path: str) -> dict[str, list[tuple[str, str]]]:
-    """The documents that each object of a document file links to, by the name of the object: their absolute paths, and
-    when they were last saved before this one was.
+    """Return the linked documents of each object of a document file, by object name.
 
-    Links in expressions count too. Empty for an unreadable file: opening it reports the reason.
+    A document is given by its absolute path and the time when it was saved last before this
+    document. Links in expressions count too. Empty for an unreadable file: opening it reports the
+    reason.
     """
     files: dict[str, list[tuple[str, str]]] = {}
     folder = os.path.dirname(os.path.abspath(path))
@@ -44,7 +45,7 @@ def linked_files(path: str) -> dict[str, list[tuple[str, str]]]:
 
 
 def missing_files(document: Any) -> dict[str, str]:
-    """The first missing file that each object of an open document links to, by the name of the object."""
+    """Return the first missing linked file of each object of an open document, by object name."""
     if not document.FileName:
         return {}
     missing = {}

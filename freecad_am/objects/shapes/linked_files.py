@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Other documents that a FreeCAD document links to: missing ones, and ones changed since it was
+"""Documents linked by a FreeCAD document: missing documents, and documents changed after it was
 saved.
 """
 
@@ -25,9 +25,9 @@ LONGEST_HEAD = 1 << 20  # bytes of an XML before its first element
 
 
 def opened(path: str, where: str) -> Any:
-    """A document, hidden, which is the caller's to close. Raises InputError BAD_FILE at `where`.
+    """Open a document hidden; the caller closes it. Raises InputError BAD_FILE at `where`.
 
-    Without a window it has been opened before in a process of its own, with limits of time and memory.
+    A process without a window, with limits of time and memory, opens the document first.
     """
     refuse(path, where)
     read_in_sandbox(_try, path, where)
@@ -35,7 +35,7 @@ def opened(path: str, where: str) -> Any:
 
 
 def open_here(path: str, where: str) -> Any:
-    """As `opened`, at once."""
+    """Open a document as `opened`, without the separate process."""
     refuse(path, where)
     try:
         return App.openDocument(path, True)
@@ -50,8 +50,10 @@ def _try(path: str, where: str) -> None:
 
 
 def refuse(path: str, where: str) -> None:
-    """Reject files that are not FreeCAD documents, and XML with a document type: its entities can
-    expand beyond the memory, and FreeCAD expands them. Raises InputError BAD_FILE.
+    """Reject files that are not FreeCAD documents, and XML with a document type.
+
+    Entities of a document type can expand beyond the memory, and FreeCAD expands them. Raises
+    InputError BAD_FILE.
     """
     try:
         with zipfile.ZipFile(path) as archive:
@@ -80,7 +82,7 @@ def refuse(path: str, where: str) -> None:
 
 
 class _Begun(Exception):
-    """The first element of an XML is there, before which its document type would be."""
+    """Raised at the first element of an XML, after the place of a document type."""
 
 
 def _refuse_doctype(archive: zipfile.ZipFile, name: str, where: str) -> None:
@@ -113,7 +115,7 @@ def _refuse_doctype(archive: zipfile.ZipFile, name: str, where: str) -> None:
 
 
 def refuse_missing(source: Any, where: str) -> None:
-    """Reject an object that is made from something in a missing file. Raises InputError NO_LINKED_FILE."""
+    """Reject an object made from the content of a missing file. Raises InputError NO_LINKED_FILE."""
     needs = dependencies_of(source)
     for document in needs.documents:
         missing = missing_files(document)
@@ -123,8 +125,9 @@ def refuse_missing(source: Any, where: str) -> None:
 
 
 def refuse_missing_of(stage: Any, where: str) -> None:
-    """Reject a stage with an input that is made from something in a missing file. InputError
-    NO_LINKED_FILE.
+    """Reject a stage with an input made from the content of a missing file.
+
+    Raises InputError NO_LINKED_FILE.
     """
     inputs = stage.OutListRecursive
     for document in dict.fromkeys(entry.Document for entry in inputs):
@@ -135,7 +138,7 @@ def refuse_missing_of(stage: Any, where: str) -> None:
 
 
 def no_linked_file(where: str, label: str, file: str) -> InputError:
-    """The error about an object that links to a missing file."""
+    """Return the error for an object that links to a missing file."""
     return InputError(
         "NO_LINKED_FILE",
         where,
@@ -170,7 +173,9 @@ def renew_changed(document: Any) -> list[Any]:
 
 
 def _is_outdated(obj: Any, document: Any, renewed: Iterable[Any]) -> bool:
-    """Whether FreeCAD has marked what an object links to in another document as changed, or that was just computed."""
+    """Whether FreeCAD has marked a linked object of another document as changed, or as just
+    computed.
+    """
     outside = [
         linked for linked in obj.OutList if linked is not None and linked.Document != document
     ]
@@ -179,7 +184,7 @@ def _is_outdated(obj: Any, document: Any, renewed: Iterable[Any]) -> bool:
 
 
 def _links_to_changed_files(document: Any) -> list[Any]:
-    """The objects that link to a document that was saved again after this one was."""
+    """Return the objects that link to a document saved after this document."""
     if not document.FileName:
         return []
     saved = {
@@ -201,8 +206,10 @@ def _links_to_changed_files(document: Any) -> list[Any]:
 
 
 def _is_saved_later(file: str, stamp: str, document: Any) -> bool:
-    """Whether a linked file was written after a document that was saved in the same second: FreeCAD knows no more than the
-    second of saving."""
+    """Whether a linked file was written after a document that was saved in the same second.
+
+    FreeCAD stores the time of saving in seconds.
+    """
     if document.LastModifiedDate != stamp:
         return False
     try:
@@ -212,7 +219,7 @@ def _is_saved_later(file: str, stamp: str, document: Any) -> bool:
 
 
 def in_order(document: Any, visited: Iterable[Any] = ()) -> list[Any]:
-    """A document and its linked documents, each after its own linked documents."""
+    """Return a document and its linked documents, each after its own linked documents."""
     linked = dict.fromkeys(
         linked_object.Document
         for obj in document.Objects

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""What a path names that leads through what holds it, as FreeCAD's selection has it: 'Body.Pad.Face3' of a part."""
+"""Resolve selection paths that lead through containers, such as 'Body.Pad.Face3' of a part."""
 
 from __future__ import annotations
 
@@ -30,9 +30,11 @@ TOLERANCE = 1e-6  # of the part's size, squared of an area: by how much one may 
 
 
 class Mark(NamedTuple):
-    """The mark of a face, an edge or a whole part in the part's own coordinates: its surface or
-    curve (for a whole part the number of its faces, edges or both); the direction of a plane's
-    normal, a line or an axis (0 for others); area (mm2) or length (mm), and middle (mm).
+    """The mark of a face, an edge or a whole part in the part's own coordinates.
+
+    It holds the kind of surface or curve (for a whole part the number of faces, edges or both), the
+    direction of a plane's normal, a line or an axis (0 for others), area (mm2) or length (mm), and
+    centre (mm).
     """
 
     name: str
@@ -52,7 +54,7 @@ class Mark(NamedTuple):
         )
 
     def is_same(self, other_mark: Mark, size: float, flat: bool = True) -> bool:
-        """Whether nothing changed, of a part of a size (mm). flat: the extents are areas."""
+        """Whether nothing changed, for a part of a size (mm). flat: whether the extents are areas."""
         is_near = (
             float(np.abs(np.subtract(self.middle, other_mark.middle)).max()) <= TOLERANCE * size
         )
@@ -63,9 +65,7 @@ class Mark(NamedTuple):
         )
 
     def is_alike(self, other_mark: Mark) -> bool:
-        """Whether it has the same kind of surface or curve and the same direction, which a growing
-        part keeps.
-        """
+        """Whether surface or curve kind and direction are the same, which a growing part keeps."""
         along = float(np.dot(self.direction, other_mark.direction))
         lies = not any(self.direction) or (along if self.form == PLANE else abs(along)) > np.cos(
             LEANS
@@ -73,8 +73,10 @@ class Mark(NamedTuple):
         return self.form == other_mark.form and lies
 
     def is_along(self, other_mark: Mark, size: float) -> bool:
-        """Whether two straight edges are collinear and overlap, or two plane faces are coplanar
-        with near middles. size: of the part, mm.
+        """Whether two straight edges are collinear and overlap, or two plane faces are coplanar and
+        near.
+
+        size: size of the part, mm.
         """
         if self.form not in (LINE, PLANE) or not self.is_alike(other_mark):
             return False
@@ -106,13 +108,13 @@ class Mark(NamedTuple):
         return bool(min(map(np.max, distances)) <= TOLERANCE * size)
 
     def _places(self) -> tuple[Any, Any, Any]:
-        """Start, middle and end of a straight edge."""
+        """Return start, middle and end of a straight edge."""
         middle, half = np.array(self.middle), 0.5 * self.extent * np.array(self.direction)
         return middle - half, middle, middle + half
 
 
 def read(text: str) -> Mark | None:
-    """The stored mark, or None if damaged."""
+    """Read a stored mark; None if it is damaged."""
     try:
         name, form, *values = text.split(" ")
         i, j, k, extent, x, y, z = map(float, values)
@@ -122,7 +124,7 @@ def read(text: str) -> Mark | None:
 
 
 def marks_of(shape: Any, kind: str, names: Collection[str] = ()) -> list[Mark]:
-    """The marks of the faces or edges of a shape, or only of the named ones."""
+    """Return the marks of the faces or edges of a shape, or of the named ones only."""
     inverse_placement = shape.Placement.inverse()
     all_ = enumerate(shape.Faces if kind == FACE else shape.Edges, start=1)
     return [
@@ -133,7 +135,7 @@ def marks_of(shape: Any, kind: str, names: Collection[str] = ()) -> list[Mark]:
 
 
 def whole_of(shape: Any, kinds: Collection[str]) -> Mark:
-    """The mark of a whole shape, by its faces, its edges or both."""
+    """Return the mark of a whole shape, by its faces, its edges or both."""
     count = (len(shape.Faces) if FACE in kinds else 0) + (len(shape.Edges) if EDGE in kinds else 0)
     middle = shape.Placement.inverse().multVec(shape.BoundBox.Center)
     return Mark(
@@ -179,19 +181,22 @@ TOLERANCE_MM = 1e-6  # of two faces or edges that are the same
 
 
 def owner_of(top: Any, path: str) -> tuple[Any, str]:
-    """The object that an element at the end of a path belongs to for its user, and the name of the
-    face or edge on it: '' for the complete object, and for an element that it does not have.
+    """Return the object that an element at the end of a path belongs to, and the name of the
+    element on it.
 
-    A click within an assembly selects 'Body.Pad.Face3' of its outermost group: that is Face3 of the
-    body, or of the feature where it is not the body's tip. An element shown by a link belongs to
-    the link. An element shown by a link group or link array belongs to the object in it, and to the
-    array where its elements are no objects.
+    The name is '' for the complete object, and for an element that the object does not have. A
+    click within an assembly selects 'Body.Pad.Face3' of its outermost group, which is Face3 of the
+    body, or of the feature if the feature is not the tip of the body. An element shown by a link
+    belongs to the link. An element shown by a link group or link array belongs to the object in it,
+    or to the array if the elements of the array are not objects.
     """
     return _owner(top, path, element=False)
 
 
 def clicked(top: Any, path: str) -> tuple[Any, str]:
-    """As `owner_of`, but an element of a link array is an `ArrayElement` where it is no object."""
+    """Return owner and name as `owner_of`, with an `ArrayElement` for an element that is not an
+    object.
+    """
     return _owner(top, path, element=True)
 
 
@@ -222,8 +227,9 @@ def _owner(top: Any, path: str, element: bool) -> tuple[Any, str]:
 
 
 def _child_named(container: Any, name: str) -> Any:
-    """The object that a container, link group or link array has by a name of a path; None for
-    elements of `container` itself, and for an object that several link groups show.
+    """Return the child of a container, link group or link array with a name of a path.
+
+    None for elements of `container` itself, and for an object that several link groups show.
     """
     if any(container.isDerivedFrom(kind) for kind in GROUPS):
         return container.getSubObject(f"{name}.", retType=1)
@@ -235,8 +241,10 @@ def _child_named(container: Any, name: str) -> Any:
 
 
 def line_of(top: Any, path: str) -> tuple[Any, str]:
-    """The possible rotation axis of a path: an object and its edge or axis of a sketch, or a line
-    of an origin, deep within its part; else the whole object.
+    """Return the possible rotation axis of a path: an object, and its edge, sketch axis or origin
+    line.
+
+    The line may be deep within its part. Otherwise return the whole object.
     """
     obj, name = owner_of(top, path)
     element = path.rsplit(".", maxsplit=1)[-1]
@@ -249,9 +257,11 @@ def line_of(top: Any, path: str) -> tuple[Any, str]:
 
 
 def resolved(obj: Any, names: Sequence[str], where: str) -> tuple[Any, list[str]]:
-    """A link to some faces or edges, without the paths that lead to them: the object that they
-    belong to, and their names on it. Raises InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path without
-    such an element, and for elements of several objects.
+    """Return a link to faces or edges without paths: the object that owns them, and their names on
+    it.
+
+    Raises InputError BAD_FACES, BAD_EDGES, BAD_AXIS for a path without such an element, and for
+    elements of several objects.
     """
     if not any("." in name for name in names):
         return obj, list(names)
@@ -270,8 +280,11 @@ def resolved(obj: Any, names: Sequence[str], where: str) -> tuple[Any, list[str]
 
 
 def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
-    """Refuse paths to faces and edges of other objects than the one that is linked: the same names are others on it. And
-    names of a part that has something twice. Raises InputError as `resolved`."""
+    """Reject paths to faces and edges of other objects than the linked object, and ambiguous names.
+
+    The same names mean other elements on the linked object. Names are ambiguous if a part contains
+    an object twice. Raises the InputErrors of `resolved`.
+    """
     element_paths = [
         name for name in names if not name.rsplit(".", maxsplit=1)[-1].startswith("?")
     ]  # FreeCAD knows the others lost
@@ -303,7 +316,7 @@ def refuse_paths(obj: Any, names: Sequence[str], where: str) -> None:
 
 
 def _resolve(obj: Any, name: str, where: str) -> tuple[Any, str]:
-    """As `line_of`. Raises InputError for a missing element."""
+    """Resolve a path as `line_of`. Raises InputError for a missing element."""
     if "." not in name:
         return obj, name
     if not name.endswith(".") and obj.getSubObject(f"{name}.", retType=1) is not None:
@@ -336,7 +349,7 @@ def _has_shape(obj: Any) -> bool:
 
 
 def _element_shape(top: Any, path: str) -> Any:
-    """The face or edge at the end of a path, in the coordinates of the document, or None."""
+    """Return the face or edge at the end of a path in document coordinates, or None."""
     try:
         return global_shape(top, path)
     except (InputError, Part.OCCError, ValueError, RuntimeError):
@@ -344,8 +357,9 @@ def _element_shape(top: Any, path: str) -> Any:
 
 
 def _own_name(obj: Any, document_shape: Any, element: str) -> str:
-    """The name on an object itself of a face or edge in document coordinates, preferably its
-    present name; '' if it has none.
+    """Return the name of a face or edge, given in document coordinates, on the object itself.
+
+    The present name is preferred; '' if the object has no such element.
     """
     kind = FACE if element.startswith(FACE) else EDGE
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""A part from a file, as a shape for the document."""
+"""Read the part in a file as a shape for the document."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ PROPERTY = "FileIssues"
 
 
 def keep_file_issues(obj: Any, issues: Sequence[Issue]) -> None:
-    """Store the notes on a file with the object that its shape belongs to; nothing without notes."""
+    """Store the notes on a file with the object that has its shape; store nothing without notes."""
     if not issues:
         return
     if PROPERTY not in obj.PropertiesList:
@@ -40,7 +40,7 @@ def keep_file_issues(obj: Any, issues: Sequence[Issue]) -> None:
 
 
 def file_issues(obj: Any) -> list[Issue]:
-    """The notes on the files of an object's sources, each once."""
+    """Return the notes on the files of an object's sources, each once."""
     issues: dict[Issue, None] = {}
     for source in obj.OutListRecursive:
         for level, code, text_parts in json.loads(getattr(source, PROPERTY, "") or "[]"):
@@ -55,18 +55,18 @@ PART_FILES = (*READABLE, *MESHES, ".FCStd", *POINT_FILES)  # endings
 
 
 def part_shape(path: str, object_name: str = "", scale: float = 1.0) -> tuple[Any, str]:
-    """The shape or mesh of a part file and a label for it, as `part_content`."""
+    """Return the shape or mesh of a part file and a label, as `part_content`."""
     return part_content(path, object_name, scale)[:2]
 
 
 def part_content(
     path: str, object_name: str = "", scale: float = 1.0
 ) -> tuple[Any, str, tuple[Issue, ...]]:
-    """The shape of a part file, the mesh of an STL, OBJ or 3MF file or of an object, a label for
-    it, and notes on omitted content. `object_name`: Name or Label of an object of an FCStd file.
-    scale: mm of one unit of an STL or OBJ file.
+    """Return the shape or mesh of a part file, a label, and notes on ignored content.
 
-    Raises the InputErrors of `brep.read`, NO_OBJECT, and BAD_VALUE for a scale of another file or none above 0.
+    STL, OBJ and 3MF files, and mesh objects, give a mesh. `object_name`: Name or Label of an object
+    of an FCStd file. scale: mm of one unit of an STL or OBJ file. Raises the InputErrors of
+    `brep.read`, NO_OBJECT, and BAD_VALUE for a scale of 0 or less, or for another file type.
     """
     stem, extension = os.path.splitext(os.path.basename(path))
     refuse_scale(scale, path, "scale")
@@ -81,7 +81,7 @@ def part_content(
 
 
 def _refuse_other(path: str, extension: str) -> None:
-    """InputError UNSUPPORTED_FILE, with all the endings that parts may have, for a file of another kind."""
+    """Raise InputError UNSUPPORTED_FILE, with all supported extensions, for another file type."""
     if extension.lower() not in READABLE and is_there(path):
         raise InputError(
             "UNSUPPORTED_FILE",
@@ -110,11 +110,12 @@ def _document_content(path: str, object_name: str, stem: str) -> tuple[Any, str,
 def changed_part(
     path: str, object_name: str, change: Callable[[Any], list[Any]], where: str, patience: float
 ) -> tuple[Any, str, tuple[Issue, ...]]:
-    """As `part_content` of an FCStd file, after `change(document)` changed the document; it returns the changed objects.
+    """Return the content of an FCStd file, as `part_content`, after `change(document)`.
 
-    change: a function of a module, or a `functools.partial` of one, because another process may call it. where: what errors
-    about the change name. patience: how many times as long as reading a file this may take. The file stays as it is.
-    Raises InputError NO_ADD_ON besides.
+    change: a function of a module, or a `functools.partial` of one, because another process may
+    call it; it returns the changed objects. where: where errors about the change are reported.
+    patience: factor on the time limit of reading a file. The file stays unchanged. Raises also
+    InputError NO_ADD_ON.
     """
     resolved_path = str(locate(path))
     return _decoded(
@@ -125,7 +126,7 @@ def changed_part(
 
 
 def add_part(document: Any, shape: Any, label: str, issues: tuple[Issue, ...] = ()) -> Any:
-    """An object of a document with a shape or a mesh, and notes on its file."""
+    """Add an object with a shape or a mesh to a document, and store the notes on its file."""
     is_triangles = hasattr(shape, "Topology")
     added = document.addObject("Mesh::Feature" if is_triangles else "Part::Feature", "Part")
     added.Label = label
@@ -165,7 +166,7 @@ def _shape_of_file(
 
 
 def _decoded(content: tuple[Any, str, tuple[Issue, ...]]) -> tuple[Any, str, tuple[Issue, ...]]:
-    """What `_shape_of_file` returned, with the shape in place of its text."""
+    """Return the result of `_shape_of_file` with its shape decoded from text."""
     shape, label, issues = content
     if isinstance(shape, str):
         text, shape = shape, Part.Shape()
@@ -174,8 +175,8 @@ def _decoded(content: tuple[Any, str, tuple[Issue, ...]]) -> tuple[Any, str, tup
 
 
 def _refuse_without_add_on(changed: Any, needs: Dependencies, where: str) -> None:
-    """Reject a change of an object computed by a missing add-on: the shape would stay as it was
-    saved.
+    """Reject a change of an object that a missing add-on computes, because its shape would not
+    change.
     """
     for obj in (changed, *changed.InListRecursive):
         is_scripted = obj.TypeId.endswith("Python") and "Proxy" in obj.PropertiesList
@@ -218,7 +219,7 @@ def _shape_in(document: Any, path: str, object_name: str) -> tuple[Any, str, tup
 
 
 def _object_in(document: Any, path: str, object_name: str) -> Any:
-    """The named object or the only one; a mesh in a document of only meshes, or by its name."""
+    """Return the named object or the only object; a mesh only by name or in a document of meshes."""
     placed = [obj for obj in document.Objects if obj.TypeId not in ORIGIN]
     shapes = [
         obj for obj in placed if getattr(obj, "Shape", None) is not None and not obj.Shape.isNull()
@@ -247,7 +248,7 @@ def _object_in(document: Any, path: str, object_name: str) -> Any:
 def _no_single_object(
     path: str, object_name: str, available: list[Any], candidates: list[Any]
 ) -> InputError:
-    """Return the error of a document in which no single object is meant."""
+    """Return the error for a document without a unique object."""
     if not available:
         message = "no object in the document has a shape; recompute and save the document in FreeCAD, or use another file"
         return InputError("NO_OBJECT", path, message)
@@ -263,7 +264,7 @@ def _no_single_object(
 
 
 def _content_of(source: Any, path: str) -> tuple[Any, str]:
-    """The shape or mesh of an object in the coordinates of its document, and its label."""
+    """Return the shape or mesh of an object in document coordinates, and its label."""
     linked_files.refuse_missing(source, path)
     if not is_mesh(source):
         if renumbers(source):
@@ -282,7 +283,9 @@ def _content_of(source: Any, path: str) -> tuple[Any, str]:
 
 
 def _elements(document: Any, name: str) -> list[ArrayElement]:
-    """The element of a link array that a name such as `Array.1` means, where it is no object with this name."""
+    """Return the link array element that a name such as `Array.1` means, if no object has this
+    name.
+    """
     array, _, number = name.rpartition(".")
     if not number.isdigit():
         return []

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The position of an object in its document, determined by containers, links and linked objects.
 
-FreeCAD stores a placement relative to the container. `getGlobalPlacement` gives the place in the document, but objects of
-type App::Link and App::LinkElement do not have it, and it ignores link groups and link arrays. So we walk up the containers.
+FreeCAD stores a placement relative to the container. `getGlobalPlacement` gives the position in the
+document, but objects of type App::Link and App::LinkElement do not have this function, and it
+ignores link groups and link arrays. Therefore this module walks up the containers.
 """
 
 from __future__ import annotations
@@ -41,10 +42,10 @@ class Dependencies:
 
 
 def containers_of(source: Any) -> tuple[Any, ...]:
-    """The containers that hold an object, from the innermost to the outermost.
+    """Return the containers of an object, from the innermost to the outermost.
 
-    App::Part, PartDesign::Body, assemblies, link groups, link arrays (of their elements) and plain groups.
-    Raises InputError SEVERAL_PLACES for an object that several link groups show.
+    These are App::Part, PartDesign::Body, assemblies, link groups, link arrays (of their elements)
+    and plain groups. Raises InputError SEVERAL_PLACES for an object that several link groups show.
     """
     chain: list[Any] = []
     container = _container_of(getattr(source, "placed_as", source))
@@ -55,7 +56,7 @@ def containers_of(source: Any) -> tuple[Any, ...]:
 
 
 def _container_of(obj: Any) -> Any:
-    """The container that places an object, None for an object at the top of its document."""
+    """Return the container that places an object, None for a top-level object."""
     group = obj.getParentGeoFeatureGroup()
     if group is not None:
         return group
@@ -74,12 +75,14 @@ def _container_of(obj: Any) -> Any:
 
 
 def elements_of(obj: Any) -> list[Any]:
-    """The objects that a link group or a link array shows, [] for other objects."""
+    """Return the objects that a link group or a link array shows, [] for other objects."""
     return list(link_property(obj, "ElementList") or ())
 
 
 def link_property(obj: Any, name: str) -> Any:
-    """A property of an object as a link, whatever the object calls it; None for an object that is no link."""
+    """Return a property of a link by its role, whatever its name on the object; None for an object
+    that is not a link.
+    """
     try:
         return obj.getLinkExtProperty(name)
     except (AttributeError, RuntimeError, TypeError):
@@ -87,7 +90,9 @@ def link_property(obj: Any, name: str) -> Any:
 
 
 def outer_matrix(source: Any) -> np.ndarray:
-    """The matrix (4, 4) from where an object places itself to the coordinates of its document."""
+    """Return the matrix (4, 4) from the coordinates of an object's container to those of the
+    document.
+    """
     chain = containers_of(source)
     if _asks_freecad(source, chain):
         placement = source.getGlobalPlacement().multiply(source.Placement.inverse())
@@ -99,8 +104,10 @@ def outer_matrix(source: Any) -> np.ndarray:
 
 
 def outer_placement(source: Any) -> Any:
-    """As `outer_matrix`, as a placement.
-    Raises InputError SCALED_CONTAINER where a container scales or mirrors the object."""
+    """Return `outer_matrix` as a placement.
+
+    Raises InputError SCALED_CONTAINER if a container scales or mirrors the object.
+    """
     chain = containers_of(source)
     if _asks_freecad(source, chain):
         return source.getGlobalPlacement().multiply(source.Placement.inverse())
@@ -124,7 +131,9 @@ def outer_placement(source: Any) -> Any:
 
 
 def global_placement(source: Any) -> Any:
-    """The placement of an object in the coordinates of its document. Raises InputError as `outer_placement`."""
+    """Return the placement of an object in document coordinates. Raises InputError as
+    `outer_placement`.
+    """
     own_placement = getattr(source, "Placement", None)
     chain = containers_of(source)
     if _asks_freecad(source, chain):
@@ -134,15 +143,17 @@ def global_placement(source: Any) -> Any:
 
 
 def is_rigid(matrix: np.ndarray) -> bool:
-    """Whether a matrix (4, 4) moves and turns, but neither scales nor mirrors."""
+    """Whether a matrix (4, 4) is a rigid motion, without scale or reflection."""
     turn = matrix[:3, :3]
     is_unit = np.allclose(turn.T @ turn, np.eye(3), rtol=0.0, atol=RIGID)
     return bool(is_unit and np.linalg.det(turn) > 0.0)
 
 
 def path_from_top(source: Any, path: str = "") -> tuple[Any, str]:
-    """The outermost container of an object, or the object itself, and the path from there to the object and to what
-    `path` names in it."""
+    """Return the outermost container of an object, or the object itself, and the path from there.
+
+    The path leads to the object and to the element that `path` names in it.
+    """
     top, steps = source, path
     for container in containers_of(source):
         steps, top = f"{top.Name}.{steps}", container
@@ -159,7 +170,7 @@ def _asks_freecad(source: Any, chain: tuple[Any, ...]) -> bool:
 
 
 def own_matrix(container: Any) -> np.ndarray:
-    """The transform of a container on its members, as a matrix (4, 4): its placement, and the scale
+    """Return the transform of a container on its members as a matrix (4, 4): placement, and scale
     of a link array.
     """
     placement = getattr(container, "Placement", None)
@@ -177,9 +188,10 @@ def is_scaled(obj: Any) -> bool:
 
 
 def shown_paths(source: Any) -> list[str]:
-    """The paths to the objects that a container, link group or link array shows, in FreeCAD's
-    order; `[""]` for an object with a shape of its own. Hidden objects are left out, as FreeCAD
-    does.
+    """Return the paths to the objects shown by a container, link group or link array, in FreeCAD's
+    order.
+
+    `[""]` for an object with its own shape. Hidden objects are omitted, as in FreeCAD.
     """
     linked_object = source.getLinkedObject(True) or source
     if "Shape" in linked_object.PropertiesList or "Mesh" in linked_object.PropertiesList:
@@ -192,8 +204,10 @@ def shown_paths(source: Any) -> list[str]:
 
 
 def children_of(container: Any) -> list[tuple[str, Any]]:
-    """The visible children of a container, link group or link array: their paths from it, and the objects. The child of
-    a link array whose elements are no objects is the object that the array links to."""
+    """Return the visible children of a container, link group or link array, by their path from it.
+
+    The child of a link array without element objects is the linked object of the array.
+    """
     elements = elements_of(container)
     children = []
     for k, path in enumerate(container.getSubObjects()):
@@ -204,7 +218,9 @@ def children_of(container: Any) -> list[tuple[str, Any]]:
 
 
 def _is_visible(container: Any, name: str, child: Any) -> bool:
-    """FreeCAD has no separate visibility (-1) for members of a group: the object's own counts."""
+    """Whether a member is visible; if FreeCAD has no separate visibility (-1), the object's own
+    counts.
+    """
     visible = container.isElementVisible(name)
     return bool(child.Visibility if visible < 0 else visible)
 
@@ -214,10 +230,10 @@ def _array(matrix: Any) -> np.ndarray:
 
 
 def dependencies_of(source: Any) -> Dependencies:
-    """Everything that determines the shape of an object and its place in the document.
+    """Return everything that determines the shape of an object and its position in the document.
 
     A change of any property of these objects may change or move the shape. Stages of the workbench
-    are left out.
+    are excluded.
     """
     chain = containers_of(source)
     sources = _made_from([source])
@@ -230,7 +246,9 @@ def dependencies_of(source: Any) -> Dependencies:
 
 
 def _made_from(start: list[Any], excluded: tuple[Any, ...] = ()) -> list[Any]:
-    """Objects with all their sources, each once. excluded: objects whose inputs are not followed."""
+    """Return objects with all their sources, each once. excluded: objects whose inputs are not
+    followed.
+    """
     sources = dict.fromkeys(start)
     waiting = [entry for entry in start if entry not in excluded]
     while waiting:
@@ -253,7 +271,7 @@ def _inputs_of(obj: Any) -> Iterator[Any]:
 
 
 def _is_held(obj: Any, container: Any) -> bool:
-    """Whether an object is in a container, and so does not place it."""
+    """Whether an object is in a container, and therefore does not place the container."""
     members = (*getattr(container, "Group", ()), *elements_of(container))
     return obj in members or obj == getattr(container, "Origin", None)
 
@@ -261,7 +279,7 @@ def _is_held(obj: Any, container: Any) -> bool:
 class ArrayElement:
     """An element of a link array, with the attributes that readers of shapes need.
 
-    Links of a document can only hold objects: `object_of` makes one.
+    Links of a document can only refer to objects: `object_of` creates an object.
     """
 
     TypeId = "App::LinkElement"
@@ -274,7 +292,7 @@ class ArrayElement:
 
     @property
     def Name(self) -> str:
-        """Not a name in the document, but as unique."""
+        """A unique string that is not the name of an object in the document."""
         return f"{self.array.Name}.{self.index}"
 
     @property
@@ -310,7 +328,9 @@ class ArrayElement:
 
     @property
     def placed_as(self) -> Any:
-        """The object whose containers place it: the shape of the element has the place in its array already."""
+        """The object whose containers place the element; its shape includes the placement in the
+        array already.
+        """
         return self.array
 
     def isDerivedFrom(self, kind: str) -> bool:
@@ -326,21 +346,20 @@ class ArrayElement:
 
 
 def element_count(obj: Any) -> int:
-    """How many elements a link array has, 0 for other objects."""
+    """Return the number of elements of a link array, 0 for other objects."""
     return int(link_property(obj, "ElementCount") or 0)
 
 
 def is_hidden_array(obj: Any) -> bool:
-    """Whether an object is a link array whose elements are no objects."""
+    """Whether an object is a link array without element objects."""
     return element_count(obj) > 0 and not elements_of(obj)
 
 
 def object_of(array: Any, index: int) -> Any:
-    """The object that represents an element of a link array, created if missing.
+    """Return the object that represents an element of a link array, created if missing.
 
-    It is the element itself where FreeCAD shows elements as objects, else a hidden link to it, next
-    to the array. Raises InputError BAD_INPUT for another object than a link array, and for an element that
-    it does not have.
+    If FreeCAD shows elements as objects, it is the element itself, otherwise a hidden link to it
+    next to the array. Raises InputError BAD_INPUT for other objects and for missing elements.
     """
     count = max(element_count(array), len(elements_of(array)))
     if not count:

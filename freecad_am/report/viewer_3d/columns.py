@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The path of the report in 3D: rows of a motion as columns of small whole numbers, and the HTML that draws them."""
+"""The 3D path of the report: rows of a motion as columns of small integers, and the HTML that draws
+them.
+"""
 
 from __future__ import annotations
 
@@ -129,14 +131,14 @@ def _columns(source: Source) -> list[Column]:
 
 
 def _in_units(name: str, unit: str, values: Array) -> Column:
-    """A column in the units of the page."""
+    """Return a column in the units of the page."""
     finite = values[np.isfinite(values)]
     factor, page_unit = units.scale(float(np.abs(finite).max(initial=0.0)), unit)
     return Column(name, page_unit, factor * values)
 
 
 def _starts(motion: Motion) -> Integers:
-    """The first row of each stretch of rapids and of each bead."""
+    """Return the first row of each run of rapids and of each bead."""
     changed = np.ones(len(motion), dtype=bool)
     for column in (motion.deposit, motion.layer, motion.bead):
         changed[1:] &= column[1:] == column[:-1]
@@ -144,7 +146,7 @@ def _starts(motion: Motion) -> Integers:
 
 
 def _thinned(motion: Motion) -> Integers:
-    """The rows that are shown: all, or every k-th of each bead with its ends, as evenly as it goes."""
+    """Return the rows to show: all rows, or every k-th row of each bead with its ends."""
     stride = -(-len(motion) // MOST_ROWS)
     if stride <= 1:
         return np.arange(len(motion))
@@ -157,14 +159,16 @@ def _thinned(motion: Motion) -> Integers:
 
 
 class Bytes:
-    """Columns one after the other, each with where it begins."""
+    """Columns one after the other, with the position of each."""
 
     def __init__(self) -> None:
         self._parts: list[bytes] = []
         self._size = 0
 
     def add(self, values: NDArray[Any], kind: str) -> dict[str, Any]:
-        """Put in values as little-endian numbers of a kind of numpy; where they are, for the page."""
+        """Append values as little-endian numbers of a numpy type; return their position for the
+        page.
+        """
         data = np.ascontiguousarray(values, dtype=np.dtype(kind).newbyteorder("<")).tobytes()
         entry = {"at": self._size, "count": int(values.size), "kind": kind}
         data += b"\0" * (-len(data) % 4)
@@ -178,7 +182,7 @@ class Bytes:
 
 
 def packed(path_rows: Shown, into: Bytes) -> dict[str, Any]:
-    """The rows as bytes; where they are and how to read them."""
+    """Return the rows as bytes, with their positions and types."""
     low, step = path_rows.box
     rows, motion = path_rows.rows, path_rows.motion
     return {
@@ -241,7 +245,7 @@ _SHADES = 32
 
 @dataclass(frozen=True)
 class Turned:
-    """The pieces of a page: its element, and its data and script for the end of the body."""
+    """The pieces of a page: its element, and data and script for the end of the body."""
 
     element: str
     data: str
@@ -276,18 +280,20 @@ def build_viewer(
 
 @lru_cache(maxsize=1)
 def script() -> str:
-    """The script of the page, in a scope of its own."""
+    """Return the script of the page, in its own scope."""
     text = "".join(read_part(f"viewer_3d/{name}") for name in _SCRIPTS)
     return f"(() => {{\n{text}}})();\n"
 
 
 def style() -> str:
-    """How the element looks."""
+    """Return the CSS of the element."""
     return read_part("viewer_3d/viewer.css")
 
 
 def policy() -> str:
-    """What a browser lets the page do: draw itself and run this script, nothing else, and fetch nothing."""
+    """Return the content security policy of the page: own drawings and this script only, no
+    requests.
+    """
     digest = base64.b64encode(hashlib.sha256(script().encode()).digest()).decode()
     return f"default-src 'none'; style-src 'unsafe-inline'; script-src 'sha256-{digest}'"
 
