@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Sections of a feature in a job file, as the parameters that they mean; material files, which
-complete one of them."""
+"""Convert the sections of a feature in a job file to parameters, completed from material files."""
 
 from __future__ import annotations
 
@@ -29,7 +28,10 @@ from .part_source import PartSource, part_of
 
 
 def with_classes(section: dict[str, Any]) -> dict[str, Any]:
-    """The section `process` with its classes as records. Raises InputError naming class and key."""
+    """Return the section `process` with bead classes as records.
+
+    Raises InputError naming class and key.
+    """
     classes = section.get("classes")
     if classes in (None, {}, [], NO_RECORDS):
         return {key: value for key, value in section.items() if key != "classes"}
@@ -47,7 +49,7 @@ def with_classes(section: dict[str, Any]) -> dict[str, Any]:
 
 
 def _bead_class(class_section: Any, name: str) -> bead_classes.BeadClass:
-    """A class of its section. Raises InputError naming class and key."""
+    """Convert the section of a bead class. Raises InputError naming class and key."""
     where = f"{bead_classes.WHERE}.{name}"
     values = fields.mapping(_flat({} if class_section is None else class_section, name), where)
     fields.known_keys(values, bead_classes.SPECS, where)
@@ -55,7 +57,7 @@ def _bead_class(class_section: Any, name: str) -> bead_classes.BeadClass:
 
 
 def _flat(class_section: Any, name: str) -> Any:
-    """What a class says, with `start: {length: ...}` as start_length and so on."""
+    """Flatten the keys of a class: `start: {length: ...}` becomes start_length."""
     if not isinstance(class_section, dict):
         return class_section
     flat: dict[str, Any] = {}
@@ -72,16 +74,18 @@ def _flat(class_section: Any, name: str) -> Any:
 
 
 def kept_clear(family: Family) -> tuple[str, ...]:
-    """The keys of `strategy` that are not parameters of the family: its kind, and selections on the
+    """Return the keys of `strategy` that are no family parameters: its kind and selections on the
     part.
     """
     return ("kind", *family.selections)
 
 
 def process_of(section: Any, strategy: LayerParameters | None = None) -> ProcessParameters:
-    """The process, completed from its material; for filled solids the job's bead width counts, at
-    any value. strategy: None for a program of several features, which may differ, or if not chosen
-    yet. InputError, also from its bead table.
+    """Return the process parameters, completed from the material.
+
+    For filled solids the bead width of the job counts, at any value. strategy: None for a program
+    of several features, which may differ, or if not chosen yet. Raises InputError, also from the
+    bead table.
     """
     process_section = with_classes(filled_in(fields.mapping(section, "process")))
     if strategy is not None and "bead_width" in process_section and family_of(strategy).is_filled:
@@ -93,7 +97,7 @@ def process_of(section: Any, strategy: LayerParameters | None = None) -> Process
 
 
 def refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -> None:
-    """InputError for a build direction that the family of layers does not know."""
+    """Raise InputError for a build direction that the family does not support."""
     family = family_of(strategy)
     if build_direction.mode not in family.modes:
         raise InputError(
@@ -102,7 +106,7 @@ def refuse_direction(strategy: Any, build_direction: BuildDirectionParameters) -
 
 
 def substrate_of(section: Any, strategy: Any, source: PartSource) -> PartSource | None:
-    """The source of a feature's substrate; None for the platform."""
+    """Return the source of the substrate of a feature, None for the platform."""
     family = family_of(strategy)
     if source.start_edges and not family.takes_start_edges:
         raise InputError(
@@ -160,7 +164,7 @@ def substrate_of(section: Any, strategy: Any, source: PartSource) -> PartSource 
 
 
 def _alike(source: PartSource, other_source: PartSource) -> bool:
-    """Whether two sources are the same, whichever faces are meant."""
+    """Whether two sources are the same, apart from selected faces."""
     return os.path.realpath(source.file) == os.path.realpath(other_source.file) and (
         (source.object, source.solids, source.settings, source.scale)
         == (other_source.object, other_source.solids, other_source.settings, other_source.scale)
@@ -168,7 +172,7 @@ def _alike(source: PartSource, other_source: PartSource) -> bool:
 
 
 def strategy_of(section: Any) -> LayerParameters:
-    """Layers of the kind that a section names."""
+    """Return the strategy parameters of the kind that a section names."""
     kind = fields.mapping(section, "strategy").get("kind", DEFAULT_KIND)
     family = find_family(kind, section.get("layers"))
     if family is None:
@@ -183,7 +187,7 @@ def strategy_of(section: Any) -> LayerParameters:
 
 
 def _roles_as_text(section: dict[str, Any]) -> dict[str, Any]:
-    """The section with roles, a list of names, as their text."""
+    """Return the section with the list `roles` as text."""
     roles = section.get("roles")
     if not isinstance(roles, list):
         return section
@@ -217,13 +221,16 @@ ALL = "all"  # in schedules: beads of any class that is not named
 
 
 def built_in() -> list[str]:
-    """Names of the materials that come with the program."""
+    """Return the names of the built-in materials."""
     return sorted(path.stem for path in FOLDER.glob(f"*{ENDING}"))
 
 
 def filled_in(section: Any) -> Any:
-    """The section `process` of a job with what its material says and it does not itself; a section without a
-    file of one as it is. InputError about a key of the job or of the material file."""
+    """Return the section `process` with missing values taken from its material file.
+
+    A section without a material file is returned unchanged. Raises InputError about a key of the
+    job or of the material file.
+    """
     if not isinstance(section, dict) or not isinstance(section.get("material"), str):
         return section
     file = _file(section["material"].strip())
@@ -236,7 +243,7 @@ def filled_in(section: Any) -> Any:
 
 
 def _file(name: str) -> Path:
-    """The file of a name: an existing one, by its absolute name, else a built-in one."""
+    """Return the file of a material: an existing path, made absolute, or else a built-in file."""
     if os.path.isabs(name) and is_there(name):
         return Path(name)
     built_in_file = FOLDER / f"{name.removesuffix(ENDING)}{ENDING}"
@@ -252,7 +259,7 @@ def _file(name: str) -> Path:
 
 
 def _defaults(values: dict[str, Any], file: Path) -> dict[str, Any]:
-    """What a material file says, as a section `process`. InputError about its keys."""
+    """Convert a material file to a section `process`. Raises InputError about its keys."""
     fields.known_keys(values, KEYS, "")
     for key in NEEDED_KEYS:
         if values.get(key) in (None, {}):
@@ -283,7 +290,7 @@ def _defaults(values: dict[str, Any], file: Path) -> dict[str, Any]:
 
 
 def _range(value: Any) -> tuple[float | None, float | None]:
-    """The slowest and the fastest travel speed, mm/s."""
+    """Return the slowest and the fastest travel speed, mm/s."""
     if value in (None, {}):
         return None, None
     if not isinstance(value, list) or len(value) != 2:
@@ -308,7 +315,9 @@ def _range(value: Any) -> tuple[float | None, float | None]:
 def _checked(
     stated: dict[str, Any], values: dict[str, Any], slowest: float | None, fastest: float | None
 ) -> dict[str, Any]:
-    """The wire; its numbers are checked here, so that errors name the line of the material file."""
+    """Return the wire settings. Check their numbers here, so that errors name the line of the
+    material file.
+    """
     for key, kind in (
         ("density", f.NUMBER),
         ("temperature", f.NUMBER),
@@ -351,7 +360,7 @@ def _checked(
 
 
 def _schedules(value: Any) -> dict[str, Any]:
-    """The table of schedules, by classes of beads."""
+    """Return the table of schedules by bead class."""
     table = fields.mapping(value, "schedules")
     fields.known_keys(table, (ALL, *bead_classes.CLASSES), "schedules")
     for name, number in table.items():
@@ -375,7 +384,7 @@ def _schedules(value: Any) -> dict[str, Any]:
 
 
 def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: float | None) -> str:
-    """The bead table, which fits the wire feed and the speeds of the file."""
+    """Return the bead table, checked against the wire feed and the speeds of the file."""
     name = fields.text(values["beads"], "beads").strip()
     if name not in BUILT_IN:
         name = absolute(name, folder_of(str(file)))
@@ -412,8 +421,9 @@ def _beads(values: dict[str, Any], file: Path, slowest: float | None, fastest: f
 
 
 def _over(stated: dict[str, Any], section: dict[str, Any]) -> dict[str, Any]:
-    """The job's values over its material's, key by key; classes given as a text in the job replace
-    the material's.
+    """Merge the values of the job over those of the material, key by key.
+
+    Classes given as text in the job replace the classes of the material.
     """
     merged = {**stated, **{key: value for key, value in section.items() if key != "material"}}
     for key in ("wire", "classes"):

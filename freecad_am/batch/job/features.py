@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The features of a job: source, substrate and strategy; each with its own keys over the job's."""
+"""The features of a job: source, substrate and strategy, each merged with the keys of the job."""
 
 from __future__ import annotations
 
@@ -44,15 +44,17 @@ HEIGHT, SPACING = "layer_height", "bead_spacing"
 
 
 def asked(section: Any) -> bool:
-    """Whether a section `strategy` leaves layer height or spacing to the model."""
+    """Whether a section `strategy` leaves layer height or spacing to the bead model."""
     return isinstance(section, dict) and WORD in (section.get(HEIGHT), section.get(SPACING))
 
 
 def resolved(section: dict[str, Any], process: ProcessParameters) -> dict[str, Any]:
-    """The section with numbers in place of the words. The layer height is the height of a straight
-    bead. The spacing is chosen so that spacing times layer height equals the wire volume per
-    millimetre of bead: then the fed wire fills the layer. Raises InputError BAD_VALUE without a bead
-    model, or if the spacing would exceed the bead width.
+    """Return the section with words replaced by numbers.
+
+    The layer height is the height of a straight bead. The spacing is chosen so that spacing times
+    layer height equals the wire volume per millimetre of bead, so that the fed wire fills the
+    layer. Raises InputError BAD_VALUE without a bead model, or if the spacing would exceed the bead
+    width.
     """
     key = HEIGHT if section.get(HEIGHT) == WORD else SPACING
     model = wire.process_model(process)
@@ -108,10 +110,12 @@ KEYS = ("name", "part", "substrate", "fixtures", "strategy", "build_direction", 
 
 @dataclass(frozen=True)
 class JobFeature:
-    """A deposit and its parameters. `substrate` is set if the family of the strategy uses it
-    (`core.families`), or if an earlier deposit may serve. `guide`: of layers along one;
-    None for their centre line. `start_faces`: faces of the part on which curved layers start.
-    `scan`: of the substrate, to which layers are fitted.
+    """A deposit and its parameters.
+
+    `substrate` is set if the family of the strategy uses one (`core.families`), or if an earlier
+    deposit may serve as substrate. `guide`: guide of layers along a curve, None for the centre
+    line. `start_faces`: faces of the part on which curved layers start. `scan`: scan of the
+    substrate to which layers are fitted.
     """
 
     name: str
@@ -129,8 +133,10 @@ class JobFeature:
 
 
 def one_feature(values: dict[str, Any], name: str) -> JobFeature:
-    """The feature of the sections of a job, or of a feature in it, whose files have absolute names.
-    Raises InputError that names key and what to do."""
+    """Convert the sections of a job, or of one of its features, to a feature.
+
+    Files have absolute names. Raises InputError with key and remedy.
+    """
     if values.get("part") is None:
         raise InputError("NO_PART", "part", "the job has no part; write part: {file: shape.step}")
     part_section = fields.mapping(values["part"], "part")
@@ -193,7 +199,9 @@ def _narrow_spacing(strategy: LayerParameters, process: ProcessParameters) -> La
 
 
 def _left_open(values: dict[str, Any], section: dict[str, Any], name: str) -> JobFeature:
-    """A feature whose family is chosen once its part is known; keys of any family are allowed."""
+    """Return a feature whose family is chosen when its part is known; keys of any family are
+    allowed.
+    """
     fields.known_keys(
         section,
         ("kind", *sorted({key for family in KINDS.values() for key in _keys(family)})),
@@ -222,8 +230,12 @@ def _left_open(values: dict[str, Any], section: dict[str, Any], name: str) -> Jo
 
 
 def leans(feature: JobFeature, strategy: LayerParameters) -> bool:
-    """Whether build directions of a feature, with the strategy chosen for it, follow its wall, and could be one: as they are
-    asked to be, or, where its family is left open, for want of a word about it."""
+    """Whether the build directions of a feature follow its wall and could be replaced by one
+    direction.
+
+    True for directions that follow the wall by the job's setting, or by default if the family is
+    chosen automatically.
+    """
     if not family_of(strategy).follows_wall:
         return False
     if feature.sections is None:
@@ -232,9 +244,11 @@ def leans(feature: JobFeature, strategy: LayerParameters) -> bool:
 
 
 def chosen(feature: JobFeature, kind: str, layers: str, mend: float, mode: str = "") -> JobFeature:
-    """The feature with its open family chosen and the keys of that family. mend: width, mm, of the
-    largest hole that is closed without a job setting, 0 for the default. mode: of the build
-    direction, if it differs from the job's. Raises InputError like other features.
+    """Return the feature with its family chosen, and the keys of that family.
+
+    mend: width, mm, of the largest hole that is closed without a job setting, 0 for the default.
+    mode: mode of the build direction, if it differs from the job's. Raises InputError like other
+    features.
     """
     values, family = dict(feature.sections), KINDS[kind]
     section = {key: value for key, value in values["strategy"].items() if key in _keys(family)}
@@ -253,7 +267,9 @@ def chosen(feature: JobFeature, kind: str, layers: str, mend: float, mode: str =
 
 
 def planes_of(feature: JobFeature) -> SolidParameters:
-    """The direction in which planes would be stacked and how far apart, of a feature whose family is left open."""
+    """Return the stacking direction and the layer height of a feature whose family is not chosen
+    yet.
+    """
     section = feature.sections["strategy"]
     plane_keys = {key: section[key] for key in ("direction", "layer_height") if key in section}
     return fields.build(SolidParameters, plane_keys, "strategy")
@@ -264,7 +280,7 @@ def _keys(family: Family) -> tuple[str, ...]:
 
 
 def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
-    """The features listed in a job file. Raises InputError that names feature and key."""
+    """Convert the features listed in a job file. Raises InputError naming feature and key."""
     entries = values["features"]
     if not isinstance(entries, list) or not entries:
         raise InputError(
@@ -297,7 +313,7 @@ def several(values: dict[str, Any], lines: tree.Tree) -> tuple[JobFeature, ...]:
 
 
 def in_words_of_job(error: InputError, label: str = "Feature") -> InputError:
-    """An error about a link of the feature with that label as one about a key of the job."""
+    """Convert an error about a link of the labelled feature to an error about a key of the job."""
     where = (
         f"Feature{error.where.removeprefix(label)}"
         if error.where.startswith(label)
@@ -307,7 +323,10 @@ def in_words_of_job(error: InputError, label: str = "Feature") -> InputError:
 
 
 def about_feature(error: InputError, number: int, name: str, lines: tree.Tree) -> InputError:
-    """An error about a key of a feature as one about a key of the job, the top level's where that has it."""
+    """Convert an error about a key of a feature to an error about a key of the job.
+
+    The error names the top-level key if the job gives it there.
+    """
     error = in_words_of_job(error, name)
     root = error.where.split(".")[0].split("[")[0]
     if root not in KEYS:
@@ -319,7 +338,10 @@ def about_feature(error: InputError, number: int, name: str, lines: tree.Tree) -
 
 
 def _merge_defaults(feature_section: dict[str, Any], top: dict[str, Any]) -> dict[str, Any]:
-    """The sections of a feature over the top level's, without top-level keys that its family lacks."""
+    """Merge the sections of a feature over the top-level sections.
+
+    Top-level keys that the family of the feature does not know are ignored.
+    """
     defaults = {key: top[key] for key in KEYS[1:] if top.get(key) is not None}
     if isinstance(feature_section.get("part"), dict) and "file" in feature_section["part"]:
         defaults.pop("part", None)  # faces and objects belong to a file
@@ -369,14 +391,14 @@ def _merge_defaults(feature_section: dict[str, Any], top: dict[str, Any]) -> dic
 
 
 def _over(base: Any, override: Any) -> Any:
-    """A section over another, key by key."""
+    """Merge a section over another, key by key."""
     if not isinstance(base, dict) or not isinstance(override, dict):
         return override
     return {**base, **{key: _over(base.get(key), value) for key, value in override.items()}}
 
 
 def _add_fuse(section: Any, part_section: dict[str, Any]) -> Any:
-    """The section of the strategy with what the part says about solids that touch."""
+    """Return the section of the strategy with the part's setting for touching solids."""
     if "fuse" not in part_section:
         return section
     family = find_family(fields.mapping(section, "strategy").get("kind"))
