@@ -1370,8 +1370,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Width of contours in planes: adaptive contours follow the thickness of a region if this covers the region better; fixed contours have the usual width.</source>
-        <translation>Largeur des contours dans les plans : les contours adaptatifs suivent l&apos;épaisseur d&apos;une région si cela la couvre mieux ; les contours fixes ont la largeur habituelle.</translation>
+        <source>Width of contours, and of lines inside contours, in planes: adaptive beads follow the thickness of a region if this covers the region better; fixed ones have the usual width.</source>
+        <translation>Largeur, dans les plans, des contours et des lignes à l&apos;intérieur de contours : les cordons adaptatifs suivent l&apos;épaisseur d&apos;une région si cela la couvre mieux ; les cordons fixes ont la largeur habituelle.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>
@@ -7098,8 +7098,8 @@
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/filled.py"/>
-        <source>Width of contours in planes: adaptive contours follow the thickness of a region if this covers the region better; fixed contours have the usual width.</source>
-        <translation>Largeur des contours dans les plans : les contours adaptatifs suivent l&apos;épaisseur d&apos;une région si cela la couvre mieux ; les contours fixes ont la largeur habituelle.</translation>
+        <source>Width of contours, and of lines inside contours, in planes: adaptive beads follow the thickness of a region if this covers the region better; fixed ones have the usual width.</source>
+        <translation>Largeur, dans les plans, des contours et des lignes à l&apos;intérieur de contours : les cordons adaptatifs suivent l&apos;épaisseur d&apos;une région si cela la couvre mieux ; les cordons fixes ont la largeur habituelle.</translation>
     </message>
     <message>
         <location filename="../../freecad_am/core/parameters/process.py"/>

@@ -24,6 +24,7 @@ from scipy.spatial import cKDTree
 
 from ..geometry.curves.plane_curve import arcs, length, shorten_end
 from ..geometry.regions.region import Region, select_significant, select_simplified
+from ..geometry.regions.several import grow_regions
 from ..geometry.regions.spokes import Spokes, find_spokes
 from ..types import Array, Index, Mask
 from .centre import (
@@ -63,6 +64,7 @@ SHORTEST_PIECE = 0.1  # in spacings; shorter pieces of the axis are ends of bran
 # fraction of the end radius; clearance between a round end, which has no extra volume, and the bead
 # at which it ends
 CAP = 0.25
+HAIR = 0.5  # fraction of the minimum bead width; narrower parts of gaps come from rounding
 MEET = 0.8  # in spacings; approximate width of beads at which other beads end
 JOINT = 1.3  # in steps between spokes; closer ends of centreline beads are joined
 
@@ -283,25 +285,111 @@ def adapt_contours(region: Region, beads: Beads, law: BeadLaw) -> list[PlaneCurv
     list of PlaneCurve
         Beads with bead shares; empty if no bead fits.
     """
-    shortest = SHORTEST_CENTRE * law.spacing
-    curves = _adapt(region, beads, law, MAX_WEDGE, shortest)
-    if not curves:
-        return []
+    curves = _adapt(region, beads, law, MAX_WEDGE, SHORTEST_CENTRE * law.spacing)
+    return curves + fill_gaps(region, curves, beads, law) if curves else []
+
+
+def adapt_walls(region: Region, beads: Beads, law: BeadLaw, walls: int) -> list[PlaneCurve]:
+    """Place the outermost contours of `adapt_contours`, and all beads where no more beads fit.
+
+    Parameters
+    ----------
+    region : Region
+        Plane region, mm.
+    beads : Beads
+        Options; spacing and width are taken from `law`.
+    law : BeadLaw
+        Bead count and bead widths.
+    walls : int
+        Number of contours. The space inside them stays open where more than twice this number of
+        beads and a centreline bead fit across.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Beads with bead shares; empty if no bead fits.
+    """
+    return _adapt(region, beads, law, MAX_WEDGE, SHORTEST_CENTRE * law.spacing, walls)
+
+
+def fill_gaps(
+    region: Region, curves: Sequence[PlaneCurve], beads: Beads, law: BeadLaw
+) -> list[PlaneCurve]:
+    """Place beads of adaptive width in the gaps that beads leave in a region.
+
+    Parameters
+    ----------
+    region : Region
+        Plane region, mm.
+    curves : sequence of PlaneCurve
+        Beads of the region, at least one.
+    beads : Beads
+        Options; spacing and width are taken from `law`.
+    law : BeadLaw
+        Bead count and bead widths.
+
+    Returns
+    -------
+    list of PlaneCurve
+        Beads of kind 'closing' with bead shares.
+    """
     least = law.narrowest * law.width
     covered = covered_regions(curves, law.width, beads.chord_error)
-    for gap in region.without(covered, wide=least, least_area=least * beads.shortest):
-        middles = _adapt(gap, beads, law, GAP_WEDGE, shortest)
-        curves += [replace(curve, kind="closing", ring=0) for curve in middles]
-    return curves
+    closing: list[PlaneCurve] = []
+    gaps = region.without(covered, wide=least, least_area=least * beads.shortest)
+    for gap in drop_hairs(gaps, least, beads.chord_error):
+        middles = _adapt(gap, beads, law, GAP_WEDGE, SHORTEST_CENTRE * law.spacing)
+        closing += [replace(curve, kind="closing", ring=0) for curve in middles]
+    return closing
+
+
+def drop_hairs(gaps: Sequence[Region], least: float, chord_error: float) -> list[Region]:
+    """Drop hairs from gaps: narrow parts along the sides of beads, which come from rounding.
+
+    The medial axis of a hair is not sound.
+
+    Parameters
+    ----------
+    gaps : sequence of Region
+        Gaps between beads, mm.
+    least : float
+        Minimum bead width, mm. Parts narrower than half of it, and farther than twice of it from
+        wider parts, are hairs.
+    chord_error : float
+        Chord error of arcs, mm.
+
+    Returns
+    -------
+    list of Region
+        The gaps without hairs, mm; a gap without hairs is unchanged.
+    """
+    parts: list[Region] = []
+    for gap in gaps:
+        cores = gap.grown(-0.5 * HAIR * least, chord_error)
+        if not cores:
+            continue
+        corners = np.concatenate(gap.borders())
+        away = np.min([core.nearest(corners)[1] for core in cores], axis=0)
+        if away.max() <= 2.0 * least:
+            parts.append(gap)
+        else:
+            parts += gap.common(grow_regions(cores, least, chord_error))
+    return parts
 
 
 def _adapt(
-    region: Region, beads: Beads, law: BeadLaw, max_wedge: float, shortest_centre: float
+    region: Region,
+    beads: Beads,
+    law: BeadLaw,
+    max_wedge: float,
+    shortest_centre: float,
+    walls: int | None = None,
 ) -> list[PlaneCurve]:
     """Fill a region with contours and centreline beads.
 
     max_wedge: opening angle of a wedge, rad; the sides of a wider wedge form a corner.
-    shortest_centre: minimum length of the axis for a centreline bead, mm.
+    shortest_centre: minimum length of the axis for a centreline bead, mm. walls: as in
+    `adapt_walls`; None: all contours.
     """
     reach = 2.0 * float(np.hypot(*(region.borders()[0] - region.middle).T).max())
     turn = 2.0 * math.acos(max(1.0 - beads.chord_error / max(reach, beads.chord_error), 0.0))
@@ -315,9 +403,9 @@ def _adapt(
     thickness = _thickness(spokes, law, max_wedge, shortest_centre)
     spokes, thickness, pairs = _pairs(spokes, thickness, law)
     curves: list[PlaneCurve] = []
-    for pair in pairs:
+    for pair in pairs[:walls]:
         curves += _rings(spokes, thickness, pair, beads, law)
-    curves += _centres(spokes, thickness, pairs, law, beads)
+    curves += _centres(spokes, thickness, pairs, law, beads, walls)
     return [start_curve(curve, beads) for curve in long_enough(curves, beads.shortest)]
 
 
@@ -1020,7 +1108,7 @@ def _trace(
                     )
                 )
         line = feet + depth[:, None] * directions
-        slanted = share * _obliquity(line, directions, entry is None)
+        slanted = share * measure_obliquity(line, directions, entry is None)
         parts.append((line, np.maximum(slanted, np.minimum(share, law.narrowest))))
     points, share = (np.concatenate(columns) for columns in zip(*parts))
     chord = points - np.roll(points, 1, axis=0)
@@ -1028,13 +1116,25 @@ def _trace(
     points, share = points[is_kept], share[is_kept]
     if len(points) < 3:
         return points, None
-    return _thinned(points, share, True, beads)
+    return thin_out(points, share, True, beads)
 
 
-def _obliquity(points: Array, directions: Array, closed: bool) -> Array:
-    """Return the ratio (n,) of the width across a bead to its width along the spokes.
+def measure_obliquity(points: Array, directions: Array, closed: bool) -> Array:
+    """Return the ratio of the width across a bead to its width in given directions.
 
-    points: (n, 2) of the bead. directions: (n, 2) unit vectors of the spokes.
+    Parameters
+    ----------
+    points : (n, 2) array
+        The bead, mm.
+    directions : (n, 2) array
+        Unit vectors, such as those of the spokes.
+    closed : bool
+        Whether the bead is closed.
+
+    Returns
+    -------
+    (n,) array
+        Ratios, at most 1.
     """
     if closed:
         points = np.vstack([points, points[:1]])
@@ -1059,10 +1159,26 @@ def _obliquity(points: Array, directions: Array, closed: bool) -> Array:
     return np.where(weight > 0.0, across / np.maximum(weight, 1e-300), 1.0)
 
 
-def _thinned(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[Array, Array | None]:
+def thin_out(points: Array, share: Array, closed: bool, beads: Beads) -> tuple[Array, Array | None]:
     """Reduce points and bead shares to the tolerances.
 
-    The bead shares of a closed bead are None if the bead has nominal width throughout.
+    Parameters
+    ----------
+    points : (n, 2) array
+        The bead, mm.
+    share : (n,) array
+        Bead shares.
+    closed : bool
+        Whether the bead is closed.
+    beads : Beads
+        Chord error, mm.
+
+    Returns
+    -------
+    points : (m, 2) array
+        Remaining points, mm.
+    share : (m,) array or None
+        Their bead shares; None if a closed bead has nominal width throughout.
     """
     if closed:
         points = np.vstack([points, points[:1]])
@@ -1092,24 +1208,34 @@ class _Middle(NamedTuple):
 
 
 def _centres(
-    spokes: Spokes, thickness: _Thickness, pairs: Sequence[_Pair], law: BeadLaw, beads: Beads
+    spokes: Spokes,
+    thickness: _Thickness,
+    pairs: Sequence[_Pair],
+    law: BeadLaw,
+    beads: Beads,
+    walls: int | None,
 ) -> list[PlaneCurve]:
-    """Return the centreline beads, along the axis where pairs leave enough space."""
+    """Return the centreline beads, along the axis where pairs leave enough space.
+
+    walls: maximum number of pairs beside a centreline bead; None: any number.
+    """
     free = spokes.radii - 0.5 * (law.width - law.spacing)
     for pair in pairs:
         free = np.where(pair.is_there, pair.free(thickness.radii, law.spacing), free)
     width = np.where(thickness.counts == 1, law.width, law.spacing)
     room = np.where(thickness.counts == 1, spokes.radii, free)
     shares = np.minimum(2.0 * room / width, law.widest)
+    if walls is not None:
+        shares = np.where(thickness.counts > 2 * walls + 1, 0.0, shares)
     pieces, closed = _middle_pieces(spokes, thickness, pairs, law, shares)
     curves = []
     for points, closed_shares in closed:
-        thin_points, thin_shares = _thinned(points, closed_shares, True, beads)
+        thin_points, thin_shares = thin_out(points, closed_shares, True, beads)
         curves.append(PlaneCurve(thin_points, True, "centre", 0, share=thin_shares))
     for piece in _join_middles(pieces, JOINT * STEP * law.spacing, law, beads.shortest):
         if len(piece.points) < 2 or length(piece.points, False) < LENGTH_TOLERANCE * law.spacing:
             continue
-        thin_points, thin_shares = _thinned(piece.points, piece.shares, False, beads)
+        thin_points, thin_shares = thin_out(piece.points, piece.shares, False, beads)
         curves.append(PlaneCurve(thin_points, False, "centre", 0, share=thin_shares))
     return curves
 

@@ -22,14 +22,13 @@ from ..geometry.regions.several import (
 from ..geometry.step_count import round_down, round_up, step_count
 from ..types import Array
 from .centre import Beads, PlaneCurve, closing_beads, contours_of, outermost
-from .zigzag import in_rows
+from .zigzag import crossings, in_rows
 
 # number of families of parallel lines, at equal angles
 FAMILIES = {"lines": 1, "zigzag": 1, "grid": 2, "triangles": 3}
 GYROID_LENGTH = 15.449443  # mean section length of a unit gyroid in one period square (side 2 pi)
 # chords per gyroid period before simplification: sqrt(SHARPEST * period / chord error)
 SHARPEST = 6.0
-ROUNDING = 3e-12  # fraction of the maximum coordinate; points this close to a height count as below
 
 
 def families(
@@ -87,35 +86,6 @@ def straight(region: Region, period: float, angle: float) -> list[list[Array]]:
             [rotate_points(segment, angle) for segment in ends if segment[1, 0] > segment[0, 0]]
         )
     return rows_
-
-
-def crossings(borders: list[Array], level: float) -> Array:
-    """Return the x coordinates at which borders cross the line y = `level`.
-
-    Border points at this height within rounding errors count as below. Thus a border along the line
-    is on the same side regardless of its last bits.
-
-    Parameters
-    ----------
-    borders : list of (n, 2) array
-        Closed borders, mm, without repeated first point.
-    level : float
-        The height y, mm.
-
-    Returns
-    -------
-    (m,) array
-        x of the crossings, mm, ascending; m is even.
-    """
-    positions = []
-    for border in borders:
-        following = np.roll(border, -1, axis=0)
-        below = border[:, 1] <= level + ROUNDING * float(np.abs(border).max())
-        k = np.flatnonzero(below != np.roll(below, -1))
-        a, b = border[k], following[k]
-        share = np.clip((level - a[:, 1]) / (b[:, 1] - a[:, 1]), 0.0, 1.0)
-        positions.append(a[:, 0] + share * (b[:, 0] - a[:, 0]))
-    return np.sort(np.concatenate(positions))
 
 
 def honeycomb(region: Region, spacing: float, density: float, angle: float) -> list[Array]:

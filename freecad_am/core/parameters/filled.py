@@ -21,7 +21,7 @@ class Fill:
     follows_border: beads run along the border everywhere, so that there are no contours around
     them. can_be_sparse: it can fill a share of the area. all_round: the fill in its place in a
     layer all around a hub, where its beads would have no ends; '' for none. adapts_widths: the
-    widths of its contours may follow the thickness of a region.
+    widths of its beads may follow the thickness of a region where it fills everything.
     """
 
     follows_border: bool = False
@@ -33,13 +33,13 @@ class Fill:
 FILLS = {
     "contours": Fill(follows_border=True, adapts_widths=True),
     "connected": Fill(follows_border=True, can_be_sparse=False, all_round="contours"),
-    "lines": Fill(),
+    "lines": Fill(adapts_widths=True),
     "spiral": Fill(follows_border=True, can_be_sparse=False, all_round="contours"),
-    "zigzag": Fill(all_round="lines"),
-    "grid": Fill(all_round="lines"),
-    "triangles": Fill(all_round="lines"),
-    "honeycomb": Fill(all_round="lines"),
-    "gyroid": Fill(all_round="lines"),
+    "zigzag": Fill(adapts_widths=True, all_round="lines"),
+    "grid": Fill(adapts_widths=True, all_round="lines"),
+    "triangles": Fill(adapts_widths=True, all_round="lines"),
+    "honeycomb": Fill(adapts_widths=True, all_round="lines"),
+    "gyroid": Fill(adapts_widths=True, all_round="lines"),
 }
 
 
@@ -246,8 +246,8 @@ class FilledParameters(LayerParameters):
     widths: str = f.parameter(
         "adaptive",
         f.CHOICE,
-        "Width of contours in planes: adaptive contours follow the thickness of a region if this "
-        "covers the region better; fixed contours have the usual width.",
+        "Width of contours, and of lines inside contours, in planes: adaptive beads follow the "
+        "thickness of a region if this covers the region better; fixed ones have the usual width.",
         choices=("adaptive", "fixed"),
         advanced=True,
     )
@@ -317,7 +317,7 @@ class FilledParameters(LayerParameters):
 
     @property
     def adapts_widths(self) -> bool:
-        """Whether the widths of contours may follow the thickness of a region."""
+        """Whether the widths of beads may follow the thickness of a region."""
         return (
             self.widths == "adaptive"
             and self.narrowest < 1.0
@@ -325,6 +325,7 @@ class FilledParameters(LayerParameters):
             and self.thin == "single"
             and self.fill_density == 1.0
             and (FILLS[self.fill].adapts_widths or self.rounds == math.inf)
+            and (FILLS[self.fill].follows_border or self.rounds >= 1)
         )
 
     @property

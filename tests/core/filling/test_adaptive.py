@@ -17,6 +17,8 @@ from shapely.ops import unary_union
 
 from freecad_am.core.filling.adaptive_widths import BeadLaw, adapt_contours
 from freecad_am.core.filling.centre import Beads
+from freecad_am.core.filling.fill import fill
+from freecad_am.core.filling.zigzag import adapt_lines
 from freecad_am.core.geometry.regions.region import regions
 from freecad_am.core.geometry.regions.spokes import find_spokes
 
@@ -310,3 +312,136 @@ def test_spokes_reach_the_medial_axis():
         border = shape.boundary
         distance = np.array([border.distance(Point(*point)) for point in spokes.middles])
         assert distance == pytest.approx(spokes.radii, abs=0.02 * WIDTH, rel=0.02)
+
+
+# ---- Lines and zigzags of adaptive width
+
+LONGEST_LINK = 3.0 * WIDTH
+ROUND_END = 0.5 - 0.125 * math.pi  # widths by which a round end without extra area protrudes
+
+
+def random_plate(seed):
+    """A random shape with space for lines, their direction, and its beads: zigzags within two contours."""
+    rng = np.random.default_rng(seed)
+    shape = affinity.scale(random_shape(rng), 2.0, 2.0, origin=(0, 0))
+    angle = rng.uniform(0.0, math.pi)
+    return shape, angle, zigzags(shape, angle)
+
+
+def zigzags(shape, angle):
+    return adapt_lines(region_of(shape), BEADS, LAW, angle, 2, LONGEST_LINK)
+
+
+def test_zigzags_cover_random_shapes_once_and_stay_inside():
+    found = [random_plate(seed) for seed in range(100, 130)]
+    figures = np.array(
+        [faults_of(shape, [swept(curve) for curve in curves]) for shape, _, curves in found]
+    )
+    assert (np.median(figures, axis=0) < (0.0125, 0.0125, 0.001)).all()
+    assert (np.percentile(figures, 90, axis=0) < (0.025, 0.05, 0.005)).all()
+    assert any(curve.kind == "zigzag" for _, _, curves in found for curve in curves)
+
+
+def test_zigzags_move_with_shape_and_direction():
+    apart = []
+    for seed in range(200, 212):
+        shape, angle, curves = random_plate(seed)
+        turn = np.random.default_rng(seed).uniform(0.0, 360.0)
+
+        def moved(part, turn=turn):
+            return affinity.translate(affinity.rotate(part, turn, origin=(0, 0)), 60.3, -211.7)
+
+        there = zigzags(moved(shape), angle + math.radians(turn))
+        covered, covered_there = (
+            unary_union([swept(curve) for curve in each]).buffer(0) for each in (curves, there)
+        )
+        apart.append(moved(covered).symmetric_difference(covered_there).area / shape.area)
+    assert np.median(apart) < 1e-3
+    assert max(apart) < 0.02
+
+
+@pytest.mark.parametrize("height", [41.3, 44.0, 46.5, 50.1])
+def test_a_whole_number_of_equal_lines_fits_between_the_walls(height):
+    """Lines share the space inside two walls evenly, and one zigzag links them all."""
+    shape = box(0.0, 0.0, 70.0, height)
+    curves = zigzags(shape, 0.0)
+    (zigzag,) = [curve for curve in curves if curve.kind == "zigzag"]
+    room = height - 4.0 * WIDTH
+    count = round(room / WIDTH)
+    shares = np.ones(len(zigzag.points)) if zigzag.share is None else zigzag.share
+    assert shares == pytest.approx(room / (count * WIDTH), abs=0.005)
+    levels = np.unique(np.round(zigzag.points[:, 1], 2))
+    assert np.diff(levels) == pytest.approx(room / count, abs=0.02)
+    missed, twice, outside = faults_of(shape, [swept(curve) for curve in curves])
+    # round ends of lines and round outer corners of links
+    corners = 4.0 * count * (1.0 - 0.25 * math.pi) * (0.5 * WIDTH) ** 2 / shape.area
+    assert missed < corners + 0.002
+    assert twice < corners + 0.002
+    assert outside < 1e-4
+
+
+@pytest.mark.parametrize("turn", [5.0, 17.0, 33.0, 60.0])
+def test_links_at_slanted_walls_taper_into_acute_corners(turn):
+    """Nearly all lines are linked, and links neither leave the space inside the walls nor repeat it."""
+    shape = affinity.rotate(box(0.0, 0.0, 120.0, 80.0), turn, origin=(0, 0))
+    curves = zigzags(shape, 0.0)
+    linked = [curve for curve in curves if curve.kind == "zigzag"]
+    low, high = shape.bounds[1], shape.bounds[3]
+    assert len(linked) < 0.5 * (high - low) / WIDTH
+    # round ends of lines protrude beyond their area
+    inside = shape.buffer(-2.0 * WIDTH + ROUND_END * WIDTH + 0.05, join_style=2)
+    outside = unary_union([swept(curve) for curve in linked]).difference(inside)
+    assert outside.area < 0.001 * shape.area
+    missed, twice, _ = faults_of(shape, [swept(curve) for curve in curves])
+    assert missed < 0.012
+    assert twice < 0.012
+
+
+def test_a_line_passes_a_hole_that_enters_its_strip():
+    """The line moves aside and narrows, so that it does not deposit on the wall of the hole."""
+    hole = Point(40.0, 30.0).buffer(9.0, 64)
+    shape = box(0.0, 0.0, 80.0, 60.0).difference(hole)
+    curves = zigzags(shape, 0.0)
+    lines = [swept(curve) for curve in curves if curve.kind == "zigzag"]
+    nominal = fill(region_of(shape), BEADS, "zigzag", 0.0, 2)
+    usual = [swept(curve) for curve in nominal if curve.kind == "zigzag"]
+    wall = hole.buffer(2.0 * WIDTH)
+    on_wall, usually = (
+        sum(line.intersection(wall).area for line in each) for each in (lines, usual)
+    )
+    assert on_wall < 0.5 * usually
+    missed, twice, _ = faults_of(shape, [swept(curve) for curve in curves])
+    assert missed < 0.015
+    assert twice < 0.01
+
+
+@pytest.mark.parametrize("overlap", [0.0, 0.1, 0.25])
+def test_lines_reach_into_their_walls_by_the_given_share(overlap):
+    beads = Beads(WIDTH, 0.2 * WIDTH, 2.0, chord_error=0.02, overlap=overlap)
+    curves = adapt_lines(region_of(box(0, 0, 80, 60)), beads, LAW, 0.0, 2, LONGEST_LINK)
+    zigzag = unary_union([swept(curve) for curve in curves if curve.kind == "zigzag"])
+    left, _, right, _ = zigzag.intersection(box(0, 12, 80, 48)).bounds  # links alone
+    assert left == pytest.approx((2.0 - overlap) * WIDTH, abs=0.05)
+    assert right == pytest.approx(80.0 - (2.0 - overlap) * WIDTH, abs=0.05)
+    assert zigzag.bounds[1] == pytest.approx((2.0 - overlap) * WIDTH, abs=0.05)
+    assert zigzag.bounds[3] == pytest.approx(60.0 - (2.0 - overlap) * WIDTH, abs=0.05)
+
+
+def test_thin_places_inside_walls_are_filled_with_contours():
+    curves = zigzags(box(0.0, 0.0, 90.0, 21.0), 0.7)
+    assert {curve.kind for curve in curves} == {"contour", "centre"}
+
+
+def test_lines_overlap_their_walls_as_neighbours_overlap_by_default():
+    spacing, width = 4.0, 5.0
+    beads = Beads(spacing, 0.2 * spacing, 2.0, chord_error=0.02, width=width)
+    law = BeadLaw(width, spacing, 0.3, 1.5)
+    room = 10 * spacing  # between the centrelines of the outermost lines
+    inset = 0.5 * width + 2.0 * spacing
+    shape = box(0.0, 0.0, 90.0, room + 2.0 * inset)
+    curves = adapt_lines(region_of(shape), beads, law, 0.0, 2, LONGEST_LINK)
+    (zigzag,) = [curve for curve in curves if curve.kind == "zigzag"]
+    levels = np.unique(np.round(zigzag.points[:, 1], 2))
+    assert levels == pytest.approx(inset + spacing * np.arange(11), abs=0.03)
+    links = zigzag.points[1:-1, 0]  # as far from the last wall as lines next to it
+    assert np.unique(np.round(links, 1)) == pytest.approx([inset, 90.0 - inset], abs=0.05)

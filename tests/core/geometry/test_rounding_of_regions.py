@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from freecad_am.core.filling.sparse import crossings
+from freecad_am.core.filling.zigzag import crossings
 from freecad_am.core.geometry.regions.region import regions
 
 SQUARE = np.array([[0.0, 0.0], [40.0, 0.0], [40.0, 30.0], [0.0, 30.0]])

@@ -29,6 +29,7 @@ AT_ONCE, BEND = 200, 1.5  # maximum points and total turn (rad) of a line piece 
 _POLYGON, _MULTI_POLYGON = 3, 6  # codes in well-known binary (WKB)
 # shapely join style for mitred corners, and their mitre limit
 _MITRE, SHARPEST = 2, 1000.0
+MITRE_LIMIT = 2.0  # ratio of a mitre's length to the offset; sharper corners are cut off
 DIGITS = 9  # decimals of mm for simplification, so that last bits have no effect
 LEAST_ARC = 8  # minimum number of segments of a full turn
 EIGHT = 2.8  # of the squared radius; slightly less than the area of an inscribed octagon
@@ -208,6 +209,22 @@ class Region:
         if distance == 0.0:
             return (self,)
         return _parts(self._grown(distance, chord_error), self._sliver, self.sheet)
+
+    def grown_with_corners(self, distance: float) -> tuple[Region, ...]:
+        """Offset the border by `distance` mm, with mitred corners; acute corners are cut off.
+
+        Parameters
+        ----------
+        distance : float
+            Distance, mm; negative inwards.
+
+        Returns
+        -------
+        tuple of Region
+            The parts, mm.
+        """
+        shape = self.shape.buffer(distance, join_style=_MITRE, mitre_limit=MITRE_LIMIT)
+        return _parts(_polygons(shape), self._sliver, self.sheet)
 
     def has_room(self, width: float, chord_error: float) -> bool:
         """Return whether a circle of diameter `width` (mm) fits inside the region."""

@@ -16,8 +16,9 @@ from ...filling.adaptive_widths import BeadLaw, adapt_contours
 from ...filling.centre import OVER, Beads, PlaneCurve, bare_parts
 from ...filling.cover import Cover, measure_cover, total
 from ...filling.even_widths import fit_beads, narrow_beads, share_widths
-from ...filling.fill import Gaps, fill, open_places
+from ...filling.fill import LINK, Gaps, fill, open_places
 from ...filling.sparse import Infill
+from ...filling.zigzag import adapt_lines
 from ...geometry.curves.plane_curve import nearest_among
 from ...geometry.regions.raster import Stroke
 from ...geometry.regions.region import Region, join
@@ -362,7 +363,7 @@ class Pictures:
             cover = measure_cover(region, curves, filling.beads)
         adapted = None
         if strategy.adapts_widths and flat and isinstance(region, Region):
-            adapted = _adapt_widths(region, curves, filling.beads, strategy)
+            adapted = _adapt_widths(region, curves, filling.beads, strategy, angle)
         if adapted:
             curves, cover, gaps = adapted
         else:
@@ -378,14 +379,26 @@ class Pictures:
 
 
 def _adapt_widths(
-    region: Region, curves: Sequence[PlaneCurve], beads: Beads, strategy: FilledParameters
+    region: Region,
+    curves: Sequence[PlaneCurve],
+    beads: Beads,
+    strategy: FilledParameters,
+    angle: float,
 ) -> tuple[Sequence[PlaneCurve], Cover, Gaps] | None:
-    """Return contours of adaptive width with cover and gaps; None if they do not fill the region better."""
+    """Return beads of adaptive width with cover and gaps; None if they do not fill the region better.
+
+    angle: direction of lines, rad.
+    """
     fault = _fault(region, curves, beads)
     if fault < WELL_FILLED:
         return None
     law = BeadLaw(2.0 * beads.inset, beads.spacing, strategy.narrowest, strategy.widest)
-    adapted = adapt_contours(region, beads, law)
+    if strategy.rounds_alone:
+        adapted = adapt_contours(region, beads, law)
+    else:
+        link = (strategy.longest_link or LINK) * beads.spacing
+        longest_link = link if strategy.fill == "zigzag" else None
+        adapted = adapt_lines(region, beads, law, angle, int(strategy.rounds), longest_link)
     if not adapted or _fault(region, adapted, beads) > BETTER * fault:
         return None
     return adapted, measure_cover(region, adapted, beads), open_places(region, adapted, beads)
