@@ -22,7 +22,7 @@ from ..geometry.curves.plane_curve import (
     start_at,
 )
 from ..geometry.regions.medial import spine
-from ..geometry.regions.region import WIDENED, Region, along, simplified
+from ..geometry.regions.region import WIDENING, Region, along, simplified
 from ..geometry.regions.several import (
     HAIR_SHARE,
     grow_regions,
@@ -482,7 +482,7 @@ def open_regions(
     half, error = 0.5 * beads.spacing, max(beads.chord_error, COARSE * beads.gap)
     reachable = grow_regions(inner, half, error)
     lines, halves = _lines_and_halves(curves, beads.spacing, error)
-    wider = WIDENED * error
+    wider = WIDENING * error
     narrower = beads.gap - 4.0 * wider
     if lines and narrower > 0.0:
         covered = along(lines, halves + wider, error)

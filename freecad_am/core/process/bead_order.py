@@ -21,7 +21,7 @@ from ..toolpath import Bead, Layer
 from ..types import Array, Index
 
 NEIGHBOUR_COUNT = 8  # number of neighbours looked up first
-SURELY_NEARER = 1.0 - 1e-12  # ratio of distances beyond rounding errors
+DISTANCE_MARGIN = 1.0 - 1e-12  # ratio of distances beyond rounding errors
 
 
 class RankedBead(NamedTuple):
@@ -154,7 +154,7 @@ class StartPoints:
             numbers = np.sort(numbers[self._is_left[numbers]])
             away = np.linalg.norm(self._points[numbers] - place, axis=1)
             all_known = wanted >= len(self._left)
-            if all_known or (len(away) and away.min() < SURELY_NEARER * np.max(distances)):
+            if all_known or (len(away) and away.min() < DISTANCE_MARGIN * np.max(distances)):
                 return int(numbers[np.argmin(away)])
             wanted *= 4
 

@@ -14,13 +14,16 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from ..geometry.curves.profile import RevolvedWall
+from ..geometry.developable import Plane
 from ..geometry.formatting import at_least, count
 from ..geometry.mesh.coarsen import doubled_areas
+from ..geometry.mesh.refine import Edges
 from ..geometry.mesh.solid import SolidMesh
-from ..geometry.on_hub import SolidsOnHub
+from ..geometry.obstacles import Body
+from ..geometry.on_hub import Base, SolidsOnHub
 from ..issues import NOTE, InputError, Issue, Text, Word
 from ..layers.curved_field import step_of
-from ..parameters.filled import CladdingParameters, FilledParameters
+from ..parameters.filled import CladdingParameters, FilledParameters, SolidParameters
 from ..parameters.process import ProcessParameters
 from ..parameters.strategy import (
     MOST_LAYERS,
@@ -49,6 +52,9 @@ GIGABYTES_A_VERTEX = 9e-6  # peak memory per mesh vertex of a wall; measured 8.7
 POINTS_AN_EDGE = 2.5
 # CPU seconds for a point on a mesh; measured: 0.41 to 0.56 ms for the toolpath
 SECONDS_A_MESH_POINT = 7e-4
+# beads of solids in plane layers: chords keep to this share of the chord error (`beads.NEEDLESS`);
+# points of contours inside those of the border; share of the border along links; points of a line
+CHORD_SHARE, INNER_FACTOR, LINKED_SHARE, POINTS_A_LINE = 0.12, 1.5, 0.6, 4.0
 MIN_CHORDS = 24  # minimum number of points of a bead on a wall
 PLACES = 181  # number of samples along meridians and tubes
 MAX_SAMPLES = 20_000  # maximum number of sampled vertices for the extent of a wall
@@ -67,6 +73,7 @@ _SECONDS_A_POINT: dict[type, float] = {
     RevolutionParameters: 5.5e-5,
     SurfaceParameters: 2e-3,
     CladdingParameters: 1.5e-3,
+    SolidParameters: 1e-4,  # 2.6e-5 where layers are equal, up to 1.5e-4 where they differ
     FilledParameters: 2.5e-4,
 }
 
@@ -201,13 +208,16 @@ def solids_size(
                 / strategy.layer_height
                 / spacing
             )
-            # beads run around the hub for half of their length, with half of the chord error for their chords; and they end
-            extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
-            points += length * max(
-                0.5
-                / math.sqrt(4.0 * strategy.chord_error * group.base.surface.bend(height, extent)),
-                2.0 / extent,
-            )
+            if isinstance(group.base.surface, Plane):
+                points += _plane_points(body, group.base, length, strategy)
+            else:
+                # beads run around the hub for half of their length, with half of the chord error for
+                # their chords; and they end
+                extent = float(np.linalg.norm(np.ptp(body.vertices, axis=0)))
+                bend = group.base.surface.bend(height, extent)
+                points += length * max(
+                    0.5 / math.sqrt(4.0 * strategy.chord_error * bend), 2.0 / extent
+                )
             if strategy.margin > 0.0:  # the margin rounds the regions, so no two layers are equal
                 squares += length / spacing
         layers += (
@@ -216,6 +226,53 @@ def solids_size(
         if strategy.has_curved_layers:
             nodes += volume / step_of(volume, strategy.layer_height) ** 3
     return Size(layers, points, squares, nodes)
+
+
+def _plane_points(body: Body, base: Base, length: float, strategy: FilledParameters) -> float:
+    """Estimate the points of a solid in plane layers, filled by beads of a total length, mm.
+
+    Beads along the border have a point at each corner of the border and on its arcs. Contours farther inside have fewer:
+    of a disc whose radius shrinks evenly, an arc has two thirds of the points and half of the length. Arcs around corners
+    of holes, and lines that holes cut, are not counted.
+    """
+    corners, sides = _borders(body, base, CHORD_SHARE * strategy.chord_error)
+    if sides <= 0.0:
+        return 0.0
+    if strategy.rounds_alone:
+        return INNER_FACTOR * length * corners / sides
+    around = sides / strategy.layer_height  # mm, one wall in all layers
+    walls = min(strategy.rounds * around, length)
+    chord = (
+        math.pi * length * strategy.bead_spacing / around
+    )  # mean length of lines across (Cauchy)
+    lines = max(length - walls, 0.0) / chord
+    along_border = walls / around + (LINKED_SHARE if strategy.fill == "zigzag" else 0.0)
+    return along_border * corners / strategy.layer_height + POINTS_A_LINE * lines
+
+
+def _borders(body: Body, base: Base, chord_error: float) -> tuple[float, float]:
+    """Return the points and the length of the borders of all sections of a solid, each integrated over the height.
+
+    Points are in mm and lengths in mm^2. An edge of the mesh is a corner of the sections that it crosses, or part of an
+    arc that needs fewer points.
+    """
+    triangles = np.asarray(body.triangles, dtype=np.intp)
+    vertices = base.inside(body.vertices)
+    areas = 0.5 * doubled_areas(vertices[triangles])
+    edges = Edges(triangles)
+    ends, faces = edges.ends[edges.count == 2], edges.faces[edges.count == 2]
+    high = np.abs(vertices[ends[:, 1], 2] - vertices[ends[:, 0], 2])
+    sections = np.hypot(areas[:, 0], areas[:, 1])  # length of sections times height
+    first, second = (areas[faces[:, k], :2] for k in (0, 1))
+    turn = np.abs(
+        np.arctan2(
+            first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0], (first * second).sum(axis=1)
+        )
+    )
+    wide = sections[faces].sum(axis=1) / np.maximum(high, 1e-300)
+    share = np.sqrt(turn * wide / (8.0 * chord_error))
+    starts = float(np.ptp(vertices[:, 2]))  # a border repeats its first point
+    return starts + float(high @ np.minimum(share, 1.0)), float(sections.sum())
 
 
 def cladding_size(faces: CladFaces, strategy: CladdingParameters) -> Size:

@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 
 from freecad_am.core.geometry.curves.profile import Meridian, RevolvedWall, arc, line
+from freecad_am.core.geometry.obstacles import Body
 from freecad_am.core.geometry.walls.mesh_wall import mesh_wall
 from freecad_am.core.geometry.walls.patch_wall import CladFaces, FirstCurve
 from freecad_am.core.issues import InputError
+from freecad_am.core.layers.stacking import prepare_stack
 from freecad_am.core.parameters.build_direction import BuildDirectionParameters
 from freecad_am.core.parameters.cell import NozzleParameters
 from freecad_am.core.parameters.filled import (
@@ -124,6 +126,59 @@ def test_counts_are_about_right(make):
     estimate, toolpath = make()
     assert 0.65 < estimate.layers / len(toolpath.layers) < 1.35, (estimate, len(toolpath.layers))
     assert 0.2 < estimate.points / toolpath.point_count < 1.6, (estimate, toolpath.point_count)
+
+
+SECTIONS = {  # radius and height of a part of revolution about z, mm; a cylinder on the axis is a disc
+    "a disc": [(0.0, 0.0), (20.0, 0.0), (20.0, 8.0), (0.0, 8.0)],
+    "a cone": [(0.0, 0.0), (20.0, 0.0), (12.0, 8.0), (0.0, 8.0)],
+    "a tube": [(9.0, 0.0), (20.0, 0.0), (20.0, 8.0), (9.0, 8.0)],
+}
+
+
+def turned_solid(corners, sides):
+    """A closed mesh of a profile around the axis."""
+    angle = 2.0 * np.pi * np.arange(sides) / sides
+    rings = [np.stack([r * np.cos(angle), r * np.sin(angle), 0 * angle + z], 1) for r, z in corners]
+    k, on = np.arange(sides), (np.arange(sides) + 1) % sides
+    triangles = []
+    for low in range(len(rings)):
+        high = (low + 1) % len(rings)
+        a, b, c, d = k + low * sides, on + low * sides, on + high * sides, k + high * sides
+        triangles += [np.stack([a, b, c], 1), np.stack([a, c, d], 1)]
+    vertices, inverse = np.unique(np.vstack(rings).round(9) + 0.0, axis=0, return_inverse=True)
+    found = inverse.ravel()[np.vstack(triangles)]
+    whole = (found != np.roll(found, 1, axis=1)).all(axis=1)
+    on_axis = np.hypot(*vertices[:, :2].T)[found].max(axis=1) == 0.0
+    return Body("part", vertices, found[whole & ~on_axis])
+
+
+@pytest.mark.parametrize(
+    ("section", "sides", "chord_error", "fill"),
+    [
+        ("a disc", 300, 0.01, "contours"),
+        ("a disc", 300, 0.01, "zigzag"),
+        ("a disc", 300, 0.01, "lines"),
+        ("a disc", 4, 0.01, "contours"),
+        ("a disc", 4, 0.01, "lines"),
+        ("a cone", 120, 0.05, "contours"),
+        ("a cone", 120, 0.05, "zigzag"),
+        ("a cone", 120, 0.05, "lines"),
+        ("a tube", 300, 0.01, "contours"),
+        ("a tube", 300, 0.01, "zigzag"),
+    ],
+)
+def test_points_of_solids_in_planes_are_estimated_within_a_factor_of_2(
+    section, sides, chord_error, fill
+):
+    """Round parts were told a tenth of their points, square ones five times as many."""
+    strategy = SolidParameters(
+        layer_height=2.0, bead_spacing=2.0, chord_error=chord_error, fill=fill, direction="0 0 1"
+    )
+    made = prepare_stack([turned_solid(SECTIONS[section], sides)], strategy, "part")
+    told = estimated_size.solids_size(made, strategy)
+    path = plan_solids(made, strategy, BuildDirectionParameters(), PROCESS, None)
+    assert told.layers == pytest.approx(len(path.layers), rel=0.01)
+    assert 0.5 < told.points / path.point_count < 2.0, (told, path.point_count)
 
 
 def test_the_turns_of_a_spiral_count_as_layers():
@@ -351,7 +406,7 @@ def test_curved_layers_are_told_by_their_grid(height, told):
     [
         (600_000, ["nodes"]),
         (700_000, ["nodes", "1.1 GB"]),
-        (4_500_000, ["6.8 GB"]),
+        (12_000_000, ["18 GB"]),
     ],
 )
 def test_curved_layers_that_take_much_memory_too_are_told_by_both(points, told):

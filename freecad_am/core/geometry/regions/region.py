@@ -37,8 +37,8 @@ ON_EDGE = 1e-6  # mm; maximum distance of a collinear point from the line of its
 SAME_TURN = 1e-6  # rad; turn angles that differ by less are equal
 ROUND_AREA = 0.02  # relative; second moments of area that differ by less are equal
 WIDTH = 0.005  # relative tolerance of a region's width
-ROUGHLY = 1.0 - 1e-9  # margin for the rounding of measured areas
-WIDENED = 2.0  # chord errors; wider bands leave no slivers between chords of neighbouring curves
+SIZE_MARGIN = 1.0 - 1e-9  # margin for the rounding of measured areas
+WIDENING = 2.0  # chord errors; wider bands leave no slivers between chords of neighbouring curves
 FINE_SLIT, LONG_SLIT = (
     0.1,
     20.0,
@@ -145,7 +145,13 @@ class Region:
 
     @property
     def bounds(self) -> Array:
-        """Lowest and highest corner (2, 2) of the bounding box, mm."""
+        """Return the bounding box.
+
+        Returns
+        -------
+        (2, 2) array
+            Lowest and highest corner, mm.
+        """
         return np.reshape(self.shape.bounds, (2, 2))
 
     def contains(self, points: Array) -> Mask:
@@ -449,7 +455,7 @@ def measure_bands(
     chord_error: float,
     pane: Sequence[Region] = (),
 ) -> tuple[float, float]:
-    """Measure the bands within `half` mm of curves, without gaps narrower than 2 WIDENED chord errors.
+    """Measure the bands within `half` mm of curves, without gaps narrower than 2 WIDENING chord errors.
 
     Chords of neighbouring curves leave thousands of such gaps, whose union took most of the time of
     a filling.
@@ -468,7 +474,7 @@ def measure_bands(
     inside, area : float
         Area of the bands inside the regions, and total area of the bands, mm^2.
     """
-    wider = WIDENED * chord_error
+    wider = WIDENING * chord_error
     bands = _buffered(_bands(curves, half + wider, chord_error), -wider, chord_error)
     if pane:
         bands = bands.intersection(_union(pane))
@@ -832,35 +838,35 @@ def _larger(shape: Any, least_area: float, least_extent: float) -> list[Any]:
     """
     if shape.geom_type != "MultiPolygon":
         return [polygon for polygon in _polygons(shape) if polygon.area > least_area]
-    data = shape.wkb
-    order = "<" if data[0] == 1 else ">"
-    (number,) = struct.unpack_from(f"{order}I", data, 5)
-    read = struct.Struct(f"{order}II").unpack_from  # number of rings; number of points of the first
+    binary = shape.wkb
+    order = "<" if binary[0] == 1 else ">"
+    (count,) = struct.unpack_from(f"{order}I", binary, 5)
+    read = struct.Struct(f"{order}II").unpack_from  # count of rings; count of points of the first
     ring_size = struct.Struct(f"{order}I").unpack_from
     position, polygons, firsts, sizes = 9, [], [], []
-    for _ in range(number):
+    for _ in range(count):
         start = position
-        rings, size = read(data, position + 5)
+        rings, size = read(binary, position + 5)
         firsts.append(position + 13)
         sizes.append(size)
         position += 13 + 16 * size
         for _ in range(rings - 1):
-            position += 4 + 16 * ring_size(data, position)[0]
+            position += 4 + 16 * ring_size(binary, position)[0]
         polygons.append((start, position))
-    areas, extents = _ring_sizes(data, np.array(firsts), np.array(sizes), f"{order}f8")
-    large = (areas > ROUGHLY * least_area) & (extents >= ROUGHLY * least_extent)
-    found = [shapely().wkb.loads(data[slice(*polygons[k])]) for k in np.flatnonzero(large)]
+    areas, extents = _ring_sizes(binary, np.array(firsts), np.array(sizes), f"{order}f8")
+    large = (areas > SIZE_MARGIN * least_area) & (extents >= SIZE_MARGIN * least_extent)
+    found = [shapely().wkb.loads(binary[slice(*polygons[k])]) for k in np.flatnonzero(large)]
     return [polygon for polygon in found if polygon.area > least_area]
 
 
-def _ring_sizes(data: bytes, starts: Index, sizes: Index, kind: str) -> tuple[Array, Array]:
+def _ring_sizes(binary: bytes, starts: Index, sizes: Index, kind: str) -> tuple[Array, Array]:
     """Return area (k,), mm^2, and diagonal of the bounding box (k,), mm, of closed rings in bytes.
 
-    starts: (k,) first bytes. sizes: (k,) numbers of points; the last repeats the first.
+    starts: (k,) first bytes. sizes: (k,) counts of points; the last repeats the first.
     """
     firsts = np.cumsum(sizes) - sizes
     places = np.repeat(starts - 16 * firsts, sizes) + 16 * np.arange(sizes.sum())
-    content = np.frombuffer(data, dtype=np.uint8)[places[:, None] + np.arange(16)]
+    content = np.frombuffer(binary, dtype=np.uint8)[places[:, None] + np.arange(16)]
     points = content.view(kind).astype(float)
     low, high = (function.reduceat(points, firsts) for function in (np.minimum, np.maximum))
     offset = points - np.repeat(points[firsts], sizes, axis=0)

@@ -13,7 +13,7 @@ from ..obstacles import meeting_boxes
 from .region import Region
 from .strip import Strip, Window
 
-MANY = 8  # regions; fewer are compared in pairs
+PAIRED_COUNT = 8  # regions; fewer are compared in pairs
 HAIR_SHARE = 0.01  # of the chord error; half the width of a neck that comes from rounding
 
 
@@ -96,7 +96,7 @@ def _nearby(
     regions: Sequence[Region], counterparts: Sequence[Region]
 ) -> Sequence[Sequence[Region]]:
     """Return for each region the counterparts whose bounding boxes meet its own."""
-    if min(len(regions), len(counterparts)) < MANY:
+    if min(len(regions), len(counterparts)) < PAIRED_COUNT:
         return [counterparts] * len(regions)
     low, high = (
         np.array([region.bounds[k] for region in (*regions, *counterparts)]) for k in (0, 1)
