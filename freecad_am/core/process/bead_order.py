@@ -105,12 +105,12 @@ class IslandOrder:
 
 def _nearest(points: Array, places: Array) -> Index:
     """Return for each place (n, 3) the index of the nearest point (k, 3), mm; of equally near ones the first."""
-    found = (
+    neighbours = (
         cKDTree(points).query(places, min(NEIGHBOUR_COUNT, len(points)))[1].reshape(len(places), -1)
     )
-    found = np.sort(found, axis=1)
-    distances = np.linalg.norm(points[found] - places[:, None], axis=2)
-    return np.asarray(found[np.arange(len(places)), np.argmin(distances, axis=1)])
+    neighbours = np.sort(neighbours, axis=1)
+    distances = np.linalg.norm(points[neighbours] - places[:, None], axis=2)
+    return np.asarray(neighbours[np.arange(len(places)), np.argmin(distances, axis=1)])
 
 
 class StartPoints:
@@ -149,8 +149,8 @@ class StartPoints:
             self._tree = cKDTree(self._points[self._left])
         wanted = NEIGHBOUR_COUNT
         while True:
-            distances, found = self._tree.query(place, min(wanted, len(self._left)))
-            numbers = self._left[np.atleast_1d(found)]
+            distances, neighbours = self._tree.query(place, min(wanted, len(self._left)))
+            numbers = self._left[np.atleast_1d(neighbours)]
             numbers = np.sort(numbers[self._is_left[numbers]])
             away = np.linalg.norm(self._points[numbers] - place, axis=1)
             all_known = wanted >= len(self._left)

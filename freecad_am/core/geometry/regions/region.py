@@ -306,13 +306,13 @@ class Region:
             for part in getattr(cut, "geoms", [cut])
             if part.geom_type == "LineString" and not part.is_empty
         ]
-        found = []
+        ordered_pieces = []
         for part in parts:
             ends = [float(whole.project(library.geometry.Point(part.coords[k]))) for k in (0, -1)]
-            found.append(
+            ordered_pieces.append(
                 (min(ends), np.array(part.coords, dtype=float)[:: 1 if ends[0] <= ends[1] else -1])
             )
-        return [piece for _, piece in sorted(found, key=lambda item: item[0])]
+        return [piece for _, piece in sorted(ordered_pieces, key=lambda item: item[0])]
 
     def distance(self, other: Region) -> float:
         """Return the distance to another region, mm; 0 if they touch."""
@@ -323,13 +323,13 @@ class Region:
         geometry = shapely().geometry
         rings = [_at_corner(ring[:-1]) for ring in _closed_rings(self.shape)]
         simple = geometry.Polygon(rings[0], rings[1:]).simplify(tolerance)
-        found = _parts(_polygons(simple), 0.0, self.sheet)
-        if len(found) != 1:
+        simple_regions = _parts(_polygons(simple), 0.0, self.sheet)
+        if len(simple_regions) != 1:
             return self
-        if all(len(ring) != 4 for ring in found[0].borders()):
-            return found[0]
+        if all(len(ring) != 4 for ring in simple_regions[0].borders()):
+            return simple_regions[0]
         # shapely keeps at least four points of a ring
-        rings = [_drop_fourth(ring, tolerance) for ring in found[0].borders()]
+        rings = [_drop_fourth(ring, tolerance) for ring in simple_regions[0].borders()]
         return Region(geometry.Polygon(rings[0], rings[1:]), self.sheet)
 
     def inside(self) -> Array:
@@ -353,14 +353,14 @@ class Mended(NamedTuple):
 
     def issues(self, layer: int | None = None) -> tuple[Issue, ...]:
         """Return notes about repairs and slivers for the user."""
-        found = []
+        repair_notes = []
         if self.changed > 0.0:
             text = Text(
                 "contours that cross or touch were repaired; {:.3g} mm^2 changed", self.changed
             )
-            found.append(Issue(NOTE, "REGION_MENDED", text, layer))
+            repair_notes.append(Issue(NOTE, "REGION_MENDED", text, layer))
         if self.dropped > 0.0:
-            found.append(
+            repair_notes.append(
                 Issue(
                     NOTE,
                     "REGION_SLIVERS",
@@ -368,7 +368,7 @@ class Mended(NamedTuple):
                     layer,
                 )
             )
-        return tuple(found)
+        return tuple(repair_notes)
 
 
 def regions(
@@ -760,15 +760,17 @@ def _parts(
     polygons: Sequence[Any], least_area: float, sheet: float = 0.0, every_point: bool = False
 ) -> tuple[Region, ...]:
     """Return polygons larger than an area (mm^2), in the order of their leftmost points."""
-    found = [
+    kept_regions = [
         Region(part if every_point else _plain(part), sheet)
         for part in polygons
         if part.area > least_area
     ]
-    if len(found) < 2:
-        return tuple(found)
+    if len(kept_regions) < 2:
+        return tuple(kept_regions)
     # rounded, so that last bits do not order regions in a column
-    return tuple(sorted(found, key=lambda region: region.borders()[0][0].round(DIGITS).tolist()))
+    return tuple(
+        sorted(kept_regions, key=lambda region: region.borders()[0][0].round(DIGITS).tolist())
+    )
 
 
 def _cut_hairs(polygons: Sequence[Any], hair: float) -> list[Any]:
@@ -855,8 +857,8 @@ def _larger(shape: Any, least_area: float, least_extent: float) -> list[Any]:
         polygons.append((start, position))
     areas, extents = _ring_sizes(binary, np.array(firsts), np.array(sizes), f"{order}f8")
     large = (areas > SIZE_MARGIN * least_area) & (extents >= SIZE_MARGIN * least_extent)
-    found = [shapely().wkb.loads(binary[slice(*polygons[k])]) for k in np.flatnonzero(large)]
-    return [polygon for polygon in found if polygon.area > least_area]
+    candidates = [shapely().wkb.loads(binary[slice(*polygons[k])]) for k in np.flatnonzero(large)]
+    return [polygon for polygon in candidates if polygon.area > least_area]
 
 
 def _ring_sizes(binary: bytes, starts: Index, sizes: Index, kind: str) -> tuple[Array, Array]:
@@ -866,8 +868,8 @@ def _ring_sizes(binary: bytes, starts: Index, sizes: Index, kind: str) -> tuple[
     """
     firsts = np.cumsum(sizes) - sizes
     places = np.repeat(starts - 16 * firsts, sizes) + 16 * np.arange(sizes.sum())
-    content = np.frombuffer(binary, dtype=np.uint8)[places[:, None] + np.arange(16)]
-    points = content.view(kind).astype(float)
+    coordinate_bytes = np.frombuffer(binary, dtype=np.uint8)[places[:, None] + np.arange(16)]
+    points = coordinate_bytes.view(kind).astype(float)
     low, high = (function.reduceat(points, firsts) for function in (np.minimum, np.maximum))
     offset = points - np.repeat(points[firsts], sizes, axis=0)
     cross = np.zeros(len(points))
